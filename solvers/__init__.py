@@ -1,0 +1,1 @@
+"""The mechanics: materials, friction laws, integral equations and finite elements."""

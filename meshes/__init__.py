@@ -1,0 +1,1 @@
+"""Meshes of the half-plane, by name: confocal (default), graded and box."""

@@ -45,7 +45,11 @@ class FlatPunch:
 
     @property
     def K_I(self) -> float:
-        """Stress intensity factor at both ends over (N/2a)·2·(2a)^..., dimensionless (Eq 58)."""
+        """Normalised mode I stress intensity factor, the same number at both ends (Eqs 56-58).
+
+        The limit at X = ±a of -σ_YY/(N/a) divided by (1 - r)^α (1 + r)^β; dimensionless. The two ends
+        are not equally severe for all that: their exponents differ.
+        """
         return -self._sin / np.pi
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
@@ -57,6 +61,11 @@ class FlatPunch:
         with np.errstate(invalid="ignore", divide="ignore"):
             inside = 2.0 * self._sin / np.pi * self._weight(r)
         return np.where(np.abs(r) < 1.0, inside, np.where(np.abs(r) > 1.0, 0.0, np.nan))
+
+    def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
+        left, right = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
+        return 2.0 * self._sin / np.pi * right**self.α * left**self.β
 
     def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface over N/(2a); NaN at |r| = 1."""

@@ -1,0 +1,120 @@
+"""The one cell pattern of all meshes: a rectangle, graded towards the two corners of the contact.
+
+In elliptic coordinates X + iY = a cosh(ξ + iη) the half-plane Y < 0 is the rectangle 0 <= ξ <= Ξ,
+-π <= η <= 0. Its side ξ = 0 is the contact, η = 0 and η = -π are the free surface right and left of
+the punch, ξ = Ξ is far away. Quadrilaterals lie in L-shaped rings around the punch edges (0, 0) and
+(0, -π), and in columns outwards.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+CONTACT, FREE, FAR = 1, 2, 3
+#: Boundary parts by name, as gmsh's physical groups carry them.
+TAGS = {"contact": CONTACT, "free surface": FREE, "far": FAR}
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """How fine a mesh is.
+
+    Attributes:
+        levels: L-shaped rings around each punch edge.
+        ratio: size of a ring over that of the ring outside it, in (0, 1).
+        sectors: cells along each of the two legs of an L, so 2·sectors columns of cells in angle.
+        columns: widths in ξ of the columns outside the rings.
+    """
+
+    levels: int
+    ratio: float
+    sectors: int
+    columns: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class QuadMesh:
+    """Quadrilaterals with tagged boundary edges.
+
+    Attributes:
+        points: vertex coordinates, (n, 2).
+        cells: vertices of each cell counterclockwise, (m, 4).
+        edges: vertices of the boundary edges by tag, each (k, 2).
+    """
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    edges: dict[int, NDArray[np.int64]]
+
+
+def rectangle(refinement: Refinement, fan: bool = False) -> QuadMesh:
+    """The graded rectangle in the (ξ, η) plane.
+
+    Args:
+        refinement: how fine.
+        fan: what fills the innermost square of a corner. A grid suits the rectangle; a fan of
+            quadrilaterals that meet in the corner suits its image in the physical plane, where the
+            corner's right angle opens to a straight line.
+    """
+    half = np.pi / 2.0
+    corners = [_corner(half, refinement, fan)]
+    corners.append(_mirrored(corners[0]))
+    ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
+    η = np.linspace(-np.pi, 0.0, 2 * refinement.sectors + 1)
+    columns = [
+        [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)]
+        for ξ0, ξ1 in zip(ξ[:-1], ξ[1:])
+        for η0, η1 in zip(η[:-1], η[1:])
+    ]
+    quads = np.concatenate([*corners, np.reshape(columns, (-1, 4, 2))])
+    # Coordinates near a corner are multiples of its smallest cell, far above this rounding.
+    keys = np.round(quads.reshape(-1, 2), 13) + 0.0
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    points, cells = quads.reshape(-1, 2)[first], inverse.reshape(-1, 4)
+    return QuadMesh(points, cells, _tagged_edges(points, cells, ξ[-1]))
+
+
+def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float64]:
+    """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2)."""
+    sectors = refinement.sectors
+    t = np.linspace(0.0, 1.0, sectors + 1)
+    leg = np.concatenate(
+        [np.column_stack([np.ones_like(t), -t]), np.column_stack([t[-2::-1], -np.ones(sectors)])]
+    )
+    sizes = size * refinement.ratio ** np.arange(refinement.levels + 1)
+    quads = [
+        [inner * leg[i], inner * leg[i + 1], outer * leg[i + 1], outer * leg[i]]
+        for outer, inner in zip(sizes[:-1], sizes[1:])
+        for i in range(2 * sectors)
+    ]
+    if fan:
+        rim = sizes[-1] * leg
+        quads += [[0.0 * rim[0], *rim[2 * i : 2 * i + 3][::-1]] for i in range(sectors)]
+        return np.array(quads)
+    grid = sizes[-1] * t
+    quads += [
+        [(x0, -y0), (x0, -y1), (x1, -y1), (x1, -y0)]
+        for x0, x1 in zip(grid[:-1], grid[1:])
+        for y0, y1 in zip(grid[:-1], grid[1:])
+    ]
+    return np.array(quads)
+
+
+def _mirrored(quads: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The mirror image in η = -π/2, counterclockwise again."""
+    flipped = quads[:, ::-1].copy()
+    flipped[..., 1] = -np.pi - flipped[..., 1]
+    return flipped
+
+
+def _tagged_edges(
+    points: NDArray[np.float64], cells: NDArray[np.int64], Ξ: float
+) -> dict[int, NDArray[np.int64]]:
+    edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
+    middle_ξ, middle_η = points[edges].mean(axis=1).T
+    return {
+        CONTACT: edges[middle_ξ == 0.0],
+        FREE: edges[(middle_η == 0.0) | (middle_η == -np.pi)],
+        FAR: edges[middle_ξ == Ξ],
+    }

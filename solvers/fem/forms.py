@@ -1,0 +1,32 @@
+"""Weak form of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it."""
+
+from typing import Any
+
+import ufl
+
+from solvers.fem.plane import Plane
+
+
+def gradient(u: Any, plane: Plane, x: Any) -> Any:
+    """Gradient of u along the physical axes, up to the plane's stretch: ∇u·Rᵀ."""
+    cos, sin = plane.rotation(x, ufl)
+    R = ufl.as_matrix([[cos, -sin], [sin, cos]])
+    return ufl.dot(ufl.grad(u), ufl.transpose(R))
+
+
+def stress(G: Any, κ: Any) -> Any:
+    """Stresses over μ from the displacement gradient G (Eqs 6-8)."""
+    λ = (3 - κ) / (κ - 1)  # Lamé's first constant over μ
+    ε = ufl.sym(G)
+    return 2 * ε + λ * ufl.tr(ε) * ufl.Identity(2)
+
+
+def moving_stiffness(u: Any, w: Any, plane: Plane, x: Any, κ: Any, c: Any, degree: int) -> Any:
+    """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed.
+
+    On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial on a conformal
+    plane; two degrees above the product of gradients integrate it as well as the space can tell.
+    """
+    Gu, Gw = gradient(u, plane, x), gradient(w, plane, x)
+    energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
+    return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})

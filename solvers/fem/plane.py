@@ -1,0 +1,42 @@
+"""What the finite element room asks of the plane in which a mesh lives."""
+
+from types import ModuleType
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+
+class Plane(Protocol):
+    """What forms and postprocessing ask of a plane."""
+
+    #: Name of the plane in archives and form caches.
+    name: str
+
+    def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
+        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at x.
+
+        ``functions`` is the module whose sin, cos, tanh and sqrt suit x: numpy or ufl.
+        """
+
+    def to_physical(self, x: NDArray) -> NDArray:
+        """Physical coordinates over a of points (..., 2) of the plane."""
+
+    def from_physical(self, X: NDArray) -> NDArray:
+        """Points of the plane, (..., 2), of physical coordinates over a with Y <= 0."""
+
+    def along_surface(self, x: NDArray) -> NDArray:
+        """Surface coordinate s of points (..., 2) of the plane on Y = 0; it grows with X."""
+
+    def surface_coordinate(self, X: NDArray) -> NDArray:
+        """Surface coordinate s at positions X over a."""
+
+    def surface_stretch(self, s: NDArray) -> NDArray:
+        """dX/ds along the surface."""
+
+    def under_punch(
+        self, from_left: NDArray, from_right: NDArray
+    ) -> tuple[NDArray, NDArray, NDArray]:
+        """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
+
+        Next to an edge X/a itself no longer tells the distance, so this does.
+        """

@@ -1,0 +1,152 @@
+"""Rigid flat punch with friction on the finite element half-plane: the pressure is an unknown.
+
+Trial functions have v = -v₀ on the contact nodes, test functions w_Y + g w_X = 0 there. Nodal reactions
+are then the consistent contact forces and no penalty or multiplier is met. With the normal
+displacement held and the tangential free, the matrix is symmetric and does not know g: if T r are
+the normal reactions caused by tangential forces r, friction asks for
+
+    (I - g T) R = R₀.
+
+The Krylov space of (T, R₀) serves every g at that speed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from solvers.fem.linear import Factor
+from solvers.fem.space import Space
+
+#: Contact forces are found to this relative residual; the last digits are rounding.
+KRYLOV_TOLERANCE = 1e-13
+KRYLOV_LIMIT = 120
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """One friction state; lengths over a, stresses over N/(2a), so forces over N/2.
+
+    Attributes:
+        g: σ_XY/σ_YY under the punch.
+        weights: of the basis fields, (k,).
+        normal: consistent nodal forces of σ_YY at the contact nodes, (n,).
+        tangential: the same of σ_XY, read off the assembled equations.
+        v0: indentation relative to the far boundary over N/(2μ).
+    """
+
+    g: float
+    weights: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    tangential: NDArray[np.float64]
+    v0: float
+
+
+class SlidingPunch:
+    """All friction states of the punch at one speed, from one factorisation.
+
+    Args:
+        space: the finite element space.
+        κ: Kolosov's constant.
+        c: speed over shear wave speed, below the Rayleigh speed.
+    """
+
+    def __init__(self, space: Space, κ: float, c: float) -> None:
+        self.space, self.κ, self.c = space, κ, c
+        nodes = space.contact
+        A = space.assemble(κ, c)
+        comm = A.comm
+        self._rows = [
+            A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=comm)) for i in (0, 1)
+        ]
+        held, b = A.createVecRight(), A.createVecLeft()
+        held.setValues(nodes.dofs(1), np.full(len(nodes.blocks), -1.0))
+        held.assemble()
+        A.zeroRowsColumns(np.concatenate([nodes.dofs(1), space.far_dofs]), 1.0, held, b)
+        self.factor = Factor(A)
+        #: Displacements of the basis: first the frictionless punch, then the tangential loads.
+        self.fields = [self.factor.solve(b)]
+        self._R0 = self._reactions(self.fields[0])[1]
+        self._size = np.linalg.norm(self._R0)
+        self._V = [self._R0 / self._size]
+        self._H = np.zeros((KRYLOV_LIMIT + 1, KRYLOV_LIMIT))
+        self._TV: list[NDArray] = []
+        self._done = False
+        b.destroy(), held.destroy()
+
+    def state(self, g: float) -> ContactState:
+        """The state with σ_XY = g σ_YY under the punch, the load ∫σ_YY = -N."""
+        y = self._contact_forces(g)
+        normal = self._R0 + g * (np.array(self._TV).T @ y if len(y) else 0.0)
+        v0 = -2.0 / normal.sum()  # ∫ σ_YY d(X/a) = -2 over N/(2a)
+        weights = np.zeros(len(self.fields))
+        weights[0] = v0
+        weights[1 : 1 + len(y)] = v0 * g * y
+        u = self._combine(weights)
+        tangential, normal = self._reactions(u)
+        u.destroy()
+        return ContactState(g, weights, normal, tangential, v0)
+
+    def destroy(self) -> None:
+        """Free factor and fields."""
+        for held in (self.factor, *self._rows, *self.fields):
+            held.destroy()
+
+    def _contact_forces(self, g: float) -> NDArray[np.float64]:
+        """Coefficients y of R = V y, the Krylov space extended as far as this g needs."""
+        while True:
+            m = len(self._TV)
+            if g == 0.0:
+                return np.zeros(0)
+            if m:
+                e1 = np.zeros(m)
+                e1[0] = self._size
+                y = np.linalg.solve(np.eye(m) - g * self._H[:m, :m], e1)
+                residual = abs(g * self._H[m, m - 1] * y[-1]) / np.linalg.norm(y)
+                if residual <= KRYLOV_TOLERANCE or self._done:
+                    return y
+            if m == KRYLOV_LIMIT:
+                raise RuntimeError(
+                    f"the contact forces at g = {g:g} (dimensionless) did not converge in "
+                    f"{KRYLOV_LIMIT} steps: residual {residual:.3g}, wanted {KRYLOV_TOLERANCE:g}"
+                )
+            self._extend()
+
+    def _extend(self) -> None:
+        """One Arnoldi step: one back-substitution."""
+        j = len(self._TV)
+        nodes = self.space.contact
+        b = self.factor.A.createVecLeft()
+        b.setValues(nodes.dofs(0), self._V[j][nodes.owned])
+        b.assemble()
+        self.fields.append(self.factor.solve(b))
+        b.destroy()
+        w = self._reactions(self.fields[-1])[1]
+        self._TV.append(w.copy())
+        for _ in range(2):  # twice is enough
+            h = np.array(self._V) @ w
+            self._H[: j + 1, j] += h
+            w = w - np.array(self._V).T @ h
+        self._H[j + 1, j] = np.linalg.norm(w)
+        # A happy breakdown: the space holds every answer.
+        self._done = self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j])
+        if not self._done:
+            self._V.append(w / self._H[j + 1, j])
+
+    def _combine(self, weights: NDArray[np.float64]) -> PETSc.Vec:
+        u = self.fields[0].duplicate()
+        u.set(0.0)
+        u.maxpy(weights, self.fields)
+        return u
+
+    def _reactions(self, u: PETSc.Vec) -> NDArray[np.float64]:
+        """Consistent forces in X and Y at the contact nodes, (2, n), the same on every rank."""
+        nodes, comm = self.space.contact, self.space.comm
+        mine = np.zeros((2, len(nodes.s)))
+        for i, rows in enumerate(self._rows):
+            force = rows.createVecLeft()
+            rows.mult(u, force)
+            mine[i, nodes.owned] = force.array_r
+            force.destroy()
+        return comm.allreduce(mine)

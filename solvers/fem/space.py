@@ -1,0 +1,115 @@
+"""The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from solvers.fem.forms import moving_stiffness
+from solvers.fem.plane import Plane
+
+
+class MeshError(ValueError):
+    """A mesh lacks what the half-plane needs; the message names it."""
+
+
+@dataclass(frozen=True)
+class SurfaceNodes:
+    """Nodes of a part of the surface, in order of X, the same on every rank.
+
+    Attributes:
+        s: surface coordinates in the mesh's plane, (n,).
+        owned: positions in ``s`` of the nodes this rank owns.
+        blocks: global node numbers of those.
+    """
+
+    s: NDArray[np.float64]
+    owned: NDArray[np.int64]
+    blocks: NDArray[np.int32]
+
+    def dofs(self, component: int) -> NDArray[np.int32]:
+        """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
+        return 2 * self.blocks + component
+
+
+class Space:
+    """Continuous vector Lagrange elements of one degree on one mesh.
+
+    Args:
+        mesh, facet_tags: dolfinx mesh and tags of its boundary facets.
+        tags: number of the tag of each of the parts "contact", "free surface" and "far".
+        plane: the plane that the mesh lives in.
+        degree: polynomial degree, at least 1.
+
+    Raises:
+        MeshError: a part of the boundary has no facet.
+    """
+
+    def __init__(
+        self, mesh: Any, facet_tags: Any, tags: dict[str, int], plane: Plane, degree: int
+    ) -> None:
+        self.mesh, self.plane, self.degree = mesh, plane, degree
+        self.comm: MPI.Comm = mesh.comm
+        mesh.topology.create_connectivity(1, 2)
+        mesh.topology.create_connectivity(2, 1)
+        self.V = fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
+        self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
+        for name, tag in tags.items():
+            if not self.comm.allreduce(len(self.facets[name])):
+                raise MeshError(f"no facet of the mesh carries tag {tag}, the part \"{name}\"")
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return 2 * self.V.dofmap.index_map.size_global
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return self.mesh.topology.index_map(2).size_global
+
+    @cached_property
+    def coordinates(self) -> NDArray[np.float64]:
+        """Coordinates of this rank's nodes in the plane, ghosts included, (n, 2)."""
+        return self.V.tabulate_dof_coordinates()[:, :2]
+
+    @cached_property
+    def contact(self) -> SurfaceNodes:
+        """Nodes under the punch, both edges included."""
+        blocks = self._owned_blocks("contact")
+        s = self.plane.along_surface(self.coordinates[blocks])
+        parts = self.comm.allgather(s)
+        everyone = np.concatenate(parts)
+        rank_of = np.argsort(np.argsort(everyone, kind="stable"), kind="stable")
+        start = sum(len(part) for part in parts[: self.comm.rank])
+        owned = rank_of[start : start + len(s)]
+        return SurfaceNodes(np.sort(everyone), owned, self._global(blocks))
+
+    @cached_property
+    def far_dofs(self) -> NDArray[np.int32]:
+        """Global numbers of the owned unknowns on the far boundary, both components."""
+        blocks = self._global(self._owned_blocks("far"))
+        return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
+
+    def assemble(self, κ: float, c: float) -> PETSc.Mat:
+        """Matrix of the moving-frame form without any boundary condition."""
+        x = ufl.SpatialCoordinate(self.mesh)
+        u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
+        κ_, c_ = fem.Constant(self.mesh, κ), fem.Constant(self.mesh, c)
+        form = fem.form(moving_stiffness(u, w, self.plane, x, κ_, c_, self.degree))
+        A = fem.petsc.assemble_matrix(form)
+        A.assemble()
+        return A
+
+    def _owned_blocks(self, part: str) -> NDArray[np.int32]:
+        blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])
+        return blocks[blocks < self.V.dofmap.index_map.size_local]
+
+    def _global(self, blocks: NDArray[np.int32]) -> NDArray[np.int32]:
+        return self.V.dofmap.index_map.local_to_global(blocks).astype(np.int32)

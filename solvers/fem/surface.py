@@ -1,0 +1,116 @@
+"""Displacements along the surface Y = 0, as piecewise polynomials gathered from all ranks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from petsc4py import PETSc
+from scipy.interpolate import BarycentricInterpolator
+
+from solvers.fem.space import Space
+
+
+@dataclass(frozen=True)
+class SurfaceFacets:
+    """This rank's facets of the surface.
+
+    Attributes:
+        nodes: local node numbers of each facet in order of X, (F, p+1).
+        s: their surface coordinates, (F, p+1).
+    """
+
+    nodes: NDArray[np.int32]
+    s: NDArray[np.float64]
+
+
+def surface_facets(space: Space, parts: Sequence[str]) -> SurfaceFacets:
+    """Facets of the named parts of the boundary whose cell this rank owns."""
+    topology, dofmap = space.mesh.topology, space.V.dofmap
+    to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
+    owned_cells = topology.index_map(2).size_local
+    nodes = []
+    for facet in np.concatenate([space.facets[part] for part in parts]):
+        cell = to_cell.links(facet)[0]
+        if cell < owned_cells:
+            local = int(np.flatnonzero(to_facet.links(cell) == facet)[0])
+            closure = dofmap.dof_layout.entity_closure_dofs(1, local)
+            nodes.append(dofmap.cell_dofs(cell)[closure])
+    index = np.array(nodes, dtype=np.int32).reshape(-1, space.degree + 1)
+    s = space.plane.along_surface(space.coordinates[index])
+    order = np.argsort(s, axis=1)
+    return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
+
+
+@dataclass(frozen=True)
+class SurfaceTrace:
+    """Displacements of several fields along the surface, the same on every rank.
+
+    Attributes:
+        s: surface coordinates of the nodes of each facet in order of X, (F, p+1).
+        u: displacements there, over Na/(2aμ), (F, p+1, 2, fields).
+    """
+
+    s: NDArray[np.float64]
+    u: NDArray[np.float64]
+
+    def derivative(self, s: ArrayLike) -> NDArray[np.float64]:
+        """du/ds and dv/ds of every field at surface coordinates ``s``: (n, 2, fields)."""
+        s = np.asarray(s, dtype=float)
+        facet = np.searchsorted(self.s[:, 0], s, side="right") - 1
+        facet = np.clip(facet, 0, len(self.s) - 1)
+        start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
+        slopes = np.einsum(
+            "ni,ni...->n...", _derivative_weights(self._reference_nodes, (s - start) / length),
+            self.u[facet],
+        )  # fmt: skip
+        return slopes / length[:, None, None]
+
+    @property
+    def _reference_nodes(self) -> NDArray[np.float64]:
+        """Node positions on the unit facet; the elements' are the same on all."""
+        widest = np.argmax(self.s[:, -1] - self.s[:, 0])
+        s = self.s[widest]
+        return (s - s[0]) / (s[-1] - s[0])
+
+
+def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
+    """Trace of the given displacement fields on the whole surface."""
+    facets = surface_facets(space, ("contact", "free surface"))
+    dofmap = space.V.dofmap
+    ghosts = dofmap.index_map.ghosts
+    local = np.empty((dofmap.index_map.size_local + len(ghosts), 2))
+    u = np.empty((*facets.nodes.shape, 2, len(fields)))
+    for i, field in enumerate(fields):
+        local[: dofmap.index_map.size_local] = field.array_r.reshape(-1, 2)
+        local[dofmap.index_map.size_local :] = _ghost_values(field, ghosts)
+        u[..., i] = local[facets.nodes]
+    parts = space.comm.allgather((facets.s, u))
+    s = np.concatenate([part[0] for part in parts])
+    order = np.argsort(s[:, 0])
+    return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])
+
+
+def _ghost_values(field: PETSc.Vec, ghosts: NDArray) -> NDArray[np.float64]:
+    """Values of nodes that other ranks own, (n, 2)."""
+    index = (2 * np.asarray(ghosts, dtype=np.int32)[:, None] + np.arange(2, dtype=np.int32)).ravel()
+    here = PETSc.Vec().createSeq(len(index))
+    where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
+    scatter = PETSc.Scatter().create(field, where, here, None)
+    scatter.scatter(field, here)
+    values = here.array_r.reshape(-1, 2).copy()
+    for held in (scatter, where, here):
+        held.destroy()
+    return values
+
+
+def _derivative_weights(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """Derivatives at t of the Lagrange polynomials of the nodes, (len(t), len(nodes))."""
+    n = len(nodes)
+    basis = BarycentricInterpolator(nodes, np.eye(n))
+    # Differentiate at the nodes, where it is exact, and interpolate the result.
+    weights = basis.wi
+    D = (weights[None, :] / weights[:, None]) / (nodes[:, None] - nodes[None, :] + np.eye(n))
+    np.fill_diagonal(D, 0.0)
+    np.fill_diagonal(D, -D.sum(axis=1))
+    return basis(t) @ D

@@ -1,0 +1,83 @@
+"""Half-plane under given surface tractions: the cheaper mode, in which the pressure is put in."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+from scipy.interpolate import BarycentricInterpolator
+
+from solvers.fem.linear import Factor
+from solvers.fem.space import Space
+from solvers.fem.surface import surface_facets
+
+#: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
+#: because next to an edge X/a itself no longer tells the distance.
+Traction = Callable[[NDArray, NDArray], NDArray]
+
+#: Facets at an edge are integrated in τ with distance ~ τ^8: traction grows like a root there.
+_EDGE_POWER = 8
+_POINTS = 48
+
+
+class LoadedHalfPlane:
+    """Half-plane without punch at one speed, held far away: one factor for many loads.
+
+    Args:
+        space: the finite element space.
+        κ: Kolosov's constant.
+        c: speed over shear wave speed, below the Rayleigh speed.
+    """
+
+    def __init__(self, space: Space, κ: float, c: float) -> None:
+        self.space = space
+        A = space.assemble(κ, c)
+        A.zeroRowsColumns(space.far_dofs, 1.0)
+        self.factor = Factor(A)
+        self.fields: list[PETSc.Vec] = []
+        self._facets = surface_facets(space, ("contact",))
+
+    def load(self, σ_YY: Traction) -> NDArray[np.float64]:
+        """Add the displacement fields of σ_YY alone and of σ_XY = σ_YY alone to ``fields``.
+
+        Returns:
+            The resultant ∫σ_YY d(X/a) of the discrete load over N/(2a).
+        """
+        forces = self._consistent_forces(σ_YY)
+        node = self.space.V.dofmap.index_map.local_to_global(self._facets.nodes.ravel())
+        for component in (1, 0):
+            b = self.factor.A.createVecLeft()
+            b.setValues(
+                (2 * node + component).astype(np.int32),
+                forces.ravel(),
+                addv=PETSc.InsertMode.ADD_VALUES,
+            )
+            b.assemble()
+            self.fields.append(self.factor.solve(b))
+            b.destroy()
+        return self.space.comm.allreduce(float(forces.sum()))
+
+    def destroy(self) -> None:
+        """Free factor and fields."""
+        for held in (self.factor, *self.fields):
+            held.destroy()
+
+    def _consistent_forces(self, σ_YY: Traction) -> NDArray[np.float64]:
+        """∫ σ_YY φ d(X/a) on each of this rank's contact facets, (F, p+1)."""
+        s = self._facets.s
+        forces = np.zeros_like(s)
+        left, right = self.space.contact.s[[0, -1]]
+        τ, weight = np.polynomial.legendre.leggauss(_POINTS)
+        τ, weight = (τ + 1.0) / 2.0, weight / 2.0
+        graded = τ**_EDGE_POWER, weight * _EDGE_POWER * τ ** (_EDGE_POWER - 1)
+        for i, nodes in enumerate(s):
+            length = nodes[-1] - nodes[0]
+            at_left, at_right = nodes[0] == left, nodes[-1] == right
+            t, w = graded if at_left or at_right else (τ, weight)
+            from_left = nodes[0] - left + length * (1.0 - t if at_right else t)
+            from_right = right - nodes[-1] + length * (t if at_right else 1.0 - t)
+            position = 1.0 - t if at_right else t
+            basis = BarycentricInterpolator((nodes - nodes[0]) / length, np.eye(len(nodes)))(position)
+            d_left, d_right, stretch = self.space.plane.under_punch(from_left, from_right)
+            forces[i] = (w * length * stretch * σ_YY(d_left, d_right)) @ basis
+        return forces

@@ -33,6 +33,9 @@ class Physical:
     def surface_coordinate(self, X: NDArray) -> NDArray:
         return np.asarray(X, dtype=float)
 
+    def surface_position(self, s: NDArray) -> NDArray:
+        return np.asarray(s, dtype=float)
+
     def surface_stretch(self, s: NDArray) -> NDArray:
         return np.ones_like(s)
 
@@ -80,6 +83,10 @@ class Confocal:
         X = np.asarray(X, dtype=float)
         inside = np.arcsin(np.clip(X, -1.0, 1.0))
         return inside + np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0))
+
+    def surface_position(self, s: NDArray) -> NDArray:
+        beyond = np.maximum(np.abs(s) - np.pi / 2.0, 0.0)
+        return np.where(beyond > 0.0, np.sign(s) * np.cosh(beyond), np.sin(s))
 
     def surface_stretch(self, s: NDArray) -> NDArray:
         beyond = np.abs(s) - np.pi / 2.0

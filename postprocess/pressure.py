@@ -7,6 +7,7 @@ fitted from the raw pressure, which uses none.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -82,6 +83,20 @@ class RawPressure:
     s: NDArray[np.float64]
     density: NDArray[np.float64]
 
+    def σ_YY(self, r: NDArray, plane: Any) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r = X/a; NaN outside (-1, 1)."""
+        s = plane.surface_coordinate(r)
+        facet = np.clip(np.searchsorted(self.s[:, 0], s, side="right") - 1, 0, len(self.s) - 1)
+        start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
+        values = np.einsum("ni,ni->n", self.basis((s - start) / length), self.density[facet])
+        inside = np.abs(r) < 1.0
+        return np.where(inside, values / np.where(inside, plane.surface_stretch(s), 1.0), np.nan)
+
+    def basis(self, t: NDArray) -> NDArray[np.float64]:
+        """Lagrange polynomials of a facet at t in [0, 1], (len(t), p+1)."""
+        nodes = (self.s[0] - self.s[0, 0]) / (self.s[0, -1] - self.s[0, 0])
+        return BarycentricInterpolator(nodes, np.eye(len(nodes)))(t)
+
 
 def raw_pressure(s: NDArray, forces: NDArray, degree: int) -> RawPressure:
     """Solve the contact's mass matrix for the pressure; no exponent is assumed.
@@ -114,7 +129,7 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> float:
 
 
 def edge_exponents(
-    raw: RawPressure, plane: object, nearest: float = 1e-5, farthest: float = 1e-3
+    raw: RawPressure, plane: Any, nearest: float = 1e-5, farthest: float = 1e-3
 ) -> tuple[float, float]:
     """Exponents at X = a and X = -a fitted from the raw pressure next to the edges.
 
@@ -129,8 +144,7 @@ def edge_exponents(
     t, _ = np.polynomial.legendre.leggauss(raw.s.shape[1] - 1)
     t = (t + 1.0) / 2.0
     length = (raw.s[:, -1] - raw.s[:, 0])[:, None]
-    reference = (raw.s[-1] - raw.s[-1, 0]) / length[-1]
-    density = raw.density @ BarycentricInterpolator(reference, np.eye(len(reference)))(t).T
+    density = raw.density @ raw.basis(t).T
     from_left = raw.s[:, :1] - left + length * t
     from_right = right - raw.s[:, -1:] + length * (1.0 - t)
     d_left, d_right, stretch = plane.under_punch(from_left, from_right)

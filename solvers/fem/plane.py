@@ -30,6 +30,9 @@ class Plane(Protocol):
     def surface_coordinate(self, X: NDArray) -> NDArray:
         """Surface coordinate s at positions X over a."""
 
+    def surface_position(self, s: NDArray) -> NDArray:
+        """Positions X over a at surface coordinates s."""
+
     def surface_stretch(self, s: NDArray) -> NDArray:
         """dX/ds along the surface."""
 

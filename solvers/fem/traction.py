@@ -34,15 +34,14 @@ class LoadedHalfPlane:
         A = space.assemble(κ, c)
         A.zeroRowsColumns(space.far_dofs, 1.0)
         self.factor = Factor(A)
+        #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
         self.fields: list[PETSc.Vec] = []
+        #: ∫ σ_YY d(X/a) over N/(2a) of each load.
+        self.resultants: list[float] = []
         self._facets = surface_facets(space, ("contact",))
 
-    def load(self, σ_YY: Traction) -> NDArray[np.float64]:
-        """Add the displacement fields of σ_YY alone and of σ_XY = σ_YY alone to ``fields``.
-
-        Returns:
-            The resultant ∫σ_YY d(X/a) of the discrete load over N/(2a).
-        """
+    def load(self, σ_YY: Traction) -> None:
+        """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant."""
         forces = self._consistent_forces(σ_YY)
         node = self.space.V.dofmap.index_map.local_to_global(self._facets.nodes.ravel())
         for component in (1, 0):
@@ -55,7 +54,7 @@ class LoadedHalfPlane:
             b.assemble()
             self.fields.append(self.factor.solve(b))
             b.destroy()
-        return self.space.comm.allreduce(float(forces.sum()))
+        self.resultants.append(self.space.comm.allreduce(float(forces.sum())))
 
     def destroy(self) -> None:
         """Free factor and fields."""

@@ -1,0 +1,170 @@
+"""Which work a scene needs, derived from the outputs it asks for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import BadInput
+from app.scene import Scene
+from app.states import solid_of, speeds
+from meshes.refine import degree, refinement, truncation
+from meshes.rings import Refinement
+from solvers.materials import MovingFrame, rayleigh_speed
+
+
+@dataclass(frozen=True)
+class SpeedPlan:
+    """Finite element work at one speed.
+
+    Attributes:
+        c: speed over shear wave speed.
+        degree: polynomial degree.
+    """
+
+    c: float
+    degree: int
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Steps of a scene.
+
+    Attributes:
+        states: number of states.
+        closed_form, fem, surface: whether these are needed.
+        refinement: of the one mesh all speeds share, None without finite elements.
+        speeds: finite element work by speed, each one factorisation.
+        skipped: what is not done, and why.
+        warnings: what the user should know before starting.
+    """
+
+    states: int
+    closed_form: bool
+    fem: bool
+    surface: bool
+    refinement: Refinement | None
+    speeds: tuple[SpeedPlan, ...]
+    skipped: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def make_plan(scene: Scene) -> Plan:
+    """Plan the work; looks at the scene only, does none of it.
+
+    Raises:
+        BadInput: finite elements are asked for where they have no answer.
+    """
+    asked, friction = set(scene.output.quantities), scene.friction
+    contact = bool(asked & {"sif", "surface"})
+    fem = contact and "fem" in scene.solve.methods
+    closed = contact and "closed_form" in scene.solve.methods and _has_closed_form(scene)
+    all_speeds = tuple(dict.fromkeys(speeds(scene)))
+    count = (
+        len(speeds(scene)) * len(friction.mu_c) * len(friction.sigma0_over_load)
+        * len(friction.delta) * len(scene.motion.strokes) * len(set(scene.motion.X_over_L))
+    )  # fmt: skip
+    warnings = [*scene.warnings, *_speed_limits(scene, all_speeds, fem)]
+    speed_plans: tuple[SpeedPlan, ...] = ()
+    mesh = None
+    if fem:
+        κ, tolerance, name = solid_of(scene).κ, scene.solve.tolerance, scene.solve.mesh
+        mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s)
+        rest = MovingFrame(κ, 0.0).r
+        speed_plans = tuple(
+            SpeedPlan(c, degree(tolerance, MovingFrame(κ, c).r / rest)) for c in all_speeds
+        )
+        if truncation(name, tolerance) > tolerance:
+            warnings.append(
+                f"the outer boundary of the {name} mesh alone costs about "
+                f"{truncation(name, tolerance):.1g} (relative, with friction), more than the "
+                f"tolerance {tolerance:g}; use mesh = \"confocal\" or \"graded\""
+            )
+    return Plan(
+        count, closed, fem, contact and "surface" in asked, mesh, speed_plans,
+        tuple(_skipped(scene, contact, closed, fem)), tuple(warnings),
+    )  # fmt: skip
+
+
+def _has_closed_form(scene: Scene) -> bool:
+    return scene.solve.mode == "contact" or scene.solve.pressure == "closed_form"
+
+
+def _speed_limits(scene: Scene, all_speeds: tuple[float, ...], fem: bool) -> list[str]:
+    κ = solid_of(scene).κ
+    c_R = rayleigh_speed(κ)
+    beyond = [c for c in all_speeds if c >= c_R]
+    if fem and beyond:
+        raise BadInput(
+            f"motion: c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): the finite element form is indefinite there and does not "
+            'converge; take lower speeds, or methods = ["closed_form"]'
+        )
+    if fem and κ - 1.0 < 1e-3:
+        raise BadInput(
+            f"solid.nu = {scene.solid.nu:g} in plane strain: the displacement form loses its digits at "
+            'ν = 1/2, expected ν <= 0.4997 for finite elements; or methods = ["closed_form"]'
+        )
+    warnings = []
+    if beyond:
+        warnings.append(
+            f"c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): the closed form is formal there"
+        )
+    near = [c for c in all_speeds if 0.99 * c_R <= c < c_R]
+    if near:
+        warnings.append(
+            f"c = {', '.join(f'{c:g}' for c in near)} is within 1 % of the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): displacements grow without bound and errors with them"
+        )
+    return warnings
+
+
+def _skipped(scene: Scene, contact: bool, closed: bool, fem: bool) -> list[str]:
+    skipped = []
+    if not contact:
+        skipped.append("contact mechanics: only friction is asked for")
+    elif not closed:
+        why = "not in solve.methods" if _has_closed_form(scene) else "the pressure is given"
+        skipped.append(f"closed form: {why}")
+    if contact and not fem:
+        skipped.append("mesh and finite elements: fem is not in solve.methods")
+    if contact and "surface" not in scene.output.quantities:
+        skipped.append("surface stresses: not in output.quantities")
+    return skipped
+
+
+def unknowns(mesh: Refinement, p: int) -> tuple[int, int]:
+    """Cells and unknowns of the ring pattern at degree ``p``, by Euler's formula, no mesh made."""
+    m, n = mesh.sectors, len(mesh.columns)
+    cells = 2 * (2 * m * mesh.levels + m * m) + 2 * m * n
+    rim = 2 * (2 * (mesh.levels + m) + n) + 4 * m
+    edges = (4 * cells + rim) // 2
+    vertices = 1 + edges - cells
+    return cells, 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
+
+
+def lines(scene: Scene, plan: Plan) -> list[str]:
+    """The plan in words, one step a line."""
+    result = [f"friction: {plan.states} states, Dahl's law, integrator {scene.friction.integrator}"]
+    if plan.closed_form:
+        result.append(f"closed form: {plan.states} states")
+    if plan.fem and plan.refinement:
+        cells, _ = unknowns(plan.refinement, 1)
+        result.append(f"mesh: {scene.solve.mesh}, about {cells} quadrilaterals, shared by all speeds")
+        result += [
+            f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
+            f"about {unknowns(plan.refinement, speed.degree)[1]} unknowns, one factorisation"
+            for speed in plan.speeds
+        ]
+    if plan.surface:
+        result.append(f"surface stresses: {plan.states} x {len(surface_grid())} points")
+    return result
+
+
+def surface_grid() -> np.ndarray:
+    """Positions X/a of archived surface stresses: to ±5, clustered at ±1, without ±1 itself."""
+    near = np.geomspace(1e-6, 0.1, 31)
+    inside = np.concatenate([1.0 - near, np.linspace(0.0, 0.88, 23)])
+    outside = 1.0 + np.concatenate([near, np.geomspace(0.1, 4.0, 25)[1:]])
+    right = np.concatenate([inside, outside])
+    return np.unique(np.concatenate([-right, right]))

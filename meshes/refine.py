@@ -1,0 +1,57 @@
+"""How fine a mesh has to be for a wanted accuracy; the rule was measured, see docs/verification.md."""
+
+from math import ceil, exp, log, pi
+
+from meshes.halfplane import BOX_DEPTH
+from meshes.rings import Refinement
+
+#: Ratio of ring sizes in the (ξ, η) plane by mesh. Straight cells in the physical plane need gentler
+#: rings: a ratio t there is t² in distance.
+_RATIO = {"confocal": 0.35, "graded": 0.5, "box": 0.5}
+#: Largest width in ξ of a column outside the rings.
+_COLUMN = {"confocal": 3.0, "graded": 1.0, "box": 0.7}
+
+#: Lowest and highest polynomial degree used.
+DEGREES = (4, 12)
+
+
+def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
+    """Refinement that reaches ``tolerance`` with :func:`degree`.
+
+    Args:
+        mesh: name of the mesh.
+        tolerance: wanted relative accuracy of K_I and of the pressure's moments.
+        β_s: √(1 - c²) at the highest speed; the field turns within an angle of that size.
+    """
+    innermost = (tolerance / 3.0) ** 0.5  # the energy in a ring falls with its size squared
+    levels = ceil(log(pi / 2.0 / innermost) / -log(_RATIO[mesh]))
+    reach = outer_ξ(mesh, tolerance) - pi / 2.0
+    count = ceil(reach / _COLUMN[mesh])
+    sectors = 2 if β_s > 0.5 else 3
+    if mesh == "box":
+        sectors = 2  # an even number puts a vertex into the block's corners
+    return Refinement(levels, _RATIO[mesh], sectors, (reach / count,) * count)
+
+
+def degree(tolerance: float, rayleigh: float) -> int:
+    """Polynomial degree that reaches ``tolerance``.
+
+    Args:
+        tolerance: wanted relative accuracy.
+        rayleigh: Rayleigh function over its value at rest, in (0, 1]; errors grow as it falls.
+    """
+    digits = -log(tolerance * rayleigh) / log(10.0)
+    return min(max(ceil(1.8 + digits), DEGREES[0]), DEGREES[1])
+
+
+def outer_ξ(mesh: str, tolerance: float) -> float:
+    """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
+    if mesh == "box":
+        return log(2.0 * BOX_DEPTH)
+    # Truncation at radius R costs 0.3 a/R in the moments; a tenth of the tolerance is left to it.
+    return log(2.0 * 3.0 / tolerance) + 1.0
+
+
+def truncation(mesh: str, tolerance: float) -> float:
+    """Estimated relative error of the pressure's moments from the finite outer radius."""
+    return 0.3 * 2.0 * exp(-outer_ξ(mesh, tolerance))

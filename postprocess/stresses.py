@@ -1,0 +1,15 @@
+"""Stresses on the surface from finite element displacements."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def σ_XX_on_surface(κ: float, u_X: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
+    """In-plane stress on Y = 0 over N/(2a), v,Y eliminated between Eqs 6 and 7.
+
+    Args:
+        κ: Kolosov's constant.
+        u_X: tangential derivative of the displacement, in the units of σ/μ, (n,).
+        σ_YY: contact stress over N/(2a); NaN where the surface is free, (n,).
+    """
+    return 8.0 / (κ + 1.0) * u_X + (3.0 - κ) / (κ + 1.0) * np.nan_to_num(σ_YY)

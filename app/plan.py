@@ -7,8 +7,9 @@ import numpy as np
 from app.errors import BadInput
 from app.scene import Scene
 from app.states import solid_of, speeds
+from meshes.halfplane import MESHES
 from meshes.refine import degree, refinement, truncation
-from meshes.rings import Refinement
+from meshes.rings import QuadMesh, Refinement
 from solvers.materials import MovingFrame, rayleigh_speed
 
 
@@ -133,14 +134,11 @@ def _skipped(scene: Scene, contact: bool, closed: bool, fem: bool) -> list[str]:
     return skipped
 
 
-def unknowns(mesh: Refinement, p: int) -> tuple[int, int]:
-    """Cells and unknowns of the ring pattern at degree ``p``, by Euler's formula, no mesh made."""
-    m, n = mesh.sectors, len(mesh.columns)
-    cells = 2 * (2 * m * mesh.levels + m * m) + 2 * m * n
-    rim = 2 * (2 * (mesh.levels + m) + n) + 4 * m
-    edges = (4 * cells + rim) // 2
-    vertices = 1 + edges - cells
-    return cells, 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
+def unknowns(mesh: QuadMesh, p: int) -> int:
+    """Unknowns at degree ``p``: two a vertex, p - 1 an edge, (p - 1)² a cell, by Euler's formula."""
+    cells, vertices = len(mesh.cells), len(mesh.points)
+    edges = cells + vertices - 1
+    return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -149,11 +147,13 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     if plan.closed_form:
         result.append(f"closed form: {plan.states} states")
     if plan.fem and plan.refinement:
-        cells, _ = unknowns(plan.refinement, 1)
-        result.append(f"mesh: {scene.solve.mesh}, about {cells} quadrilaterals, shared by all speeds")
+        mesh = MESHES[scene.solve.mesh].build(plan.refinement)
+        result.append(
+            f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds"
+        )
         result += [
             f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
-            f"about {unknowns(plan.refinement, speed.degree)[1]} unknowns, one factorisation"
+            f"{unknowns(mesh, speed.degree)} unknowns, one factorisation"
             for speed in plan.speeds
         ]
     if plan.surface:

@@ -5,16 +5,14 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from solvers.errors import SolveError
+
 #: Prefix of the options database, so that ``-galinx_ksp_view`` and the like work.
 PREFIX = "galinx_"
 
 #: A direct solve that leaves more than this of its right-hand side has met a singular matrix: the
 #: meshes' condition numbers let a sound factor reach about 1e-12.
 RESIDUAL_LIMIT = 1e-8
-
-
-class SolveError(RuntimeError):
-    """A linear solve gave nothing that can be used; the message says what was found."""
 
 
 class Factor:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from solvers.errors import SolveError
 from solvers.fem.linear import Factor
 from solvers.fem.space import Space
 
@@ -107,7 +108,7 @@ class SlidingPunch:
                 if residual <= KRYLOV_TOLERANCE or self._done:
                     return y
             if m == KRYLOV_LIMIT:
-                raise RuntimeError(
+                raise SolveError(
                     f"the contact forces at g = {g:g} (dimensionless) did not converge in "
                     f"{KRYLOV_LIMIT} steps: residual {residual:.3g}, wanted {KRYLOV_TOLERANCE:g}"
                 )

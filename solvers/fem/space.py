@@ -11,12 +11,9 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from solvers.errors import MeshError
 from solvers.fem.forms import moving_stiffness
 from solvers.fem.plane import Plane
-
-
-class MeshError(ValueError):
-    """A mesh lacks what the half-plane needs; the message names it."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,9 @@
+"""Failures of archives, apart from the library that reads them so that naming one costs nothing."""
+
+
+class UnreadableArchive(Exception):
+    """No archive, a damaged one, or one of a newer layout; the message says what to do."""
+
+
+class UnwritableArchive(Exception):
+    """The file system refused an archive; the message says why."""

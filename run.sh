@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# galinx: sets up what is missing, then reproduces the study, runs the tests or a command.
+#   ./run.sh                           reproduce the study into results/
+#   ./run.sh test                      run all tests, those on two ranks included
+#   ./run.sh [-n RANKS] COMMAND ...    run, plan, show, paper, plot; COMMAND --help tells more
+set -euo pipefail
+home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+python=/usr/bin/python3
+
+# The programs, then what only the tests need.
+packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
+  python3-scipy python3-matplotlib python3-attr python3-pint python3-click python3-rich
+  libopenblas0-serial openmpi-bin gcc libc6-dev)
+test_packages=(python3-pytest python3-sympy python3-mpmath)
+
+missing() { # the packages of the arguments that are not installed
+  local package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || echo "$package"
+  done
+}
+
+set_up() {
+  local wanted
+  mapfile -t wanted < <(missing "$@")
+  [ ${#wanted[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    echo "error: Debian packages are missing; ask an administrator to run" >&2
+    echo "  apt-get update && apt-get install --no-install-recommends ${wanted[*]}" >&2
+    exit 3
+  fi
+  echo "installing: ${wanted[*]}" >&2
+  if ! { apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y \
+    --no-install-recommends "${wanted[@]}"; } >&2; then
+    echo "error: apt-get could not install ${wanted[*]}; see its messages above" >&2
+    exit 3
+  fi
+}
+
+export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
+# One BLAS thread a rank: more are slower at these sizes.
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+mpirun_command=(mpirun --mca btl self,vader --oversubscribe)
+
+if [ "${1:-}" = test ]; then
+  shift
+  set_up "${packages[@]}" "${test_packages[@]}"
+  cd "$home"
+  "$python" -m pytest tests "$@"
+  exec "${mpirun_command[@]}" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
+fi
+
+ranks=
+if [ "${1:-}" = -n ]; then
+  if ! [[ "${2:-}" =~ ^[1-9][0-9]*$ ]]; then
+    echo "error: -n ${2:-}: expected a number of ranks, as in ./run.sh -n 2 run SCENE.toml" >&2
+    exit 2
+  fi
+  ranks=$2
+  shift 2
+fi
+set_up "${packages[@]}"
+[ $# -gt 0 ] || set -- paper -o results
+if [ -n "$ranks" ]; then
+  exec "${mpirun_command[@]}" -n "$ranks" "$python" -m app "$@"
+fi
+exec "$python" -m app "$@"

@@ -10,8 +10,8 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-# FFCx and its build tools announce every compilation on the root logger.
-logging.getLogger().setLevel(logging.WARNING)
+# FFCx's build tools announce every compilation on the root logger, whose level they set themselves.
+logging.disable(logging.INFO)
 logging.getLogger("py.warnings").setLevel(logging.ERROR)
 
 from app.plan import Plan, SpeedPlan  # noqa: E402

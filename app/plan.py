@@ -72,7 +72,7 @@ def make_plan(scene: Scene) -> Plan:
         mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s)
         rest = MovingFrame(κ, 0.0).r
         speed_plans = tuple(
-            SpeedPlan(c, degree(tolerance, MovingFrame(κ, c).r / rest)) for c in all_speeds
+            SpeedPlan(c, degree(name, tolerance, MovingFrame(κ, c).r / rest)) for c in all_speeds
         )
         if truncation(name, tolerance) > tolerance:
             warnings.append(

@@ -1,17 +1,13 @@
 """The one place that meets gmsh: quadrilaterals become a gmsh model, that becomes a dolfinx mesh."""
 
-import logging
 from typing import Any
 
 import gmsh
 import numpy as np
+from dolfinx.io import gmshio
 from mpi4py import MPI
 
 from meshes.rings import TAGS, QuadMesh
-
-logging.getLogger("FFC").setLevel(logging.WARNING)
-
-from dolfinx.io import gmshio  # noqa: E402  (after FFCx's loggers are quiet)
 
 _LINE, _QUADRANGLE = 1, 3  # gmsh's element types
 

@@ -23,7 +23,8 @@ def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
         tolerance: wanted relative accuracy of K_I and of the pressure's moments.
         β_s: √(1 - c²) at the highest speed; the field turns within an angle of that size.
     """
-    innermost = (tolerance / 3.0) ** 0.5  # the energy in a ring falls with its size squared
+    # The energy in a ring falls with its size squared.
+    innermost = (_of_cells(mesh, tolerance) / 3.0) ** 0.5
     levels = ceil(log(pi / 2.0 / innermost) / -log(_RATIO[mesh]))
     reach = outer_ξ(mesh, tolerance) - pi / 2.0
     count = ceil(reach / _COLUMN[mesh])
@@ -33,14 +34,15 @@ def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
     return Refinement(levels, _RATIO[mesh], sectors, (reach / count,) * count)
 
 
-def degree(tolerance: float, rayleigh: float) -> int:
+def degree(mesh: str, tolerance: float, rayleigh: float) -> int:
     """Polynomial degree that reaches ``tolerance``.
 
     Args:
+        mesh: name of the mesh.
         tolerance: wanted relative accuracy.
         rayleigh: Rayleigh function over its value at rest, in (0, 1]; errors grow as it falls.
     """
-    digits = -log(tolerance * rayleigh) / log(10.0)
+    digits = -log(_of_cells(mesh, tolerance) * rayleigh) / log(10.0)
     return min(max(ceil(1.8 + digits), DEGREES[0]), DEGREES[1])
 
 
@@ -55,3 +57,8 @@ def outer_ξ(mesh: str, tolerance: float) -> float:
 def truncation(mesh: str, tolerance: float) -> float:
     """Estimated relative error of the pressure's moments from the finite outer radius."""
     return 0.3 * 2.0 * exp(-outer_ξ(mesh, tolerance))
+
+
+def _of_cells(mesh: str, tolerance: float) -> float:
+    """What the cells have to reach: beside the box's walls, which set its error, nothing more."""
+    return min(tolerance, truncation(mesh, tolerance) / 30.0) if mesh == "box" else tolerance

@@ -66,7 +66,7 @@ def surface_figure(
         0.5, 0.985, "lines: closed form    markers: finite elements    all axes dimensionless",
         ha="center", va="top", fontsize=7,
     )  # fmt: skip
-    figure.tight_layout(rect=(0.0, 0.04 + 0.03 * ((len(handles) + 2) // 3), 1.0, 0.97))
+    figure.tight_layout(rect=(0.0, 0.05 * ((len(handles) + 2) // 3), 1.0, 0.97))
     return figure
 
 
@@ -91,14 +91,14 @@ def _draw(axis: plt.Axes, data: dict[str, Any], state: int, stress: str, n: int)
 
 def _limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for the regular part; the singular ends run out of the picture."""
-    regular = values[:, np.abs(1.0 - np.abs(X)) > 0.03]
+    regular = values[:, np.abs(1.0 - np.abs(X)) > 0.06]
     low, high = np.nanmin(regular), np.nanmax(regular)
     margin = 0.08 * (high - low) or 1.0
     return low - margin, high + margin
 
 
 def _inset(axis: plt.Axes, data: dict[str, Any], loops: dict[str, Any], curves: Curves) -> None:
-    inset = axis.inset_axes((0.36, 0.06, 0.28, 0.34))
+    inset = axis.inset_axes((0.37, 0.14, 0.28, 0.32))
     first = curves.states[0]
     same = np.all(
         [loops[f"states/{key}"] == data[f"states/{key}"][first] for key in _PARAMETERS], axis=0

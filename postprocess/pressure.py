@@ -128,29 +128,27 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> float:
     return float(np.polyfit(np.log(d), np.log(np.abs(σ)), 1)[0])
 
 
-def edge_exponents(
-    raw: RawPressure, plane: Any, nearest: float = 1e-5, farthest: float = 1e-3
-) -> tuple[float, float]:
+def edge_exponents(raw: RawPressure, plane: Any, farthest: float = 1e-3) -> tuple[float, float]:
     """Exponents at X = a and X = -a fitted from the raw pressure next to the edges.
 
     Args:
         raw: pressure of the contact.
         plane: the mesh's plane, see :class:`solvers.fem.plane.Plane`.
-        nearest, farthest: range of distances over a that the fit uses; beyond the farthest the
-            pressure's second term would bias the exponent, next to the edge the innermost cell does.
+        farthest: facets within this distance of the edge, over a, are used, but for the innermost,
+            which cannot follow the singularity; and two facets at least. Beyond it the pressure's
+            second term would bias the exponent.
     """
     left, right = raw.s[0, 0], raw.s[-1, -1]
     # Gauss points, where a polynomial fits best what it cannot represent.
     t, _ = np.polynomial.legendre.leggauss(raw.s.shape[1] - 1)
     t = (t + 1.0) / 2.0
     length = (raw.s[:, -1] - raw.s[:, 0])[:, None]
-    density = raw.density @ raw.basis(t).T
     from_left = raw.s[:, :1] - left + length * t
     from_right = right - raw.s[:, -1:] + length * (1.0 - t)
     d_left, d_right, stretch = plane.under_punch(from_left, from_right)
-    σ = density / stretch
+    σ = raw.density @ raw.basis(t).T / stretch
     exponents = []
-    for d in (d_right, d_left):
-        near = (d > nearest) & (d < farthest)
-        exponents.append(fitted_exponent(d[near], σ[near]))
+    for d, stress in ((d_right[::-1], σ[::-1]), (d_left, σ)):  # facets from the edge inwards
+        last = max(int((d.max(axis=1) < farthest).sum()), 3)
+        exponents.append(fitted_exponent(d[1:last].ravel(), stress[1:last].ravel()))
     return exponents[0], exponents[1]

@@ -3,7 +3,6 @@
 import json
 from typing import Any
 
-import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -29,13 +28,13 @@ def new_console(file: Any = None) -> Console:
 def print_states(data: dict[str, Any], attributes: dict[str, Any], limit: int = 24) -> None:
     """Print the states of an archive, at most ``limit`` of them, and the verdict."""
     console = new_console()
-    columns = ["motion", "X/L", "c", "f"]
+    columns = ["", "X/L", "c", "f"]
     series = [data[f"states/{name}"] for name in ("motion", "X_over_L", "c", "f")]
     formats = ["{}", "{:g}", "{:.4g}", "{:+.4f}"]
     for name, label in (
-        ("states/closed_form/K_I", "K_I exact"),
-        ("states/fem/K_I_left", "K_I(-a)"),
-        ("states/fem/K_I_right", "K_I(a)"),
+        ("states/closed_form/K_I", "K exact"),
+        ("states/fem/K_I_left", "K(-a)"),
+        ("states/fem/K_I_right", "K(a)"),
     ):
         if name in data:
             columns.append(label)
@@ -52,17 +51,10 @@ def print_states(data: dict[str, Any], attributes: dict[str, Any], limit: int = 
     hidden = len(data["states/f"]) - limit
     if hidden > 0:
         console.print(f"and {hidden} more states; show --json lists all")
-    console.print("all columns are dimensionless; exponents α (X = a) and β (X = -a) as fitted")
+    console.print("all columns are dimensionless; K is K_I, c the speed over the shear wave speed")
+    if "states/fem/alpha" in data:
+        console.print("K(-a), K(a): finite elements; α (X = a) and β (X = -a): exponents fitted there")
     for reason in json.loads(attributes["verdict_reasons"]):
         console.print(f"  {reason}")
     console.print(f"verdict: {attributes['verdict']}")
 
-
-def diff_percent(first: float, second: float) -> float:
-    """Diff % of Tables 4-5: change of K_I between the two positions over the first of them."""
-    return 100.0 * abs(second - first) / first
-
-
-def round_like(value: float, printed: float, digits: int) -> bool:
-    """Does ``value`` round to the printed number of so many decimals?"""
-    return bool(np.isclose(round(value, digits), printed, rtol=0.0, atol=10.0**-digits / 2.0))

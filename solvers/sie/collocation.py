@@ -1,0 +1,63 @@
+"""Expansion-collocation solution of the singular integral equation (Eqs 38-41, 52-53).
+
+    (n/π) ⨍ σ_YY(t)/(t - r) dt - q g σ_YY(r) = μ v,X(r),   ∫ σ_YY dr = -2,
+
+lengths over a, stresses over N/(2a). The pressure is expanded in Jacobi polynomials under their weight,
+the Cauchy integrals are done by Gauss's rule, and the equation is asked for at the zeros of the
+conjugate polynomial, where the rule is exact. Unlike the closed form this takes any punch profile.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import eval_jacobi, roots_jacobi
+
+from solvers.materials import MovingFrame
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_j P_j^(α,β)(r); ``c`` is dimensionless, (terms,)."""
+
+    α: float
+    β: float
+    c: NDArray[np.float64]
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r in (-1, 1)."""
+        r = np.asarray(r, dtype=float)
+        series = eval_jacobi(np.arange(len(self.c)), self.α, self.β, r[..., None]) @ self.c
+        return (1.0 - r) ** self.α * (1.0 + r) ** self.β * series
+
+
+def solve(
+    frame: MovingFrame,
+    g: float,
+    terms: int,
+    slope: Callable[[NDArray], NDArray] = np.zeros_like,
+) -> Expansion:
+    """Coefficients of the contact pressure under a punch with two sharp edges.
+
+    Args:
+        frame: constants of the moving frame.
+        g: σ_XY/σ_YY under the punch, dimensionless.
+        terms: number of Jacobi polynomials, at least 2.
+        slope: μ v,X under the punch over N/(2a) at given r; 0 for a flat punch.
+
+    Returns:
+        The expansion; for a flat punch all but its first coefficient vanish.
+    """
+    # The exponents solve cot(πα) = g q/n: the dominant part's index is 1, both ends singular.
+    α = -0.5 - np.arctan2(g * frame.q, frame.n) / np.pi
+    β = -1.0 - α
+    with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
+        t, w = roots_jacobi(terms, α, β)
+        r, _ = roots_jacobi(terms - 1, -α, -β)
+    P = eval_jacobi(np.arange(terms), α, β, t[:, None])
+    A = np.empty((terms, terms))
+    A[:-1] = frame.n / np.pi * (w / (t[None, :] - r[:, None])) @ P
+    A[-1] = w @ P
+    b = np.append(slope(r), -2.0)
+    return Expansion(float(α), float(β), np.linalg.solve(A, b))

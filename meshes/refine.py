@@ -61,4 +61,4 @@ def truncation(mesh: str, tolerance: float) -> float:
 
 def _of_cells(mesh: str, tolerance: float) -> float:
     """What the cells have to reach: beside the box's walls, which set its error, nothing more."""
-    return min(tolerance, truncation(mesh, tolerance) / 30.0) if mesh == "box" else tolerance
+    return min(tolerance, truncation(mesh, tolerance) / 1000.0) if mesh == "box" else tolerance

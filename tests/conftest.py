@@ -1,0 +1,48 @@
+"""Shared data of the tests: published tables, reference values, and one run of Tables 4-5."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+HOME = Path(__file__).parent.parent
+
+
+@pytest.fixture(scope="session")
+def published():
+    """The study's printed tables."""
+    return json.loads((HOME / "app" / "published_tables.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def references():
+    """Closed-form values computed with 40 digits."""
+    path = HOME / "tests" / "reference" / "closed_form_values.json"
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def tables_run():
+    """Datasets and attributes of scenes/tables4_5.toml."""
+    return run_scene("tables4_5")
+
+
+def run_scene(name, *changes):
+    """Compute a scene of scenes/, its text changed by (old, new) pairs first."""
+    from app.run import compute
+    from app.scene import parse
+
+    text = (HOME / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text, f"{old!r} is not in scenes/{name}.toml"
+        text = text.replace(old, new)
+    return compute(parse(text))
+
+
+def command(*arguments, cwd=HOME):
+    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text."""
+    return subprocess.run(
+        [str(HOME / "run.sh"), *map(str, arguments)],
+        cwd=cwd, capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+    )  # fmt: skip

@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+
+from solvers.materials import MovingFrame, Solid, rayleigh_speed
+from solvers.sie.fourier import surface_response
+
+mpmath = pytest.importorskip("mpmath")
+
+
+def test_rayleigh_speed_of_the_references(references):
+    for entry in references["rayleigh_speed"]:
+        solid = Solid(1.0, float(entry["nu"]), 1.0, entry["plane"])
+        assert rayleigh_speed(solid.κ) == pytest.approx(float(entry["c_R_over_c_s"]), rel=1e-12)
+
+
+def test_rayleigh_speed_of_ν_one_quarter_is_exact():
+    assert rayleigh_speed(2.0) == pytest.approx(np.sqrt(2.0 - 2.0 / np.sqrt(3.0)), rel=1e-15)
+
+
+@pytest.mark.parametrize("c", [0.1, 0.3, 0.6, 0.9])
+@pytest.mark.parametrize("κ", [1.2, 2.0, 2.9])
+def test_constants_agree_with_the_fourier_solution(κ, c):
+    frame = MovingFrame(κ, c)
+    found = np.array(surface_response(κ, c))
+    # Near the Rayleigh speed both are large and their zero in the denominator is what matters.
+    np.testing.assert_allclose(found, [frame.n, frame.q, frame.m], rtol=1e-12 / c**2)
+
+
+@pytest.mark.parametrize("c", [1e-12, 4.786e-7, 1e-3, 0.6, 0.9, 0.99])
+def test_constants_keep_their_digits_at_every_speed(c):
+    mpmath.mp.dps = 60
+    κ = mpmath.mpf("1.7")
+    c_ = mpmath.mpf(c)
+    k = (κ - 1) / (κ + 1)
+    β_s, β_d = mpmath.sqrt(1 - c_**2), mpmath.sqrt(1 - k * c_**2)
+    R = 4 * β_s * β_d - (2 - c_**2) ** 2
+    frame = MovingFrame(float(κ), c)
+    assert frame.n == pytest.approx(float(β_d * c_**2 / R), rel=2e-14)
+    assert frame.m == pytest.approx(float(β_s * c_**2 / R), rel=2e-14)
+    q = (2 - c_**2 - 2 * β_s * β_d) / R
+    assert frame.q == pytest.approx(float(q), rel=2e-14)
+
+
+def test_constants_at_rest():
+    frame = MovingFrame(2.0, 0.0)
+    assert (frame.n, frame.q, frame.m) == pytest.approx((0.75, 0.25, 0.75), rel=1e-15)
+    assert np.pi * frame.ω[0] == pytest.approx(1.0) and frame.ω[1] == pytest.approx(1.0 / 3.0)
+
+
+def test_material_of_the_study():
+    solid = Solid(193e9, 0.25, 7860.0)
+    assert solid.κ == 2.0
+    assert solid.c_s == pytest.approx(3133.99, abs=0.005)
+    assert Solid(193e9, 0.25, 7860.0, "stress").κ == pytest.approx(2.2)
+
+
+@pytest.mark.parametrize(
+    "arguments", [(0.0, 0.25, 1.0), (1.0, 0.51, 1.0), (1.0, -1.0, 1.0), (1.0, 0.3, float("nan"))]
+)
+def test_impossible_materials_are_refused(arguments):
+    with pytest.raises(ValueError, match="expected"):
+        Solid(*arguments)
+
+
+@pytest.mark.parametrize("c", [-0.1, 1.0, float("nan")])
+def test_impossible_speeds_are_refused(c):
+    with pytest.raises(ValueError, match="subsonic"):
+        MovingFrame(2.0, c)

@@ -134,9 +134,9 @@ def edge_exponents(raw: RawPressure, plane: Any, farthest: float = 1e-3) -> tupl
     Args:
         raw: pressure of the contact.
         plane: the mesh's plane, see :class:`solvers.fem.plane.Plane`.
-        farthest: facets within this distance of the edge, over a, are used, but for the innermost,
-            which cannot follow the singularity; and two facets at least. Beyond it the pressure's
-            second term would bias the exponent.
+        farthest: of the facets within this distance of the edge, over a, the outer half is used, two
+            facets at least: the innermost cannot follow the singularity and disturb their
+            neighbours, and beyond this distance the pressure's second term biases the exponent.
     """
     left, right = raw.s[0, 0], raw.s[-1, -1]
     # Gauss points, where a polynomial fits best what it cannot represent.
@@ -150,5 +150,6 @@ def edge_exponents(raw: RawPressure, plane: Any, farthest: float = 1e-3) -> tupl
     exponents = []
     for d, stress in ((d_right[::-1], σ[::-1]), (d_left, σ)):  # facets from the edge inwards
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
-        exponents.append(fitted_exponent(d[1:last].ravel(), stress[1:last].ravel()))
+        used = slice(min(last // 2, last - 2), last)
+        exponents.append(fitted_exponent(d[used].ravel(), stress[used].ravel()))
     return exponents[0], exponents[1]

@@ -1,6 +1,7 @@
 """Shared data of the tests: published tables, reference values, and one run of Tables 4-5."""
 
 import json
+import os
 import subprocess
 from pathlib import Path
 
@@ -44,5 +45,13 @@ def command(*arguments, cwd=HOME):
     """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text."""
     return subprocess.run(
         [str(HOME / "run.sh"), *map(str, arguments)],
-        cwd=cwd, capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+        cwd=cwd, env=clean_environment(), capture_output=True, text=True, timeout=300,
+        stdin=subprocess.DEVNULL,
     )  # fmt: skip
+
+
+def clean_environment():
+    """The environment without what MPI leaves there, which a second mpirun would trip over."""
+    mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "ORTE_")
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(mpi)}
+    return kept | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}

@@ -1,0 +1,50 @@
+"""Run on one rank with the other tests and again under mpirun on two."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from meshes.gmsh_model import distribute
+from meshes.halfplane import MESHES
+from meshes.rings import TAGS, Refinement
+from solvers.fem import surface
+from solvers.fem.punch import SlidingPunch
+from solvers.fem.space import Space
+from solvers.fem.traction import LoadedHalfPlane
+from solvers.materials import MovingFrame
+from solvers.sie.closed_form import FlatPunch
+
+REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
+
+
+def on(comm, mesh):
+    kind = MESHES[mesh]
+    return Space(*distribute(kind.build(REFINEMENT), comm), TAGS, kind.plane, 5)
+
+
+@pytest.mark.parametrize("mesh", ["confocal", "graded"])
+def test_a_shared_mesh_gives_what_one_rank_gives(mesh):
+    states, traces = [], []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        space = on(comm, mesh)
+        punch = SlidingPunch(space, 2.0, 0.6)
+        states.append(punch.state(-0.66))
+        trace = surface.gather(space, punch.fields[:3])
+        traces.append(trace.derivative(np.array([-1.9, -0.7, 0.3, 1.2, 1.8])))
+        punch.destroy()
+    alone, shared = states
+    np.testing.assert_allclose(shared.normal, alone.normal, rtol=1e-8, atol=1e-12)
+    assert shared.v0 == pytest.approx(alone.v0, rel=1e-10)
+    np.testing.assert_allclose(traces[1][..., 0], traces[0][..., 0], rtol=1e-7, atol=1e-9)
+
+
+def test_shared_tractions_give_what_one_rank_gives():
+    load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).σ_YY_by_distance
+    slopes = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        solver = LoadedHalfPlane(on(comm, "confocal"), 2.0, 0.6)
+        solver.load(load)
+        assert solver.resultants[0] == pytest.approx(-2.0, rel=1e-12)
+        slopes.append(surface.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))
+        solver.destroy()
+    np.testing.assert_allclose(slopes[1], slopes[0], rtol=1e-8, atol=1e-10)

@@ -1,0 +1,192 @@
+import numpy as np
+import pytest
+from mpi4py import MPI
+from scipy.special import eval_chebyt
+
+from conftest import run_scene
+from meshes.gmsh_model import distribute
+from meshes.halfplane import MESHES
+from meshes.rings import TAGS, Refinement
+from solvers.errors import MeshError, SolveError
+from solvers.fem.linear import Factor
+from solvers.fem.punch import SlidingPunch
+from solvers.fem.space import Space
+from solvers.materials import MovingFrame
+from solvers.sie.closed_form import FlatPunch
+
+
+def relative(data, side):
+    return np.abs(data[f"states/fem/K_I_{side}"] / data["states/closed_form/K_I"] - 1.0)
+
+
+def surface_errors(data):
+    X = data["surface/X_over_a"]
+    found, exact = (
+        {s: data[f"surface/{m}/sigma_{s}"] for s in ("XX", "YY")} for m in ("fem", "closed_form")
+    )
+    inside = 1.0 - np.abs(X) >= 1e-4
+    off_edges = np.abs(1.0 - np.abs(X)) >= 1e-2
+    largest = np.abs(exact["XX"][:, off_edges]).max(axis=1)
+    return (
+        np.abs(found["YY"] / exact["YY"] - 1.0)[:, inside].max(),
+        (np.abs(found["XX"] - exact["XX"])[:, off_edges].max(axis=1) / largest).max(),
+    )
+
+
+def test_tables_4_and_5_to_every_printed_digit(tables_run):
+    from app.paper import intensity_rows
+
+    data, _ = tables_run
+    rows = [row for name in ("table4", "table5") for row in intensity_rows(name, data)]
+    assert len(rows) == 12
+    for row in rows:
+        assert [round(K, 4) for K in row.K_I[1:]] == [row.K_I[0]] * 3
+        np.testing.assert_allclose(row.diff_percent[1:], row.diff_percent[0], atol=0.015)
+        assert row.agrees
+
+
+def test_accuracy_at_the_default_tolerance(tables_run):
+    data, attributes = tables_run
+    assert relative(data, "left").max() <= 1e-6 and relative(data, "right").max() <= 1e-6
+    σ_YY, σ_XX = surface_errors(data)
+    assert σ_YY <= 1e-5 and σ_XX <= 1e-4
+    for exponent in ("alpha", "beta"):
+        np.testing.assert_allclose(data[f"states/fem/{exponent}"], data[f"states/{exponent}"], atol=2e-4)
+    assert attributes["verdict"] == "PASS"
+
+
+def test_forces_balance(tables_run):
+    data, _ = tables_run
+    np.testing.assert_allclose(data["states/fem/normal_force"], -55.3e3, rtol=1e-9)
+    np.testing.assert_allclose(data["states/fem/tangential_force"], -55.3e3 * data["states/g"], rtol=1e-9)
+
+
+def test_one_factorisation_a_speed(tables_run):
+    data, _ = tables_run
+    assert list(data["run/fem/factorisations"]) == [1, 1]
+    assert data["run/fem/back_substitutions"].max() < 30
+
+
+def test_high_speed():
+    data, attributes = run_scene("high_speed", ("[0.0, 0.3, 0.6, 0.8, 0.9]", "[0.9]"))
+    assert relative(data, "left").max() <= 1e-6 and relative(data, "right").max() <= 1e-6
+    assert max(surface_errors(data)) <= 1e-4
+    assert attributes["verdict"] == "PASS"
+
+
+def test_graded_mesh():
+    data, attributes = run_scene("graded")
+    assert relative(data, "left").max() <= 1e-5 and relative(data, "right").max() <= 1e-5
+    assert max(surface_errors(data)) <= 1e-3
+    assert attributes["verdict"] == "PASS"
+
+
+def test_box_is_limited_by_its_walls():
+    data, _ = run_scene("box", ("c = [4.786e-7, 0.6]", "c = [4.786e-7]"))
+    error = max(relative(data, "left").max(), relative(data, "right").max())
+    assert 1e-3 < error < 1e-2
+
+
+def test_given_tractions_leave_the_punch_flat():
+    data, attributes = run_scene("traction")
+    assert data["states/fem/slope_under_punch"].max() <= 1e-6
+    assert surface_errors(data)[1] <= 1e-4
+    assert attributes["verdict"] == "PASS"
+
+
+def test_a_given_uniform_traction_has_its_known_stress():
+    """Uniform σ_YY = -1 without friction at rest: σ_XX = σ_YY under the load, 0 beside it."""
+    data, attributes = run_scene(
+        "traction",
+        ('mode = "traction"', 'mode = "traction"\npressure = [[-1, -1], [1, -1]] #'),
+        ("c = [4.786e-7, 0.6]", "c = [0.0]"),
+        ("X_over_L = [0.2, 0.8]", "X_over_L = [0.0]"),
+        ('strokes = ["forward", "backward", "forward"]', 'strokes = ["forward"]'),
+    )
+    X, σ_XX = data["surface/X_over_a"], data["surface/fem/sigma_XX"][0]
+    away = np.abs(1.0 - np.abs(X)) > 0.02
+    np.testing.assert_allclose(σ_XX[away], np.where(np.abs(X) < 1.0, -1.0, 0.0)[away], atol=1e-4)
+    assert data["states/fem/normal_force"] == pytest.approx(-55.3e3, rel=1e-12)
+    assert attributes["verdict"] == "not judged"
+
+
+def test_the_two_signs_of_friction_are_mirror_images(tables_run):
+    physical, _ = tables_run
+    printed, _ = run_scene("tables4_5", ('sign = "physical"', 'sign = "eq25"'))
+    np.testing.assert_array_equal(printed["states/g"], -physical["states/g"])
+    np.testing.assert_allclose(
+        printed["states/fem/K_I_left"], physical["states/fem/K_I_right"], rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        printed["surface/fem/sigma_XX"], physical["surface/fem/sigma_XX"][:, ::-1], rtol=1e-5, atol=1e-7
+    )
+
+
+def test_pressure_and_tension_lead_at_the_trailing_end(tables_run):
+    """Physical sign, forward: both the stronger singularity and the tension are at X = -a."""
+    data, _ = tables_run
+    X = data["surface/X_over_a"]
+    behind, ahead = np.argmin(np.abs(X + 1.05)), np.argmin(np.abs(X - 1.05))
+    for i in np.flatnonzero(data["states/f"] > 0.0):
+        assert data["states/fem/beta"][i] < data["states/fem/alpha"][i]
+        assert data["surface/fem/sigma_XX"][i, behind] > 0.0 > data["surface/fem/sigma_XX"][i, ahead]
+
+
+def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
+    """Largest error of the pressure's first six Chebyshev moments over N."""
+    kind = MESHES[mesh]
+    space = Space(*distribute(kind.build(refinement), MPI.COMM_WORLD), TAGS, kind.plane, degree)
+    solver = SlidingPunch(space, 2.0, c)
+    state = solver.state(g)
+    X = kind.plane.surface_position(space.contact.s)
+    exact = FlatPunch(MovingFrame(2.0, c), g)
+    t, w = np.polynomial.legendre.leggauss(200)
+    τ, w = (t + 1.0) / 2.0, w / 2.0
+    near, stretch = τ**8, 8.0 * τ**7
+    errors = []
+    for n in range(6):
+        moment = np.sum(w * stretch * exact.σ_YY_by_distance(near, 2.0 - near) * eval_chebyt(n, near - 1.0))
+        moment += np.sum(w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near))
+        errors.append(abs(state.normal @ eval_chebyt(n, X) - moment) / 2.0)
+    solver.destroy()
+    return max(errors)
+
+
+def test_exponential_convergence_in_the_degree():
+    refinement = Refinement(8, 0.35, 2, (3.0,) * 7)
+    degrees = np.arange(3, 8)
+    errors = [moment_error("confocal", refinement, p) for p in degrees]
+    decades_a_degree = -np.polyfit(degrees, np.log10(errors), 1)[0]
+    assert decades_a_degree > 0.9
+    assert errors[-1] < 1e-7
+
+
+def test_convergence_in_the_grading():
+    """The energy in the innermost ring, of radius ρ, goes as ρ^(2 + 2α), α = -1/2 without friction."""
+    ratio, levels = 0.5, np.array([3, 4, 5, 6])
+    columns = (1.0,) * 15
+    errors = [moment_error("graded", Refinement(n, ratio, 2, columns), 6, g=0.0) for n in levels]
+    expected = 2.0 * (2.0 + 2.0 * -0.5)  # a ring of size s in (ξ, η) has the radius s²/2
+    rate = np.polyfit(levels * np.log(ratio), np.log(errors), 1)[0]
+    assert rate == pytest.approx(expected, rel=0.05)
+
+
+def test_a_missing_boundary_part_is_named():
+    kind = MESHES["confocal"]
+    mesh, tags = distribute(kind.build(Refinement(1, 0.3, 1, (1.0,))), MPI.COMM_WORLD)
+    with pytest.raises(MeshError, match="far"):
+        Space(mesh, tags, TAGS | {"far": 17}, kind.plane, 2)
+
+
+def test_a_singular_matrix_is_not_taken_for_a_solution():
+    from petsc4py import PETSc
+
+    A = PETSc.Mat().createAIJ((4, 4), comm=PETSc.COMM_SELF)
+    A.setUp()
+    for i in range(4):
+        A.setValue(i, i, 2.0 if i else 0.0)
+    A.assemble()
+    b = A.createVecLeft()
+    b.set(1.0)
+    with pytest.raises(SolveError):
+        Factor(A).solve(b)

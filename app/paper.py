@@ -52,10 +52,7 @@ def intensity_rows(name: str, data: dict[str, Any]) -> list[IntensityRow]:
     chosen = data["states/c"] == table["c"]
     for key, value in _REFERENCE.items():
         chosen = chosen & (data[f"states/{key}"] == value)
-    series = [
-        data[f"states/{path}"]
-        for path in ("closed_form/K_I", "fem/K_I_left", "fem/K_I_right")
-    ]
+    series = [data[f"states/{path}"] for path in ("closed_form/K_I", "fem/K_I_left", "fem/K_I_right")]
     found = {}
     for i in np.flatnonzero(chosen):
         found[data["states/motion"][i], float(data["states/X_over_L"][i])] = [s[i] for s in series]
@@ -116,16 +113,22 @@ def _tables(folder: Path, data: dict[str, Any], attributes: dict[str, Any], stud
         for label, row in (("published", printed), ("computed", computed)):
             table.add_row(label, f"{row[0]:.4f}", f"{row[1]:.2e}", *(f"{k:.4f}" for k in row[2:]))
     console.print(table)
-    console.print("The last f is printed 0.4957, a misprint: its own k1 = 1 - f/μ_C = 0.0067 gives 0.4966.\n")
+    console.print(
+        "The last f is printed 0.4957, a misprint: its own k1 = 1 - f/μ_C = 0.0067 gives 0.4966.\n"
+    )
 
     solid, given = solid_of(study), published()["table3"]
     table = new_table("Table 3. Slow and high speed", "", "c (1)", "V (m/s)", "time of a stroke (s)")
     for name, c in (("SS", _SLOW), ("HS", _FAST)):
         V = c * solid.c_s
-        table.add_row(f"{name} published", *(f"{given[name][key]:.4g}" for key in ("c", "V_m_s", "time_s")))
+        table.add_row(
+            f"{name} published", *(f"{given[name][key]:.4g}" for key in ("c", "V_m_s", "time_s"))
+        )
         table.add_row(f"{name} computed", f"{c:.4g}", f"{V:.5g}", f"{study.friction.pre_sliding / V:.4g}")
     console.print(table)
-    console.print("The study's text has V = 1880.4 m/s for c = 0.6, which Table 2 confirms; 1884 is a misprint.\n")
+    console.print(
+        "The study's text has V = 1880.4 m/s for c = 0.6, which Table 2 confirms; 1884 is a misprint.\n"
+    )
 
     all_rows = []
     for name, title in (("table4", "Table 4. Slow speed"), ("table5", "Table 5. High speed")):
@@ -175,7 +178,9 @@ def _figures(folder: Path, data: dict[str, Any], loops: dict[str, Any]) -> None:
         columns = []
         for X in np.unique(data["states/X_over_L"]):
             at = [i for i in states if data["states/X_over_L"][i] == X]
-            columns.append(Curves(at, [str(data["states/motion"][i]) for i in at], f"c = {c:g}, X/L = {X:g}"))
+            columns.append(
+                Curves(at, [str(data["states/motion"][i]) for i in at], f"c = {c:g}, X/L = {X:g}")
+            )
         figures.save(figures.surface_figure(data, columns, loops), folder, name)
 
     moving = (data["states/motion"] == "FM1") & (data["states/X_over_L"] == 0.8)
@@ -184,7 +189,9 @@ def _figures(folder: Path, data: dict[str, Any], loops: dict[str, Any]) -> None:
         for c in (_SLOW, _FAST):
             values = np.unique(data[f"states/{key}"])
             at = [
-                int(np.flatnonzero(moving & parameters_match(data, c=c, **(_REFERENCE | {key: value})))[0])
+                int(
+                    np.flatnonzero(moving & parameters_match(data, c=c, **(_REFERENCE | {key: value})))[0]
+                )
                 for value in values
             ]
             text = [f"{symbol} = {form.format(value)}" for value in values]

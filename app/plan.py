@@ -78,7 +78,7 @@ def make_plan(scene: Scene) -> Plan:
             warnings.append(
                 f"the outer boundary of the {name} mesh alone costs about "
                 f"{truncation(name, tolerance):.1g} (relative, with friction), more than the "
-                f"tolerance {tolerance:g}; use mesh = \"confocal\" or \"graded\""
+                f'tolerance {tolerance:g}; use mesh = "confocal" or "graded"'
             )
     return Plan(
         count, closed, fem, contact and "surface" in asked, mesh, speed_plans,
@@ -148,9 +148,7 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
         result.append(f"closed form: {plan.states} states")
     if plan.fem and plan.refinement:
         mesh = MESHES[scene.solve.mesh].build(plan.refinement)
-        result.append(
-            f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds"
-        )
+        result.append(f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds")
         result += [
             f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
             f"{unknowns(mesh, speed.degree)} unknowns, one factorisation"

@@ -44,9 +44,7 @@ def _pressure(value: Any) -> Any:
     if value == "closed_form":
         return value
     if not isinstance(value, list) or len(value) < 2:
-        raise ValueError(
-            f'found {value!r}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]'
-        )
+        raise ValueError(f'found {value!r}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]')
     if not all(isinstance(pair, list) and len(pair) == 2 for pair in value):
         raise ValueError("expected a list of pairs [X/a, σ_YY/(N/2a)], dimensionless")
     pairs = tuple((to_si(x, ""), to_si(σ, "")) for x, σ in value)
@@ -61,9 +59,7 @@ def _each(*checks: Any) -> Any:
 
 
 def _key(convert: Callable, check: Any, doc: str, default: Any = attrs.NOTHING) -> Any:
-    return attrs.field(
-        default=default, validator=check, metadata={"doc": doc, "convert": convert}
-    )
+    return attrs.field(default=default, validator=check, metadata={"doc": doc, "convert": convert})
 
 
 _positive = is_.gt(0.0)
@@ -135,9 +131,7 @@ class Solve:
         1e-6,
     )
     mesh: str = _key(_text, is_.in_(("confocal", "graded", "box")), "mesh", "confocal")
-    mode: str = _key(
-        _text, is_.in_(("contact", "traction")), "pressure unknown or put in", "contact"
-    )
+    mode: str = _key(_text, is_.in_(("contact", "traction")), "pressure unknown or put in", "contact")
     pressure: Any = _key(_pressure, None, "σ_YY of the traction mode", "closed_form")
 
 
@@ -248,9 +242,7 @@ def _structure(section: str, kind: type, given: Any, faults: list[str]) -> Any:
         return None
     fields = {field.name: field for field in attrs.fields(kind)}
     found = [
-        f"{section}.{key}: no such key{_nearest(key, [*fields])}"
-        for key in given
-        if key not in fields
+        f"{section}.{key}: no such key{_nearest(key, [*fields])}" for key in given if key not in fields
     ]
     values = {}
     for key, field in fields.items():

@@ -81,4 +81,3 @@ def check_cells(mesh: QuadMesh) -> None:
             f"cell {worst} at {corners[worst].mean(axis=0)} (over a) is degenerate; "
             "choose more sectors or a ratio nearer to 1"
         )
-

@@ -39,9 +39,7 @@ class Physical:
     def surface_stretch(self, s: NDArray) -> NDArray:
         return np.ones_like(s)
 
-    def under_punch(
-        self, from_left: NDArray, from_right: NDArray
-    ) -> tuple[NDArray, NDArray, NDArray]:
+    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         return from_left, from_right, np.ones_like(from_left)
 
 
@@ -72,7 +70,6 @@ class Confocal:
         w = np.conj(np.arccosh(X[..., 0] - 1j * np.minimum(X[..., 1], -0.0)))
         return np.stack([np.abs(w.real), -np.abs(w.imag)], axis=-1)
 
-
     # Along the surface X = sin s under the punch and |X| = cosh(|s| - π/2) beside it.
 
     def along_surface(self, x: NDArray) -> NDArray:
@@ -92,8 +89,6 @@ class Confocal:
         beyond = np.abs(s) - np.pi / 2.0
         return np.where(beyond < 0.0, np.cos(s), np.sinh(np.maximum(beyond, 0.0)))
 
-    def under_punch(
-        self, from_left: NDArray, from_right: NDArray
-    ) -> tuple[NDArray, NDArray, NDArray]:
+    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         stretch = np.sin(np.minimum(from_left, from_right))
         return 2.0 * np.sin(from_left / 2.0) ** 2, 2.0 * np.sin(from_right / 2.0) ** 2, stretch

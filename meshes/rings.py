@@ -7,6 +7,7 @@ the punch, ξ = Ξ is far away. Quadrilaterals lie in L-shaped rings around the 
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,9 +64,7 @@ def rectangle(refinement: Refinement, fan: bool = False) -> QuadMesh:
     ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
     η = np.linspace(-np.pi, 0.0, 2 * refinement.sectors + 1)
     columns = [
-        [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)]
-        for ξ0, ξ1 in zip(ξ[:-1], ξ[1:])
-        for η0, η1 in zip(η[:-1], η[1:])
+        [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
     quads = np.concatenate([*corners, np.reshape(columns, (-1, 4, 2))])
     # Coordinates near a corner are multiples of its smallest cell, far above this rounding.
@@ -85,7 +84,7 @@ def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float6
     sizes = size * refinement.ratio ** np.arange(refinement.levels + 1)
     quads = [
         [inner * leg[i], inner * leg[i + 1], outer * leg[i + 1], outer * leg[i]]
-        for outer, inner in zip(sizes[:-1], sizes[1:])
+        for outer, inner in pairwise(sizes)
         for i in range(2 * sectors)
     ]
     if fan:
@@ -95,8 +94,8 @@ def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float6
     grid = sizes[-1] * t
     quads += [
         [(x0, -y0), (x0, -y1), (x1, -y1), (x1, -y0)]
-        for x0, x1 in zip(grid[:-1], grid[1:])
-        for y0, y1 in zip(grid[:-1], grid[1:])
+        for x0, x1 in pairwise(grid)
+        for y0, y1 in pairwise(grid)
     ]
     return np.array(quads)
 

@@ -5,7 +5,7 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,7 @@ def write(path: Path, data: dict[str, Any], attributes: dict[str, Any]) -> None:
             with h5py.File(temporary, "w", libver=("earliest", "v110")) as file:
                 for name, value in data.items():
                     _dataset(file, name, value)
-                created = datetime.now(timezone.utc).isoformat(timespec="seconds")
+                created = datetime.now(UTC).isoformat(timespec="seconds")
                 file.attrs.update(
                     program="galinx", schema_version=SCHEMA_VERSION, created=created, **attributes
                 )
@@ -59,7 +59,7 @@ def _dataset(file: h5py.File, name: str, value: Any) -> None:
         dataset = file.create_dataset(name, data=value, dtype=h5py.string_dtype())
     else:
         array = np.asarray(value)
-        if array.dtype.kind == "U" or array.size == 0 and array.dtype.kind != "i":
+        if array.dtype.kind == "U" or (array.size == 0 and array.dtype.kind != "i"):
             dataset = file.create_dataset(name, data=list(value), dtype=h5py.string_dtype())
         else:
             # The checksum is what makes a flipped bit seen.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402  (after the backend that needs no screen)
+from matplotlib import pyplot as plt
 
 #: Okabe and Ito's colours, told apart by colour-blind readers.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -100,9 +100,7 @@ def _limits(X: NDArray, values: NDArray) -> tuple[float, float]:
 def _inset(axis: plt.Axes, data: dict[str, Any], loops: dict[str, Any], curves: Curves) -> None:
     inset = axis.inset_axes((0.37, 0.14, 0.28, 0.32))
     first = curves.states[0]
-    same = np.all(
-        [loops[f"states/{key}"] == data[f"states/{key}"][first] for key in _PARAMETERS], axis=0
-    )
+    same = np.all([loops[f"states/{key}"] == data[f"states/{key}"][first] for key in _PARAMETERS], axis=0)
     draw_loop(inset, loops, same, "#888888")
     for n, i in enumerate(curves.states):
         inset.plot(
@@ -177,5 +175,3 @@ def _friction_of(data: dict[str, Any]) -> plt.Figure:
         label = f"$\\mu_C$ = {row[0]:g}, $\\sigma_0 l/N$ = {row[1]:g}/m, $\\delta$ = {row[2]:g}"
         curves[label] = np.all(keys == row, axis=1) & first_speed
     return loops_figure(data, [("Friction", curves)])
-
-

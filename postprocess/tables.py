@@ -57,4 +57,3 @@ def print_states(data: dict[str, Any], attributes: dict[str, Any], limit: int = 
     for reason in json.loads(attributes["verdict_reasons"]):
         console.print(f"  {reason}")
     console.print(f"verdict: {attributes['verdict']}")
-

@@ -33,12 +33,26 @@ def test_imports(path):
     name = path.relative_to(HOME).as_posix()
     found = set(imports(path))
     roots = {module.split(".")[0] for module in found}
-    allowed = {"app": set(ROOMS), "postprocess": {"postprocess"}, "meshes": {"meshes"}, "solvers": {"solvers"}}
+    allowed = {
+        "app": set(ROOMS),
+        "postprocess": {"postprocess"},
+        "meshes": {"meshes"},
+        "solvers": {"solvers"},
+    }
     assert not (roots & set(ROOMS)) - allowed[path.relative_to(HOME).parts[0]]
     for library, places in ONE_PLACE.items():
         assert library not in roots or name in places
     if name.startswith("solvers/") and not name.startswith("solvers/fem/"):
-        assert roots <= {"solvers", "numpy", "scipy", "math", "dataclasses", "functools", "collections"}
+        assert roots <= {
+            "solvers",
+            "numpy",
+            "scipy",
+            "math",
+            "dataclasses",
+            "functools",
+            "collections",
+            "typing",
+        }
     if name.startswith("solvers/fem/"):
         assert not any(module.startswith(("solvers.sie", "solvers.friction")) for module in found)
 

@@ -98,7 +98,9 @@ def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
         parts = {}
         for name, β in (("s", β_s), ("d", β_d)):
             wave = sp.exp(p * β * Y)
-            real, imaginary = (sp.cos(p * X), -sp.sin(p * X)) if A == 1 else (sp.sin(p * X), sp.cos(p * X))
+            real, imaginary = (
+                (sp.cos(p * X), -sp.sin(p * X)) if A == 1 else (sp.sin(p * X), sp.cos(p * X))
+            )
             parts[name] = (-imaginary * wave, real * wave)
         s_s, h_s = parts["s"]
         s, h = ((parts["d"][i] - parts["s"][i]) / c2 for i in (0, 1))

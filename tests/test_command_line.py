@@ -122,7 +122,7 @@ def test_a_verdict_has_its_status(tmp_path):
     ],
 )
 def test_bad_input_ends_with_one_message(tmp_path, ranks, arguments, message):
-    (tmp_path / "bad.toml").write_text('[solid]\nE = 1e9\nrho = 1000\n', encoding="utf-8")
+    (tmp_path / "bad.toml").write_text("[solid]\nE = 1e9\nrho = 1000\n", encoding="utf-8")
     done = command(*ranks, *arguments, cwd=tmp_path)
     assert done.returncode == 2 and "Traceback" not in done.stderr
     assert done.stderr.count("error: ") == 1 and message in done.stderr

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
+from conftest import run_scene
 from mpi4py import MPI
 from scipy.special import eval_chebyt
 
-from conftest import run_scene
 from meshes.gmsh_model import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
@@ -145,8 +145,12 @@ def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
     near, stretch = τ**8, 8.0 * τ**7
     errors = []
     for n in range(6):
-        moment = np.sum(w * stretch * exact.σ_YY_by_distance(near, 2.0 - near) * eval_chebyt(n, near - 1.0))
-        moment += np.sum(w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near))
+        moment = np.sum(
+            w * stretch * exact.σ_YY_by_distance(near, 2.0 - near) * eval_chebyt(n, near - 1.0)
+        )
+        moment += np.sum(
+            w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near)
+        )
         errors.append(abs(state.normal @ eval_chebyt(n, X) - moment) / 2.0)
     solver.destroy()
     return max(errors)

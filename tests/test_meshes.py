@@ -71,8 +71,8 @@ def test_planes_invert_themselves(plane):
 
 
 def test_confocal_rotation_is_that_of_the_map():
-    plane, x, step = Confocal(), np.array([0.7, -1.1]), 1e-6
-    along_ξ = (plane.to_physical(x + [step, 0.0]) - plane.to_physical(x - [step, 0.0])) / (2 * step)
+    plane, x, step = Confocal(), np.array([0.7, -1.1]), np.array([1e-6, 0.0])
+    along_ξ = (plane.to_physical(x + step) - plane.to_physical(x - step)) / 2e-6
     cos, sin = plane.rotation(x, np)
     np.testing.assert_allclose([cos, sin], along_ξ / np.linalg.norm(along_ξ), rtol=1e-9)
 

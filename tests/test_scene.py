@@ -25,7 +25,7 @@ def test_units_become_si():
 
 def test_defaults_leave_only_what_has_none():
     scene = parse(
-        '[solid]\nE = 1e9\nnu = 0.3\nrho = 1000\n[friction]\nmu_c = 0.5\nsigma0_over_load = 1e4\n'
+        "[solid]\nE = 1e9\nnu = 0.3\nrho = 1000\n[friction]\nmu_c = 0.5\nsigma0_over_load = 1e4\n"
         "[motion]\nc = 0.1\n"
     )
     assert scene.solve.tolerance == 1e-6 and scene.output.quantities == ("friction", "sif", "surface")
@@ -102,7 +102,9 @@ def test_all_faults_come_in_one_message():
 
 
 def test_runge_kutta_beyond_its_stability_names_the_exact_integrator():
-    scene = parse(changed(("mu_c = 0.7", "mu_c = 0.1"), ('"25000 1/m"', '"60000 1/m"'), ('"exact"', '"rk4"')))
+    scene = parse(
+        changed(("mu_c = 0.7", "mu_c = 0.1"), ('"25000 1/m"', '"60000 1/m"'), ('"exact"', '"rk4"'))
+    )
     with pytest.raises(BadInput, match="exact"):
         enumerate_states(scene)
 
@@ -138,7 +140,9 @@ def test_speed_in_metres_per_second():
 
 
 def test_lists_mean_their_product():
-    scene = parse(changed(("mu_c = 0.7", "mu_c = [0.3, 0.7]"), ("delta = 1.0", "delta = [1.0, 1.5, 2.0]")))
+    scene = parse(
+        changed(("mu_c = 0.7", "mu_c = [0.3, 0.7]"), ("delta = 1.0", "delta = [1.0, 1.5, 2.0]"))
+    )
     states = enumerate_states(scene)
     assert len(states) == 2 * 2 * 3 * 3 * 2 == make_plan(scene).states
     assert len({(c, m, d) for c, m, d in zip(states.c, states.mu_c, states.delta)}) == 12

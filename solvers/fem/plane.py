@@ -36,9 +36,7 @@ class Plane(Protocol):
     def surface_stretch(self, s: NDArray) -> NDArray:
         """dX/ds along the surface."""
 
-    def under_punch(
-        self, from_left: NDArray, from_right: NDArray
-    ) -> tuple[NDArray, NDArray, NDArray]:
+    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
 
         Next to an edge X/a itself no longer tells the distance, so this does.

@@ -59,7 +59,7 @@ class Space:
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
-                raise MeshError(f"no facet of the mesh carries tag {tag}, the part \"{name}\"")
+                raise MeshError(f'no facet of the mesh carries tag {tag}, the part "{name}"')
 
     @property
     def size(self) -> int:

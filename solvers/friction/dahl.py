@@ -9,6 +9,7 @@ the exponent of the law (both dimensionless).
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -103,10 +104,11 @@ def runge_kutta(law: Dahl, f0: float, s: int, length: float, steps: int) -> Rung
     if stiffness > RK4_STABILITY_LIMIT:
         raise ValueError(
             f"Runge-Kutta is unstable here: λ h/μ_C = {stiffness:.4g} (dimensionless) exceeds "
-            f"{RK4_STABILITY_LIMIT:.3f}; use integrator = \"exact\", or more steps than {steps}"
+            f'{RK4_STABILITY_LIMIT:.3f}; use integrator = "exact", or more steps than {steps}'
         )
     f, k = np.empty(steps + 1), np.empty((steps + 1, 4))
-    value, gain = float(f0), s * law.λ * h
+    gain = s * law.λ * h
+    value: Any = f0
     for i in range(steps + 1):
         k1 = law.rate(value, s)
         k2 = law.rate(value + gain * k1 / 2.0, s)

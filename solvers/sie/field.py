@@ -4,6 +4,8 @@ The two potentials live at z_j = (X + i β_j Y)/a. At slow speed they nearly coi
 is their difference over c², which is therefore computed as such.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p  # NumPy's loses digits for small complex arguments
@@ -55,7 +57,7 @@ def _potentials(
     """Φ(z_s) and (Φ(z_d) - Φ(z_s))/c² with Φ(z) = (2/π)(z - 1)^α (z + 1)^β."""
     frame, α, β, c2 = punch.frame, punch.α, punch.β, punch.frame.c**2
     z = X + 1j * frame.β_s * Y
-    Φ = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
+    Φ: Any = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
     δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
     if c2 == 0.0:
         return Φ, Φ * δ * (α / (z - 1.0) + β / (z + 1.0))

@@ -58,7 +58,7 @@ def make_plan(scene: Scene) -> Plan:
     asked, friction = set(scene.output.quantities), scene.friction
     contact = bool(asked & {"sif", "surface"})
     fem = contact and "fem" in scene.solve.methods
-    closed = contact and "closed_form" in scene.solve.methods and _has_closed_form(scene)
+    closed = contact and "closed_form" in scene.solve.methods and has_closed_form(scene)
     all_speeds = tuple(dict.fromkeys(speeds(scene)))
     count = (
         len(speeds(scene)) * len(friction.mu_c) * len(friction.sigma0_over_load)
@@ -86,7 +86,8 @@ def make_plan(scene: Scene) -> Plan:
     )  # fmt: skip
 
 
-def _has_closed_form(scene: Scene) -> bool:
+def has_closed_form(scene: Scene) -> bool:
+    """False where a pressure of the user's own is put in."""
     return scene.solve.mode == "contact" or scene.solve.pressure == "closed_form"
 
 
@@ -125,7 +126,7 @@ def _skipped(scene: Scene, contact: bool, closed: bool, fem: bool) -> list[str]:
     if not contact:
         skipped.append("contact mechanics: only friction is asked for")
     elif not closed:
-        why = "not in solve.methods" if _has_closed_form(scene) else "the pressure is given"
+        why = "not in solve.methods" if has_closed_form(scene) else "the pressure is given"
         skipped.append(f"closed form: {why}")
     if contact and not fem:
         skipped.append("mesh and finite elements: fem is not in solve.methods")

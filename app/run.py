@@ -10,9 +10,10 @@ import numpy as np
 
 from app import __version__
 from app.errors import BadInput, MachineFailure
-from app.plan import Plan, lines, make_plan, surface_grid
+from app.plan import Plan, has_closed_form, lines, make_plan, surface_grid
 from app.scene import Scene
 from app.states import States, enumerate_states, solid_of
+from postprocess import compare
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
 
@@ -73,6 +74,7 @@ def compute(
         "version": __version__,
         "scene_sha256": scene.sha256,
         "title": scene.title,
+        "load": scene.punch.load,
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
         "warnings": json.dumps(plan.warnings, ensure_ascii=False),
@@ -126,35 +128,18 @@ def _finite_elements(
 
 def judge(scene: Scene, data: dict[str, Any]) -> tuple[str, list[str]]:
     """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
-    reasons: list[tuple[bool, str]] = []
-    tolerance, N = scene.solve.tolerance, scene.punch.load
-    if "states/fem/normal_force" in data and scene.solve.pressure == "closed_form":
-        normal, tangential = data["states/fem/normal_force"], data["states/fem/tangential_force"]
-        balance = max(np.abs(normal / N + 1.0).max(), np.abs(tangential / N + data["states/g"]).max())
-        reasons.append(
-            (balance <= BALANCE_LIMIT, f"force balance: {balance:.1e} N, at most {BALANCE_LIMIT:g} N")
-        )
-    if "states/fem/K_I_left" in data and "states/closed_form/K_I" in data:
-        exact = data["states/closed_form/K_I"]
-        error = max(
-            np.abs(data[f"states/fem/K_I_{side}"] / exact - 1.0).max() for side in ("left", "right")
-        )
-        reasons.append(
-            (
-                error <= tolerance,
-                f"K_I, finite elements against closed form: {error:.1e} relative, at most {tolerance:g}",
-            )
-        )
-    given = scene.solve.pressure != "closed_form"
-    if "states/fem/slope_under_punch" in data and scene.solve.mode == "traction" and not given:
-        slope, limit = data["states/fem/slope_under_punch"].max(), SLOPE_FACTOR * tolerance
-        reasons.append(
-            (slope <= limit, f"v,X under the punch: {slope:.1e} of that beside it, at most {limit:g}")
-        )
-    if not reasons:
+    tolerance = scene.solve.tolerance
+    limits = {compare.BALANCE: BALANCE_LIMIT, compare.K_I: tolerance}
+    if scene.solve.mode == "traction":
+        limits[compare.SLOPE] = SLOPE_FACTOR * tolerance
+    if not has_closed_form(scene):
+        limits = {}
+    judged = [c for c in compare.comparisons(data, scene.punch.load) if c.name in limits]
+    if not judged:
         return "not judged", []
-    verdict = "PASS" if all(bool(good) for good, _ in reasons) else "FAIL"
-    return verdict, [text for _, text in reasons]
+    good = all(c.value <= limits[c.name] for c in judged)  # also fails on NaN
+    reasons = [f"{c.text}: {c.value:.1e}, at most {limits[c.name]:g}" for c in judged]
+    return "PASS" if good else "FAIL", reasons
 
 
 def check_output(path: Path, overwrite: bool) -> None:

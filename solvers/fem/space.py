@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 import ufl
 from dolfinx import fem
+from dolfinx.cpp.fem import pack_constants
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from solvers.errors import MeshError
+from solvers.fem.compiler import jit_options
+from solvers.fem.condensation import CHUNK, CellMatrices
 from solvers.fem.forms import moving_stiffness
 from solvers.fem.plane import Plane
 
@@ -94,15 +97,67 @@ class Space:
         blocks = self._global(self._owned_blocks("far"))
         return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
 
-    def assemble(self, κ: float, c: float) -> PETSc.Mat:
-        """Matrix of the moving-frame form without any boundary condition."""
+    @cached_property
+    def _form(self) -> tuple[Any, fem.Constant, fem.Constant]:
+        """The compiled form with its constants κ and c, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
         u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-        κ_, c_ = fem.Constant(self.mesh, κ), fem.Constant(self.mesh, c)
-        form = fem.form(moving_stiffness(u, w, self.plane, x, κ_, c_, self.degree))
-        A = fem.petsc.assemble_matrix(form)
+        κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
+        form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
+        return fem.form(form, jit_params=jit_options()), κ, c
+
+    def assemble(self, κ: float, c: float) -> PETSc.Mat:
+        """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
+
+        Numbers are those of the whole space; the row of an inner unknown holds a 1 on its diagonal.
+        """
+        form, κ_, c_ = self._form
+        κ_.value, c_.value = κ, c
+        constants = pack_constants(form)
+        dofmap, geometry = self.V.dofmap, self.mesh.geometry
+        kernel = CellMatrices(
+            form, dofmap.dof_layout.num_dofs, np.array(dofmap.dof_layout.entity_dofs(2, 0))
+        )
+        outer = np.setdiff1d(np.arange(kernel.nodes), kernel.inner)
+        owned = self.mesh.topology.index_map(2).size_local
+        nodes = np.array([dofmap.cell_dofs(cell) for cell in range(owned)], dtype=np.int32)
+        nodes = nodes.reshape(-1, kernel.nodes)
+        A = self._empty_matrix(nodes[:, outer])
+        for start in range(0, owned, CHUNK):
+            cells = range(start, min(start + CHUNK, owned))
+            corners = geometry.x[[geometry.dofmap.links(cell) for cell in cells]]
+            condensed, _ = kernel.condense(constants, corners)
+            for cell, S in zip(cells, condensed):
+                rows = self._global(nodes[cell, outer])
+                A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+        self._unit_rows(A, nodes[:, kernel.inner])
         A.assemble()
         return A
+
+    def _empty_matrix(self, outer: NDArray[np.int32]) -> PETSc.Mat:
+        """A matrix with room for what cells with these nodes on their boundary will add."""
+        index_map = self.V.dofmap.index_map
+        local = index_map.size_local
+        A = PETSc.Mat().create(self.comm)
+        A.setSizes(((2 * local, None), (2 * local, None)), bsize=2)
+        A.setType(PETSc.Mat.Type.AIJ)
+        cells_of_node = np.bincount(outer.ravel(), minlength=local)[:local]
+        room = np.repeat(np.maximum(2 * outer.shape[1] * cells_of_node, 1), 2).astype(np.int32)
+        A.setPreallocationNNZ((np.minimum(room, 2 * local), room if self.comm.size > 1 else 0))
+        # Cells of other ranks add to nodes on the border between ranks.
+        A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        return A
+
+    def _unit_rows(self, A: PETSc.Mat, inner: NDArray[np.int32]) -> None:
+        """A 1 on the diagonal of every inner unknown; they are owned with their cell."""
+        first, last = A.getOwnershipRange()
+        diagonal = np.zeros(last - first, dtype=np.int32)
+        diagonal[(2 * inner.reshape(-1, 1) + np.arange(2)).ravel()] = 1
+        starts = np.concatenate([[0], np.cumsum(diagonal)]).astype(np.int32)
+        columns = (first + np.flatnonzero(diagonal)).astype(np.int32)
+        A.setValuesCSR(
+            starts, columns, np.ones(len(columns)), addv=PETSc.InsertMode.ADD_VALUES
+        )
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

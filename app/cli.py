@@ -44,12 +44,15 @@ def run(scene: Path, output: Path | None, overwrite: bool) -> int:
     if not ranks.is_root() and not planning.make_plan(checked).fem:
         return errors.GOOD  # nothing to share
     check_output(target, overwrite)
-    data, attributes = compute(checked, _progress())
     if not ranks.is_root():
+        compute(checked)
         return errors.GOOD
     from postprocess import archive
 
-    archive.write(target, data, attributes)
+    with archive.Writer(target) as writer:
+        attributes = compute(checked, writer, _progress())
+        writer.finish(attributes)
+    data, attributes = archive.read(target, surfaces=False)
     _print_summary(data, attributes)
     print(f"archive: {target}")
     return _status(attributes)
@@ -86,7 +89,7 @@ def show(archive: Path, as_json: bool) -> int:
     """
     from postprocess.archive import read
 
-    data, attributes = read(archive)
+    data, attributes = read(archive, surfaces=False)
     if ranks.is_root():
         if as_json:
             print(json.dumps(_as_json(data, attributes), ensure_ascii=False, indent=1))

@@ -1,7 +1,7 @@
 """The finite element work of a plan, from mesh to the numbers that are archived."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -14,164 +14,106 @@ from numpy.typing import NDArray
 logging.disable(logging.INFO)
 logging.getLogger("py.warnings").setLevel(logging.ERROR)
 
-from app.plan import Plan, SpeedPlan  # noqa: E402
+from app.plan import Plan  # noqa: E402
 from app.scene import Scene  # noqa: E402
 from app.states import States, solid_of  # noqa: E402
 from meshes.gmsh_model import distribute  # noqa: E402
 from meshes.halfplane import MESHES, check_cells  # noqa: E402
+from meshes.refine import DEGREES, truncation  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
-from postprocess.pressure import edge_exponents, from_moments, raw_pressure  # noqa: E402
+from postprocess.estimate import extrapolated  # noqa: E402
+from postprocess.pressure import (  # noqa: E402
+    ContactRecovery,
+    JacobiPressure,
+    contact_recovery,
+    from_moments,
+)
 from postprocess.stresses import σ_XX_on_surface  # noqa: E402
 from solvers.fem import surface  # noqa: E402
-from solvers.fem.punch import SlidingPunch  # noqa: E402
+from solvers.fem.punch import ContactStates, SlidingPunch  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 from solvers.fem.traction import LoadedHalfPlane  # noqa: E402
 from solvers.materials import MovingFrame  # noqa: E402
 from solvers.sie.closed_form import FlatPunch  # noqa: E402
 
-Progress = Callable[[str], None]
+#: States treated at once: their surface stresses take some ten megabytes.
+CHUNK = 1000
+
+#: Datasets of one entry a speed.
+RECORD = ("c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual")
 
 
 @dataclass(frozen=True)
-class Results:
-    """One entry a state; NaN where the mode has no such quantity.
+class Chunk:
+    """Datasets of the states ``start`` to ``stop``, by path in the archive."""
+
+    start: int
+    stop: int
+    data: dict[str, NDArray]
+
+
+class FiniteElementRun:
+    """Walks through the speeds of a plan; collective over MPI's world.
 
     Attributes:
-        K_I: at X = -a and X = a, (states, 2).
-        exponents: fitted, at X = a and X = -a, (states, 2).
-        forces: resultants of σ_YY and σ_XY over N, (states, 2).
-        v0: indentation relative to the far boundary over N/(2μ), (states,).
-        slope: largest |v,X| for |X| <= 0.9a over the largest for 1.1a <= |X| <= 5a, (states,).
-        σ_YY, σ_XX, σ_YY_raw: over N/(2a) at the surface grid, (states, points).
-        counts: sizes and operations, for the archive.
+        record: by name in ``RECORD``, one entry a speed, complete after the walk.
         seconds: wall time by step.
     """
 
-    K_I: NDArray[np.float64]
-    exponents: NDArray[np.float64]
-    forces: NDArray[np.float64]
-    v0: NDArray[np.float64]
-    slope: NDArray[np.float64]
-    σ_YY: NDArray[np.float64]
-    σ_XX: NDArray[np.float64]
-    σ_YY_raw: NDArray[np.float64]
-    counts: dict[str, NDArray]
-    seconds: dict[str, float]
+    def __init__(
+        self, scene: Scene, plan: Plan, states: States, grid: NDArray, progress: Callable[[str], None]
+    ) -> None:
+        self.scene, self.plan, self.states, self.grid = scene, plan, states, grid
+        self.progress = progress
+        self.world = MPI.COMM_WORLD
+        self.comm = MPI.COMM_SELF if plan.shared_speeds else self.world
+        self.κ = solid_of(scene).κ
+        self.record: list[dict[str, float]] = []
+        self.seconds = {"mesh": 0.0, "finite elements": 0.0}
 
+    def chunks(self) -> Iterator[Chunk]:
+        """Results, in any order of states; on rank 0 only where speeds are shared out."""
+        started = perf_counter()
+        self.progress(f"mesh: {self.scene.solve.mesh}")
+        kind = MESHES[self.scene.solve.mesh]
+        cells = kind.build(self.plan.refinement)
+        check_cells(cells)
+        mesh = distribute(cells, self.comm)
+        self._spaces: dict[int, Space] = {}
+        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p)
+        self.seconds["mesh"] = perf_counter() - started
+        speeds = list(enumerate(self.plan.speeds))
+        if not self.plan.shared_speeds:
+            for i, speed in speeds:
+                yield from self._at(i, speed.c, speed.degree)
+        else:
+            size, rank = self.world.size, self.world.rank
+            for first in range(0, len(speeds), size):
+                mine = speeds[first + rank : first + rank + 1]
+                work = [chunk for i, speed in mine for chunk in self._at(i, speed.c, speed.degree)]
+                for part in self.world.gather(work, root=0) or []:
+                    yield from part
+            self.record = [r for part in self.world.allgather(self.record) for r in part]
+        self.record.sort(key=lambda entry: entry["speed"])
+        self.seconds["finite elements"] = perf_counter() - started - self.seconds["mesh"]
 
-def solve(scene: Scene, plan: Plan, states: States, grid: NDArray, progress: Progress) -> Results:
-    """Do the finite element part of the plan; collective over MPI's world."""
-    comm, kind = MPI.COMM_WORLD, MESHES[scene.solve.mesh]
-    shape = (len(states), len(grid))
-    results = Results(
-        *(np.full((len(states), 2), np.nan) for _ in range(3)),
-        *(np.full(len(states), np.nan) for _ in range(2)),
-        *(np.full(shape, np.nan) for _ in range(3)),
-        counts={name: np.zeros(len(plan.speeds), dtype=int) for name in _COUNTS}
-        | {"largest_residual": np.zeros(len(plan.speeds))},
-        seconds={"mesh": 0.0, "finite elements": 0.0},
-    )
-    started = perf_counter()
-    progress(f"mesh: {scene.solve.mesh}")
-    cells = kind.build(plan.refinement)
-    check_cells(cells)
-    mesh, facet_tags = distribute(cells, comm)
-    results.seconds["mesh"] = perf_counter() - started
-    for i, speed in enumerate(plan.speeds):
-        progress(f"finite elements: c = {speed.c:g}, degree {speed.degree} ({i + 1}/{len(plan.speeds)})")
-        space = Space(mesh, facet_tags, TAGS, kind.plane, speed.degree)
-        mine = np.flatnonzero(states.c == speed.c)
-        work = _contact if scene.solve.mode == "contact" else _traction
-        solver = work(scene, plan, speed, space, states, mine, grid, results)
-        for name, value in (
-            ("cells", space.cells),
-            ("unknowns", space.size),
-            ("degree", speed.degree),
-            ("factorisations", 1),
-            ("back_substitutions", solver.factor.solves),
-            ("largest_residual", solver.factor.largest_residual),
-        ):
-            results.counts[name][i] = value
-        solver.destroy()
-    results.seconds["finite elements"] = perf_counter() - started - results.seconds["mesh"]
-    return results
+    def space(self, degree: int) -> Space:
+        """The space of a degree; speeds share it, its form and its numbering."""
+        if degree not in self._spaces:
+            self._spaces[degree] = self._space_of(degree)
+        return self._spaces[degree]
 
-
-_COUNTS = ("cells", "unknowns", "degree", "factorisations", "back_substitutions")
-
-
-def _contact(
-    scene: Scene, plan: Plan, speed: SpeedPlan, space: Space, states: States,
-    mine: NDArray, grid: NDArray, results: Results,
-) -> SlidingPunch:  # fmt: skip
-    """Rigid punch, pressure unknown: all states at one speed."""
-    frame = MovingFrame(solid_of(scene).κ, speed.c)
-    punch = SlidingPunch(space, frame.κ, frame.c)
-    plane, s = space.plane, space.contact.s
-    X = plane.surface_position(s)
-    solved = {g: punch.state(g) for g in np.unique(states.g[mine])}
-    slopes = _Slopes(space, punch.fields, grid) if plan.surface else None
-    for i in mine:
-        state = solved[states.g[i]]
-        local = FlatPunch(frame, states.g[i])
-        pressure = from_moments(X, state.normal, local.α, local.β)
-        raw = raw_pressure(s, state.normal, space.degree)
-        results.K_I[i] = pressure.K_I
-        results.exponents[i] = edge_exponents(raw, plane)
-        results.forces[i] = state.normal.sum() / 2.0, state.tangential.sum() / 2.0
-        results.v0[i] = state.v0
-        if slopes:
-            u_X, v_X = slopes.of(state.weights)
-            σ_YY = pressure.σ_YY(grid)
-            results.slope[i] = _flatness(grid, v_X)
-            results.σ_YY[i] = σ_YY
-            results.σ_YY_raw[i] = raw.σ_YY(grid, plane)
-            results.σ_XX[i] = σ_XX_on_surface(frame.κ, u_X, σ_YY)
-    return punch
-
-
-def _traction(
-    scene: Scene, plan: Plan, speed: SpeedPlan, space: Space, states: States,
-    mine: NDArray, grid: NDArray, results: Results,
-) -> LoadedHalfPlane:  # fmt: skip
-    """σ_YY put in, σ_XY = g σ_YY: all states at one speed."""
-    frame = MovingFrame(solid_of(scene).κ, speed.c)
-    loaded = LoadedHalfPlane(space, frame.κ, frame.c)
-    given = scene.solve.pressure
-    first: dict[float, int] = {}
-    for i in mine:
-        g = states.g[i]
-        key = g if given == "closed_form" else 0.0  # a given pressure is one load for every g
-        if key not in first:
-            first[key] = len(loaded.fields)
-            loaded.load(_load(frame, g, given))
-        results.forces[i] = _resultants(loaded, first[key], g)
-    slopes = _Slopes(space, loaded.fields, grid) if plan.surface else None
-    for i in mine if slopes else ():
-        g = states.g[i]
-        at = first[g if given == "closed_form" else 0.0]
-        weights = np.zeros(len(loaded.fields))
-        weights[at : at + 2] = 1.0, g
-        u_X, v_X = slopes.of(weights)
-        inside = np.abs(grid) < 1.0
-        σ_YY = np.full_like(grid, np.nan)
-        σ_YY[inside] = _load(frame, g, given)(1.0 + grid[inside], 1.0 - grid[inside])
-        results.slope[i] = _flatness(grid, v_X)
-        results.σ_YY[i] = σ_YY
-        results.σ_XX[i] = σ_XX_on_surface(frame.κ, u_X, σ_YY)
-    return loaded
-
-
-def _load(frame: MovingFrame, g: float, given: Any) -> Callable[[NDArray, NDArray], NDArray]:
-    if given == "closed_form":
-        return FlatPunch(frame, g).σ_YY_by_distance
-    X, σ = np.array(given).T
-    return lambda left, right: np.interp(np.where(left < right, left - 1.0, 1.0 - right), X, σ)
-
-
-def _resultants(loaded: LoadedHalfPlane, at: int, g: float) -> tuple[float, float]:
-    total = loaded.resultants[at // 2] / 2.0
-    return total, g * total
+    def _at(self, i: int, c: float, degree: int) -> Iterator[Chunk]:
+        mine = np.flatnonzero(self.states.c == c)
+        start, stop = int(mine[0]), int(mine[-1]) + 1  # the speed is the slowest index
+        self.progress(f"finite elements at c = {c:g} ({i + 1} of {len(self.plan.speeds)})")
+        speed = (_Contact if self.scene.solve.mode == "contact" else _Traction)(self, c, degree)
+        speed.prepare(np.unique(self.states.g[start:stop]))
+        for first in range(start, stop, CHUNK):
+            last = min(first + CHUNK, stop)
+            yield Chunk(first, last, speed.results(self.states.g[first:last]))
+        self.record.append({"speed": i, "c": c} | speed.record())
+        speed.destroy()
 
 
 class _Slopes:
@@ -181,12 +123,192 @@ class _Slopes:
         s = space.plane.surface_coordinate(grid)
         trace = surface.gather(space, fields)
         self._basis = trace.derivative(s) / space.plane.surface_stretch(s)[:, None, None]
+        self._under, self._beside = np.abs(grid) <= 0.9, np.abs(grid) >= 1.1
 
     def of(self, weights: NDArray) -> tuple[NDArray, NDArray]:
-        combined = self._basis[..., : len(weights)] @ weights
-        return combined[:, 0], combined[:, 1]
+        """For weights (states, fields): u,X at the grid (states, points), and the flatness of v."""
+        u_X, v_X = (weights @ self._basis[:, i].T for i in (0, 1))
+        largest = [np.abs(v_X[:, part]).max(axis=1) for part in (self._under, self._beside)]
+        return u_X, largest[0] / largest[1]
 
 
-def _flatness(grid: NDArray, v_X: NDArray) -> float:
-    under, beside = np.abs(grid) <= 0.9, np.abs(grid) >= 1.1
-    return float(np.abs(v_X[under]).max() / np.abs(v_X[beside]).max())
+@dataclass(frozen=True)
+class _Level:
+    """A punch at one degree, and the maps that read its contact forces."""
+
+    punch: SlidingPunch
+    recovery: ContactRecovery
+
+    def pressure(self, states: ContactStates, exact: FlatPunch) -> JacobiPressure:
+        return from_moments(states.normal @ self.recovery.moments, exact.α, exact.β)
+
+
+class _Contact:
+    """Rigid punch, pressure unknown, at one speed."""
+
+    def __init__(self, run: FiniteElementRun, c: float, degree: int) -> None:
+        self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
+        self.levels: list[_Level] = []
+        self.solves, self.factorisations, self.residual = 0, 0, 0.0
+
+    def prepare(self, g: NDArray) -> None:
+        """Raise the degree until the measured error of the outermost states is within tolerance."""
+        for degree in range(self.degree - 2, self.degree + 1):
+            self._add_level(degree)
+        probes = np.unique([g[0], g[-1]])
+        tolerance = self.run.scene.solve.tolerance
+        while self.degree < DEGREES[1] and self._estimates(probes).max() > tolerance:
+            self.degree += 1
+            self._add_level(self.degree)
+        self.slopes = None
+        self.levels[-1].punch.states(g)  # the basis is complete before its traces are taken
+        if self.run.plan.surface:
+            punch = self.levels[-1].punch
+            self.slopes = _Slopes(punch.space, punch.fields, self.run.grid)
+
+    def results(self, g: NDArray) -> dict[str, NDArray]:
+        run, level = self.run, self.levels[-1]
+        states, local = level.punch.states(g), FlatPunch(self.frame, g)
+        pressure = level.pressure(states, local)
+        exponents = level.recovery.exponents(states.normal)
+        N, μ = run.scene.punch.load, solid_of(run.scene).μ
+        data = {
+            "states/fem/K_I_left": pressure.K_I[:, 0],
+            "states/fem/K_I_right": pressure.K_I[:, 1],
+            "states/fem/alpha": exponents[:, 0],
+            "states/fem/beta": exponents[:, 1],
+            "states/fem/normal_force": states.normal.sum(axis=1) * N / 2.0,
+            "states/fem/tangential_force": states.tangential.sum(axis=1) * N / 2.0,
+            "states/fem/v0": states.v0 * N / (2.0 * μ),
+            "states/fem/estimate": self._estimates(g),
+        }
+        if self.slopes:
+            u_X, flatness = self.slopes.of(states.weights)
+            σ_YY = pressure.σ_YY(run.grid)
+            data |= {
+                "states/fem/slope_under_punch": flatness,
+                "surface/fem/sigma_YY": σ_YY,
+                "surface/fem/sigma_YY_raw": states.normal @ level.recovery.raw,
+                "surface/fem/sigma_XX": σ_XX_on_surface(self.frame.κ, u_X, σ_YY),
+            }
+        return data
+
+    def record(self) -> dict[str, float]:
+        for level in self.levels:
+            self._count(level.punch)
+        space = self.levels[-1].punch.space
+        return {
+            "cells": space.cells,
+            "unknowns": space.size,
+            "degree": space.degree,
+            "factorisations": self.factorisations,
+            "back_substitutions": self.solves,
+            "largest_residual": self.residual,
+        }
+
+    def destroy(self) -> None:
+        for level in self.levels:
+            level.punch.destroy()
+
+    def _add_level(self, degree: int) -> None:
+        space = self.run.space(degree)
+        punch = SlidingPunch(space, self.frame.κ, self.frame.c)
+        recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.grid)
+        self.levels.append(_Level(punch, recovery))
+        if len(self.levels) > 3:
+            old = self.levels.pop(0).punch
+            self._count(old)
+            old.destroy()
+
+    def _count(self, punch: SlidingPunch) -> None:
+        self.factorisations += 1
+        self.solves += punch.factor.solves
+        self.residual = max(self.residual, punch.factor.largest_residual)
+
+    def _estimates(self, g: NDArray) -> NDArray[np.float64]:
+        """Measured relative error of K_I and of the pressure's moments, (states,)."""
+        quantities = []
+        for level in self.levels:
+            states = level.punch.states(g)
+            local = FlatPunch(self.frame, g)
+            K_I = level.pressure(states, local).K_I
+            moments = states.normal @ level.recovery.moments[:, 1:6]
+            quantities.append(np.column_stack([K_I * np.pi, moments / 2.0]))
+        scene = self.run.scene
+        return extrapolated(*quantities) + truncation(scene.solve.mesh, scene.solve.tolerance) * np.abs(g)
+
+
+class _Traction:
+    """σ_YY put in, σ_XY = g σ_YY, at one speed."""
+
+    def __init__(self, run: FiniteElementRun, c: float, degree: int) -> None:
+        self.run, self.frame = run, MovingFrame(run.κ, c)
+        self.loaded = LoadedHalfPlane(run.space(degree), self.frame.κ, self.frame.c)
+        self.given = run.scene.solve.pressure
+        self.column: dict[float, int] = {}
+
+    def prepare(self, g: NDArray) -> None:
+        """Solve for every load; a pressure of the user's own is one load for every g."""
+        for value in g if self.given == "closed_form" else [0.0]:
+            self.column[value] = len(self.loaded.fields)
+            self.loaded.load(self._load(value))
+        self.slopes = None
+        if self.run.plan.surface:
+            self.slopes = _Slopes(self.loaded.space, self.loaded.fields, self.run.grid)
+
+    def results(self, g: NDArray) -> dict[str, NDArray]:
+        run, N = self.run, self.run.scene.punch.load
+        columns = np.array([self.column[self._key(value)] for value in g])
+        normal = np.array(self.loaded.resultants)[columns // 2] * N / 2.0
+        data = {"states/fem/normal_force": normal, "states/fem/tangential_force": g * normal}
+        if self.slopes:
+            rows = np.arange(len(g))
+            weights = np.zeros((len(g), len(self.loaded.fields)))
+            weights[rows, columns], weights[rows, columns + 1] = 1.0, g
+            u_X, flatness = self.slopes.of(weights)
+            inside = np.abs(run.grid) < 1.0
+            r = run.grid[inside]
+            σ_YY = np.full((len(g), len(run.grid)), np.nan)
+            σ_YY[:, inside] = [self._load(self._key(value))(1.0 + r, 1.0 - r) for value in g]
+            data |= {
+                "states/fem/slope_under_punch": flatness,
+                "surface/fem/sigma_YY": σ_YY,
+                "surface/fem/sigma_XX": σ_XX_on_surface(self.frame.κ, u_X, σ_YY),
+            }
+        return data
+
+    def record(self) -> dict[str, float]:
+        space, factor = self.loaded.space, self.loaded.factor
+        return {
+            "cells": space.cells,
+            "unknowns": space.size,
+            "degree": space.degree,
+            "factorisations": 1,
+            "back_substitutions": factor.solves,
+            "largest_residual": factor.largest_residual,
+        }
+
+    def destroy(self) -> None:
+        self.loaded.destroy()
+
+    def _key(self, g: float) -> float:
+        return g if self.given == "closed_form" else 0.0
+
+    def _load(self, g: float) -> Callable[[NDArray, NDArray], NDArray]:
+        if self.given == "closed_form":
+            return FlatPunch(self.frame, g).σ_YY_by_distance
+        X, σ = np.array(self.given).T
+        return lambda left, right: np.interp(np.where(left < right, left - 1.0, 1.0 - right), X, σ)
+
+
+def datasets(plan: Plan, mode: str, points: int) -> dict[str, tuple[int, ...]]:
+    """Shape of a state's entry in every dataset that chunks will hold."""
+    names: list[Any] = ["normal_force", "tangential_force"]
+    if mode == "contact":
+        names += ["K_I_left", "K_I_right", "alpha", "beta", "v0", "estimate"]
+    surfaces = []
+    if plan.surface:
+        names.append("slope_under_punch")
+        surfaces = ["sigma_YY", "sigma_XX"] + ["sigma_YY_raw"] * (mode == "contact")
+    shapes: dict[str, tuple[int, ...]] = {f"states/fem/{name}": () for name in names}
+    return shapes | {f"surface/fem/{name}": (points,) for name in surfaces}

@@ -81,17 +81,18 @@ def reproduce(folder: Path, progress: Callable[[str], None]) -> bool:
     """Write the study's archive, tables and figures into ``folder``; True where all agrees."""
     study = scenes.read(_SCENES / "study.toml")
     progress("the study's states")
-    data, attributes = compute(study, progress)
     if not ranks.is_root():
+        compute(study)
         return True  # the verdict is rank 0's
-    progress("friction loops")
-    loops, loop_attributes = compute(scenes.read(_SCENES / "loops.toml"), progress)
-
     from postprocess import archive
 
     folder.mkdir(parents=True, exist_ok=True)
-    archive.write(folder / "study.h5", data, attributes)
-    archive.write(folder / "loops.h5", loops, loop_attributes)
+    results = []
+    for name, scene in (("study.h5", study), ("loops.h5", scenes.read(_SCENES / "loops.toml"))):
+        with archive.Writer(folder / name) as writer:
+            writer.finish(compute(scene, writer, progress))
+        results.append(archive.read(folder / name))
+    (data, attributes), (loops, _) = results
     good = _tables(folder, data, attributes, study)
     progress("figures")
     _figures(folder, data, loops)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app import ranks
 from app.errors import BadInput
 from app.scene import Scene
 from app.states import solid_of, speeds
@@ -12,6 +13,9 @@ from meshes.refine import degree, refinement, truncation
 from meshes.rings import QuadMesh, Refinement
 from solvers.materials import MovingFrame, rayleigh_speed
 
+#: Unknowns up to which a rank solves a speed alone faster than two ranks together.
+SMALL = 200_000
+
 
 @dataclass(frozen=True)
 class SpeedPlan:
@@ -19,7 +23,7 @@ class SpeedPlan:
 
     Attributes:
         c: speed over shear wave speed.
-        degree: polynomial degree.
+        degree: polynomial degree to begin with; the measured error may ask for more.
     """
 
     c: float
@@ -34,7 +38,9 @@ class Plan:
         states: number of states.
         closed_form, fem, surface: whether these are needed.
         refinement: of the one mesh all speeds share, None without finite elements.
-        speeds: finite element work by speed, each one factorisation.
+        speeds: finite element work by speed.
+        shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
+            all ranks share one mesh.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
     """
@@ -45,6 +51,7 @@ class Plan:
     surface: bool
     refinement: Refinement | None
     speeds: tuple[SpeedPlan, ...]
+    shared_speeds: bool
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
 
@@ -82,8 +89,17 @@ def make_plan(scene: Scene) -> Plan:
             )
     return Plan(
         count, closed, fem, contact and "surface" in asked, mesh, speed_plans,
+        _share_speeds(mesh, speed_plans),
         tuple(_skipped(scene, contact, closed, fem)), tuple(warnings),
     )  # fmt: skip
+
+
+def _share_speeds(mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:
+    """Small problems gain nothing from being cut in pieces; whole speeds are shared out instead."""
+    if mesh is None or ranks.size() == 1 or len(speeds) < ranks.size():
+        return False
+    cells = 2 * mesh.sectors * (2 * mesh.levels + len(mesh.columns))
+    return cells * 2 * max(speed.degree for speed in speeds) ** 2 < SMALL
 
 
 def has_closed_form(scene: Scene) -> bool:
@@ -152,7 +168,8 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
         result.append(f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds")
         result += [
             f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
-            f"{unknowns(mesh, speed.degree)} unknowns, one factorisation"
+            f"{unknowns(mesh, speed.degree)} unknowns; one factorisation serves all states, two of lower "
+            "degree measure its error"
             for speed in plan.speeds
         ]
     if plan.surface:

@@ -1,12 +1,13 @@
 """Run a scene: plan, compute, judge, archive."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app import __version__
 from app.errors import BadInput, MachineFailure
@@ -24,73 +25,130 @@ BALANCE_LIMIT = 1e-9
 #: so has about half the digits of the moments that the tolerance speaks of.
 SLOPE_FACTOR = 10.0
 
+#: States of the closed form treated at once.
+CHUNK = 1000
+
+#: What tells one state from another, and its friction.
+STATE_FIELDS = ("motion", "X_over_L", "c", "mu_c", "sigma0_over_load", "delta", "f", "g")
+
+
+class Sink(Protocol):
+    """Where results go: an archive in the making, or memory."""
+
+    def put(self, name: str, value: Any) -> None:
+        """A whole dataset."""
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        """Room for a dataset that comes by rows."""
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        """Rows of a reserved dataset."""
+
+
+class Memory(dict[str, Any]):
+    """A sink that keeps the datasets by path."""
+
+    def put(self, name: str, value: Any) -> None:
+        self[name] = value
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        self[name] = np.full(shape, np.nan)
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        self[name][rows] = values
+
 
 def compute(
-    scene: Scene, progress: Callable[[str], None] = lambda text: None
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Compute what a scene asks for.
+    scene: Scene, sink: Sink | None = None, progress: Callable[[str], None] = lambda text: None
+) -> dict[str, Any]:
+    """Compute what a scene asks for, into ``sink``.
 
-    Under MPI this is collective, and every rank returns the same.
+    Under MPI this is collective; results reach the sink of rank 0.
 
     Returns:
-        The archive's datasets by path, and its root attributes (verdict among them).
+        Root attributes of the archive, verdict among them.
 
     Raises:
         BadInput: the scene asks for what has no answer.
     """
+    sink = Memory() if sink is None else sink
     plan = make_plan(scene)
     states = enumerate_states(scene)
-    seconds: dict[str, float] = {}
-    data: dict[str, Any] = {"scene/text": scene.text}
-    for name in ("motion", "X_over_L", "c", "mu_c", "sigma0_over_load", "delta", "f", "g"):
-        data[f"states/{name}"] = getattr(states, name)
-    κ = solid_of(scene).κ
-    punches = [FlatPunch(MovingFrame(κ, c), g) for c, g in zip(states.c, states.g)]
-    data["states/alpha"] = np.array([punch.α for punch in punches])
-    data["states/beta"] = np.array([punch.β for punch in punches])
+    judge = Judge(scene)
     grid = surface_grid()
+    seconds: dict[str, float] = {}
+    sink.put("scene/text", scene.text)
+    for name in STATE_FIELDS:
+        sink.put(f"states/{name}", getattr(states, name))
+    exponents = _closed_form_of(scene, states, ("α", "β"))
+    sink.put("states/alpha", exponents[0])
+    sink.put("states/beta", exponents[1])
     if plan.surface:
-        data["surface/X_over_a"] = grid
+        sink.put("surface/X_over_a", grid)
     if plan.closed_form:
         started = perf_counter()
-        data["states/closed_form/K_I"] = np.array([punch.K_I for punch in punches])
-        if plan.surface:
-            outside = np.abs(grid) > 1.0
-            data["surface/closed_form/sigma_YY"] = np.array(
-                [np.where(outside, np.nan, punch.σ_YY(grid)) for punch in punches]
-            )
-            data["surface/closed_form/sigma_XX"] = np.array([punch.σ_XX(grid) for punch in punches])
+        _closed_form(scene, plan, states, grid, sink)
         seconds["closed form"] = perf_counter() - started
     if plan.fem:
-        seconds |= _finite_elements(scene, plan, states, grid, data, progress)
-    verdict, reasons = judge(scene, data)
-    data |= {
-        "run/done": lines(scene, plan),
-        "run/skipped": list(plan.skipped),
-        "run/steps": list(seconds),
-        "run/seconds": np.array(list(seconds.values()), dtype=float),
-    }
-    attributes = {
+        seconds |= _finite_elements(scene, plan, states, grid, sink, judge, progress)
+    sink.put("run/done", lines(scene, plan))
+    sink.put("run/skipped", list(plan.skipped))
+    sink.put("run/steps", list(seconds))
+    sink.put("run/seconds", np.array(list(seconds.values()), dtype=float))
+    verdict, reasons = judge.verdict()
+    return {
         "version": __version__,
         "scene_sha256": scene.sha256,
         "title": scene.title,
         "load": scene.punch.load,
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
+        "comparisons": json.dumps(judge.worst, ensure_ascii=False),
         "warnings": json.dumps(plan.warnings, ensure_ascii=False),
     }
-    return data, attributes
+
+
+def _punches(scene: Scene, states: States) -> Iterator[tuple[slice, FlatPunch]]:
+    """Closed forms of the states, chunk by chunk; a chunk has one speed."""
+    κ = solid_of(scene).κ
+    for c in dict.fromkeys(states.c.tolist()):
+        mine = np.flatnonzero(states.c == c)
+        for first in range(mine[0], mine[-1] + 1, CHUNK):
+            rows = slice(first, min(first + CHUNK, mine[-1] + 1))
+            yield rows, FlatPunch(MovingFrame(κ, c), states.g[rows, None])
+
+
+def _closed_form_of(scene: Scene, states: States, names: tuple[str, ...]) -> list[NDArray]:
+    """Properties of the closed form, one entry a state."""
+    parts = [[getattr(punch, name)[:, 0] for name in names] for _, punch in _punches(scene, states)]
+    return [np.concatenate(column) for column in zip(*parts)]
+
+
+def _closed_form(scene: Scene, plan: Plan, states: States, grid: NDArray, sink: Sink) -> None:
+    sink.put("states/closed_form/K_I", _closed_form_of(scene, states, ("K_I",))[0])
+    if plan.surface:
+        for name in ("sigma_YY", "sigma_XX"):
+            sink.reserve(f"surface/closed_form/{name}", (len(states), len(grid)))
+        for rows, punch in _punches(scene, states):
+            for name, values in _surface_of(punch, grid).items():
+                sink.write(f"surface/closed_form/{name}", rows, values)
+
+
+def _surface_of(punch: FlatPunch, grid: NDArray) -> dict[str, NDArray]:
+    σ_YY = np.where(np.abs(grid) > 1.0, np.nan, punch.σ_YY(grid))
+    return {"sigma_YY": σ_YY, "sigma_XX": punch.σ_XX(grid)}
 
 
 def _finite_elements(
     scene: Scene,
     plan: Plan,
     states: States,
-    grid: np.ndarray,
-    data: dict[str, Any],
+    grid: NDArray,
+    sink: Sink,
+    judge: "Judge",
     progress: Callable[[str], None],
 ) -> dict[str, float]:
-    """Add the finite element datasets; returns the wall times."""
+    """Write the finite element datasets; returns the wall times."""
     started = perf_counter()
     try:
         from app import finite_elements
@@ -100,46 +158,70 @@ def _finite_elements(
             "run ./run.sh once, it installs what is missing"
         ) from error
     imports = perf_counter() - started
-    results = finite_elements.solve(scene, plan, states, grid, progress)
-    N, μ = scene.punch.load, solid_of(scene).μ
-    fem: dict[str, Any] = {
-        "normal_force": results.forces[:, 0] * N,
-        "tangential_force": results.forces[:, 1] * N,
-    }
-    if scene.solve.mode == "contact":
-        fem |= {
-            "K_I_left": results.K_I[:, 0],
-            "K_I_right": results.K_I[:, 1],
-            "alpha": results.exponents[:, 0],
-            "beta": results.exponents[:, 1],
-            "v0": results.v0 * N / (2.0 * μ),
-        }
-    if plan.surface:
-        fem["slope_under_punch"] = results.slope
-        data["surface/fem/sigma_YY"] = results.σ_YY
-        data["surface/fem/sigma_XX"] = results.σ_XX
-        if scene.solve.mode == "contact":
-            data["surface/fem/sigma_YY_raw"] = results.σ_YY_raw
-    data |= {f"states/fem/{name}": value for name, value in fem.items()}
-    data["run/fem/c"] = np.array([speed.c for speed in plan.speeds])
-    data |= {f"run/fem/{name}": value for name, value in results.counts.items()}
-    return {"import of dolfinx": imports, **results.seconds}
+    for name, shape in finite_elements.datasets(plan, scene.solve.mode, len(grid)).items():
+        sink.reserve(name, (len(states), *shape))
+    true_error = plan.closed_form and scene.solve.mode == "contact"
+    if true_error:
+        sink.reserve("states/fem/true_error", (len(states),))
+    run = finite_elements.FiniteElementRun(scene, plan, states, grid, progress)
+    κ = solid_of(scene).κ
+    for chunk in run.chunks():
+        rows = slice(chunk.start, chunk.stop)
+        data = chunk.data
+        if plan.closed_form:
+            punch = FlatPunch(MovingFrame(κ, states.c[chunk.start]), states.g[rows, None])
+            exact = {"states/closed_form/K_I": punch.K_I[:, 0], "states/g": states.g[rows]}
+            exact |= {"states/alpha": punch.α[:, 0], "states/beta": punch.β[:, 0]}
+            if plan.surface:
+                exact["surface/X_over_a"] = grid
+                for name, values in _surface_of(punch, grid).items():
+                    exact[f"surface/closed_form/{name}"] = values
+            if true_error:
+                data["states/fem/true_error"] = compare.K_I_error(data | exact)
+            judge.see(data | exact)
+        else:
+            judge.see(data | {"states/g": states.g[rows]})
+        for name, values in data.items():
+            sink.write(name, rows, values)
+    for name in finite_elements.RECORD:
+        sink.put(f"run/fem/{name}", np.array([entry[name] for entry in run.record]))
+    return {"import of dolfinx": imports, **run.seconds}
 
 
-def judge(scene: Scene, data: dict[str, Any]) -> tuple[str, list[str]]:
-    """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
-    tolerance = scene.solve.tolerance
-    limits = {compare.BALANCE: BALANCE_LIMIT, compare.K_I: tolerance}
-    if scene.solve.mode == "traction":
-        limits[compare.SLOPE] = SLOPE_FACTOR * tolerance
-    if not has_closed_form(scene):
-        limits = {}
-    judged = [c for c in compare.comparisons(data, scene.punch.load) if c.name in limits]
-    if not judged:
-        return "not judged", []
-    good = all(c.value <= limits[c.name] for c in judged)  # also fails on NaN
-    reasons = [f"{c.text}: {c.value:.1e}, at most {limits[c.name]:g}" for c in judged]
-    return "PASS" if good else "FAIL", reasons
+class Judge:
+    """Watches chunks of results and says PASS or FAIL; keeps the worst of every comparison.
+
+    Attributes:
+        worst: largest value by the comparison's text, dimensionless.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._load = scene.punch.load
+        self.worst: dict[str, float] = {}
+        tolerance = scene.solve.tolerance
+        self._limits = {compare.BALANCE: BALANCE_LIMIT, compare.K_I: tolerance}
+        self._limits[compare.ESTIMATE] = tolerance
+        if scene.solve.mode == "traction":
+            self._limits[compare.SLOPE] = SLOPE_FACTOR * tolerance
+        if not has_closed_form(scene):
+            self._limits = {}
+        self._judged: dict[str, float] = {}
+
+    def see(self, data: dict[str, Any]) -> None:
+        """Take the next chunk into account; NaN is worse than any number."""
+        for found in compare.comparisons(data, self._load):
+            value = float(np.max([self.worst.get(found.text, 0.0), found.value]))
+            self.worst[found.text] = value
+            if found.name in self._limits:
+                self._judged[found.text] = self._limits[found.name]
+
+    def verdict(self) -> tuple[str, list[str]]:
+        """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
+        if not self._judged:
+            return "not judged", []
+        good = all(self.worst[text] <= limit for text, limit in self._judged.items())
+        reasons = [f"{text}: {self.worst[text]:.1e}, at most {x:g}" for text, x in self._judged.items()]
+        return "PASS" if good else "FAIL", reasons
 
 
 def check_output(path: Path, overwrite: bool) -> None:

@@ -49,14 +49,14 @@ def speeds(scene: Scene) -> tuple[float, ...]:
         BadInput: a speed given in m/s is not subsonic.
     """
     if scene.motion.c is not None:
-        return scene.motion.c
+        return tuple(dict.fromkeys(scene.motion.c))
     c_s = solid_of(scene).c_s
     for speed in scene.motion.speed or ():
         if speed >= c_s:
             raise BadInput(
                 f"motion.speed = {speed:g} m/s: expected less than the shear wave speed {c_s:.6g} m/s"
             )
-    return tuple(speed / c_s for speed in scene.motion.speed or ())
+    return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 
 def enumerate_states(scene: Scene) -> States:

@@ -43,20 +43,20 @@ def degree(mesh: str, tolerance: float, rayleigh: float) -> int:
         rayleigh: Rayleigh function over its value at rest, in (0, 1]; errors grow as it falls.
     """
     digits = -log(_of_cells(mesh, tolerance) * rayleigh) / log(10.0)
-    return min(max(ceil(1.8 + digits), DEGREES[0]), DEGREES[1])
+    return min(max(ceil(1.0 + digits), DEGREES[0]), DEGREES[1])
 
 
 def outer_ξ(mesh: str, tolerance: float) -> float:
     """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
     if mesh == "box":
         return log(2.0 * BOX_DEPTH)
-    # Truncation at radius R costs 0.3 a/R in the moments; a tenth of the tolerance is left to it.
-    return log(2.0 * 3.0 / tolerance) + 1.0
+    # Truncation at radius R costs about a/R in K_I; a hundredth of the tolerance is left to it.
+    return log(2.0 * 100.0 / tolerance)
 
 
 def truncation(mesh: str, tolerance: float) -> float:
-    """Estimated relative error of the pressure's moments from the finite outer radius."""
-    return 0.3 * 2.0 * exp(-outer_ξ(mesh, tolerance))
+    """Estimated relative error of K_I from the finite outer radius, times σ_XY/σ_YY: a/R."""
+    return 2.0 * exp(-outer_ξ(mesh, tolerance))
 
 
 def _of_cells(mesh: str, tolerance: float) -> float:

@@ -5,12 +5,16 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from postprocess.errors import UnreadableArchive, UnwritableArchive
 from postprocess.fields import FIELDS
@@ -19,64 +23,100 @@ from postprocess.fields import FIELDS
 SCHEMA_VERSION = 1
 
 
-def write(path: Path, data: dict[str, Any], attributes: dict[str, Any]) -> None:
-    """Write an archive atomically; an earlier file of that name stays until the new one is whole.
+class Writer:
+    """An archive in the making; use it as a context manager and end with :meth:`finish`.
+
+    What is written can be larger than memory: datasets are reserved, then filled row by row. Without
+    ``finish``, or after an error, nothing is left and an earlier file of that name stays.
 
     Args:
         path: final name.
-        data: arrays, lists of text or text by path in the archive; each path is in ``FIELDS``.
-        attributes: of the root, beside those every archive has.
 
     Raises:
         UnwritableArchive: the file system refused, or what was read back differs.
-        KeyError: a path is not in ``FIELDS``.
+        KeyError: the path of a dataset is not in ``FIELDS``.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        try:
-            with h5py.File(temporary, "w", libver=("earliest", "v110")) as file:
-                for name, value in data.items():
-                    _dataset(file, name, value)
-                created = datetime.now(UTC).isoformat(timespec="seconds")
-                file.attrs.update(
-                    program="galinx", schema_version=SCHEMA_VERSION, created=created, **attributes
-                )
-                file.attrs["complete"] = True
-            _compare(temporary, data)
-            _synchronise(temporary)
-            os.replace(temporary, path)
-            _synchronise(path.parent)
-        except OSError as error:
-            reason = os.strerror(error.errno) if error.errno else str(error)
-            raise UnwritableArchive(f"cannot write {path}: {reason}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._temporary = path.with_name(f".{path.name}.{os.getpid()}.partial")
+        self._written: list[tuple[str, slice, int]] = []
 
-def _dataset(file: h5py.File, name: str, value: Any) -> None:
-    unit, long_name = FIELDS[name]
-    if isinstance(value, str):
-        dataset = file.create_dataset(name, data=value, dtype=h5py.string_dtype())
-    else:
-        array = np.asarray(value)
-        if array.dtype.kind == "U" or (array.size == 0 and array.dtype.kind != "i"):
-            dataset = file.create_dataset(name, data=list(value), dtype=h5py.string_dtype())
-        else:
+    def __enter__(self) -> "Writer":
+        with self._told():
+            # No lock: MPI's helper process would inherit it and keep it when the file is closed.
+            self._file = h5py.File(self._temporary, "w", libver=("earliest", "v110"), locking=False)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with suppress(OSError, RuntimeError):  # a full disk refuses; the file is given up anyway
+            self._file.close()
+        self._temporary.unlink(missing_ok=True)
+
+    def put(self, name: str, value: Any) -> None:
+        """Write a whole dataset: numbers, texts or one text."""
+        with self._told():
+            text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind == "U"
+            if text:
+                data = value if isinstance(value, str) else list(value)
+                dataset = self._file.create_dataset(name, data=data, dtype=h5py.string_dtype())
+                self._describe(name, dataset)
+            else:
+                value = np.asarray(value)
+                self.reserve(name, value.shape, value.dtype)
+                self.write(name, slice(0, len(value)), value)
+
+    def reserve(self, name: str, shape: tuple[int, ...], dtype: Any = float) -> None:
+        """Make room for a dataset that is written by rows."""
+        with self._told():
+            rows = max(1, min(shape[0], 2**17 // max(1, int(np.prod(shape[1:])))))
             # The checksum is what makes a flipped bit seen.
-            dataset = file.create_dataset(name, data=array, chunks=True, fletcher32=True)
-    dataset.attrs["units"], dataset.attrs["long_name"] = unit, long_name
-
-
-def _compare(path: Path, data: dict[str, Any]) -> None:
-    """A full disk can leave a file that opens and lists its datasets: compare the content."""
-    back, _ = read(path)
-    for name, value in data.items():
-        written, found = np.asarray(value), np.asarray(back[name])
-        numbers = written.dtype.kind == "f" and written.size > 0
-        if not np.array_equal(found, written, equal_nan=numbers):
-            raise UnwritableArchive(
-                f"cannot write {path}: {name} reads back differently; is the disk full?"
+            dataset = self._file.create_dataset(
+                name, shape, dtype, chunks=(rows, *shape[1:]), fletcher32=True
             )
+            self._describe(name, dataset)
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        """Write rows of a reserved dataset."""
+        with self._told():
+            self._file[name][rows] = values
+            self._written.append((name, rows, _checksum(self._file[name].dtype, values)))
+
+    def finish(self, attributes: dict[str, Any]) -> None:
+        """Complete the archive and give it its name; ``attributes`` are the root's own."""
+        with self._told():
+            created = datetime.now(UTC).isoformat(timespec="seconds")
+            common = {"program": "galinx", "schema_version": SCHEMA_VERSION, "created": created}
+            self._file.attrs.update(common | attributes | {"complete": True})
+            self._file.close()
+            self._compare()
+            _synchronise(self._temporary)
+            os.replace(self._temporary, self.path)
+            _synchronise(self.path.parent)
+
+    def _describe(self, name: str, dataset: h5py.Dataset) -> None:
+        dataset.attrs["units"], dataset.attrs["long_name"] = FIELDS[name]
+
+    def _compare(self) -> None:
+        """A full disk can leave a file that opens and lists its datasets: compare the content."""
+        with h5py.File(self._temporary, "r", locking=False) as file:
+            for name, rows, checksum in self._written:
+                if _checksum(file[name].dtype, file[name][rows]) != checksum:
+                    raise UnwritableArchive(
+                        f"cannot write {self.path}: {name} reads back differently; is the disk full?"
+                    )
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, RuntimeError) as error:
+            reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
+            raise UnwritableArchive(f"cannot write {self.path}: {reason}") from error
+
+
+def _checksum(dtype: np.dtype, values: NDArray) -> int:
+    return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).tobytes())
 
 
 def _synchronise(path: Path) -> None:
@@ -87,8 +127,12 @@ def _synchronise(path: Path) -> None:
         os.close(handle)
 
 
-def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Everything in an archive.
+def read(path: Path, surfaces: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What an archive holds.
+
+    Args:
+        path: the file.
+        surfaces: also the surface stresses, which can be large.
 
     Returns:
         Arrays and text by path, and the root's attributes.
@@ -109,7 +153,11 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
                     f"{path} has schema version {attributes['schema_version']}, this program reads up "
                     f"to {SCHEMA_VERSION}; install a newer one"
                 )
-            file.visititems(lambda name, item: _collect(data, name, item))
+            for group in file:
+                if surfaces or group != "surface":
+                    file[group].visititems(
+                        lambda name, item, group=group: _collect(data, f"{group}/{name}", item)
+                    )
     except (OSError, RuntimeError, KeyError) as error:
         raise UnreadableArchive(
             f"{path} is not a whole HDF5 file ({error}); it is damaged or was cut short, run again"

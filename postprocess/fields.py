@@ -21,6 +21,8 @@ FIELDS: dict[str, tuple[str, str]] = {
     "states/fem/normal_force": ("N/m", "resultant of the nodal normal forces under the punch"),
     "states/fem/tangential_force": ("N/m", "resultant of the nodal tangential forces under the punch"),
     "states/fem/v0": ("m", "indentation relative to the far boundary"),
+    "states/fem/estimate": ("1", "estimated relative error of K_I and moments, no closed form used"),
+    "states/fem/true_error": ("1", "relative error of K_I against the closed form, larger end"),
     "states/fem/slope_under_punch": (
         "1",
         "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",

@@ -4,6 +4,8 @@ Nodal forces tested with smooth functions give moments of the pressure that conv
 rate of the displacement. So K_I and the smooth pressure are taken from Jacobi moments, whose weight
 uses the exponents of the local edge analysis; the exponents reported for the finite elements are
 fitted from the raw pressure, which uses none.
+
+All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
 """
 
 from dataclasses import dataclass
@@ -13,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BarycentricInterpolator
 from scipy.linalg import solveh_banded
-from scipy.special import eval_jacobi, gammaln
+from scipy.special import gammaln
 
 #: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
 #: truncation or another profile adds, and the highest say how well they are resolved.
@@ -22,134 +24,165 @@ MOMENTS = 9
 
 @dataclass(frozen=True)
 class JacobiPressure:
-    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ b_n P_n^(α,β)(r).
+    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r) of several states.
 
     Attributes:
-        α, β: exponents at X = a and X = -a.
-        b: coefficients, dimensionless, (``MOMENTS``,).
+        α, β: exponents at X = a and X = -a, (states,).
+        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, ``MOMENTS``).
     """
 
-    α: float
-    β: float
-    b: NDArray[np.float64]
+    α: NDArray[np.float64]
+    β: NDArray[np.float64]
+    c: NDArray[np.float64]
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r = X/a; NaN outside (-1, 1)."""
+        """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
         r = np.asarray(r, dtype=float)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            weight = (1.0 - r) ** self.α * (1.0 + r) ** self.β
-        return np.where(np.abs(r) < 1.0, weight * self._series(r), np.nan)
+        inside = np.abs(r) < 1.0
+        left, right = np.log1p(r[inside]), np.log1p(-r[inside])
+        result = np.full((len(self.c), len(r)), np.nan)
+        weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
+        result[:, inside] = weight * (self.c @ chebyshev(r[inside]).T)
+        return result
 
     @property
-    def K_I(self) -> tuple[float, float]:
-        """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57."""
-        left, right = -0.5 * self._series(np.array([-1.0, 1.0]))
-        return float(left), float(right)
-
-    def _series(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
-        n = np.arange(len(self.b))
-        return eval_jacobi(n, self.α, self.β, r[..., None]) @ self.b
+    def K_I(self) -> NDArray[np.float64]:
+        """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57: (states, 2)."""
+        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0])).T
 
 
-def from_moments(X: NDArray, forces: NDArray, α: float, β: float) -> JacobiPressure:
-    """Pressure whose Jacobi moments are those of the nodal forces.
+def chebyshev(r: NDArray) -> NDArray[np.float64]:
+    """T_0 … T_8 at r in [-1, 1]: (len(r), ``MOMENTS``)."""
+    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), MOMENTS - 1)
+
+
+def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
+    """Pressure that has the given moments.
 
     Args:
-        X: positions of the contact nodes over a, (n,).
-        forces: consistent nodal forces over N/2, (n,).
-        α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1.
+        moments: ∫ σ_YY T_k dr of each state, (states, ``MOMENTS``).
+        α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
     """
-    n = np.arange(MOMENTS)
-    moments = forces @ eval_jacobi(n, α, β, np.clip(X, -1.0, 1.0)[:, None])
-    return JacobiPressure(α, β, moments / _jacobi_norms(n, α, β))
+    P = jacobi_in_chebyshev(α, β)
+    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β)
+    return JacobiPressure(α, β, np.einsum("sn,snk->sk", b, P))
 
 
-def _jacobi_norms(n: NDArray, α: float, β: float) -> NDArray[np.float64]:
-    """∫ (1-r)^α (1+r)^β P_n² dr for α + β = -1: Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), π/sin for n = 0."""
-    safe = np.maximum(n, 1)
-    logs = gammaln(safe + α + 1.0) + gammaln(safe + β + 1.0) - gammaln(safe + 1.0) - gammaln(safe)
-    return np.where(n == 0, np.pi / np.sin(np.pi * (1.0 + α)), np.exp(logs) / (2.0 * safe))
+def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    """Chebyshev coefficients of P_n^(α,β), α + β = -1, by the three-term recurrence: (states, n, k)."""
+    P = np.zeros((len(α), MOMENTS, MOMENTS))
+    P[:, 0, 0] = 1.0
+    P[:, 1, 0], P[:, 1, 1] = α + 0.5, 0.5
+    for n in range(1, MOMENTS - 1):
+        last = P[:, n]
+        times_r = np.zeros_like(last)  # r T_k = (T_{k+1} + T_{|k-1|})/2
+        times_r[:, 1:] += last[:, :-1] / 2.0
+        times_r[:, :-1] += last[:, 1:] / 2.0
+        times_r[:, 1] += last[:, 0] / 2.0
+        leading = (2 * n + 1) * (2 * n - 1) * times_r + (β - α)[:, None] * last
+        trailing = ((n + α) * (n + β) * (2 * n + 1) / n)[:, None] * P[:, n - 1]
+        P[:, n + 1] = (leading - trailing) / ((n + 1) * (2 * n - 1))
+    return P
+
+
+def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    """∫ (1-r)^α (1+r)^β P_n² dr for α + β = -1, (states, n).
+
+    Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
+    """
+    n = np.arange(1, MOMENTS)
+    a, b = α[:, None], β[:, None]
+    logs = gammaln(n + a + 1.0) + gammaln(n + b + 1.0) - gammaln(n + 1.0) - gammaln(n)
+    return np.concatenate([np.pi / np.sin(np.pi * (1.0 + a)), np.exp(logs) / (2.0 * n)], axis=1)
 
 
 @dataclass(frozen=True)
-class RawPressure:
-    """Piecewise polynomial density, per surface coordinate s, that has the given nodal forces.
+class ContactRecovery:
+    """Linear maps from nodal forces to what is read off them; they depend on the mesh alone.
 
     Attributes:
-        s: nodes of each facet, (F, p+1).
-        density: σ_YY dX/ds there, over N/(2a), (F, p+1).
+        moments: to ∫ σ_YY T_k dr, (nodes, ``MOMENTS``).
+        raw: to the raw pressure at the given positions, NaN outside the contact, (nodes, points).
+        edges: at X = a and X = -a: distances over a, (q,), and the map to the raw pressure there.
     """
 
-    s: NDArray[np.float64]
-    density: NDArray[np.float64]
+    moments: NDArray[np.float64]
+    raw: NDArray[np.float64]
+    edges: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]
 
-    def σ_YY(self, r: NDArray, plane: Any) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r = X/a; NaN outside (-1, 1)."""
-        s = plane.surface_coordinate(r)
-        facet = np.clip(np.searchsorted(self.s[:, 0], s, side="right") - 1, 0, len(self.s) - 1)
-        start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
-        values = np.einsum("ni,ni->n", self.basis((s - start) / length), self.density[facet])
-        inside = np.abs(r) < 1.0
-        return np.where(inside, values / np.where(inside, plane.surface_stretch(s), 1.0), np.nan)
-
-    def basis(self, t: NDArray) -> NDArray[np.float64]:
-        """Lagrange polynomials of a facet at t in [0, 1], (len(t), p+1)."""
-        nodes = (self.s[0] - self.s[0, 0]) / (self.s[0, -1] - self.s[0, 0])
-        return BarycentricInterpolator(nodes, np.eye(len(nodes)))(t)
+    def exponents(self, forces: NDArray) -> NDArray[np.float64]:
+        """Exponents at X = a and X = -a fitted from the raw pressure: (states, 2)."""
+        return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
 
 
-def raw_pressure(s: NDArray, forces: NDArray, degree: int) -> RawPressure:
-    """Solve the contact's mass matrix for the pressure; no exponent is assumed.
+def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
+    """Exponent of σ ~ d^α by least squares on the logarithms; NaN where the sign changes.
 
     Args:
-        s: surface coordinates of the contact nodes in order, (F p + 1,).
-        forces: their consistent nodal forces over N/2.
+        d: distances, (q,).
+        σ: stresses, (states, q).
+    """
+    x = np.log(d) - np.log(d).mean()
+    one_sign = np.all(σ < 0.0, axis=1) | np.all(σ > 0.0, axis=1)
+    slopes = np.log(np.where(one_sign[:, None], np.abs(σ), 1.0)) @ (x / (x @ x))
+    return np.where(one_sign, slopes, np.nan)
+
+
+def contact_recovery(
+    s: NDArray, degree: int, plane: Any, r: NDArray, farthest: float = 1e-3
+) -> ContactRecovery:
+    """Maps for the contact nodes of a mesh.
+
+    The raw pressure is the piecewise polynomial that has the nodal forces: the contact's mass matrix is
+    solved, no exponent is assumed. The exponents are fitted at its Gauss points, where a polynomial
+    is best at what it cannot represent.
+
+    Args:
+        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-    """
-    facets = (len(s) - 1) // degree
-    index = np.arange(facets)[:, None] * degree + np.arange(degree + 1)
-    t, w = np.polynomial.legendre.leggauss(degree + 1)
-    nodes = s[index[0]]
-    reference = (nodes - nodes[0]) / (nodes[-1] - nodes[0])
-    basis = BarycentricInterpolator(reference, np.eye(degree + 1))((t + 1.0) / 2.0)
-    unit_mass = basis.T * (w / 2.0) @ basis
-    banded = np.zeros((degree + 1, len(s)))
-    for nodes in index:
-        mass = unit_mass * (s[nodes[-1]] - s[nodes[0]])
-        for k in range(degree + 1):
-            banded[degree - k, nodes[k:]] += np.diagonal(mass, k)
-    return RawPressure(s[index], solveh_banded(banded, forces)[index])
-
-
-def fitted_exponent(d: NDArray, σ: NDArray) -> float:
-    """Exponent of σ ~ d^α by least squares on the logarithms; NaN if the pressure changes sign."""
-    if len(d) < 2 or not (np.all(σ < 0.0) or np.all(σ > 0.0)):
-        return float("nan")
-    return float(np.polyfit(np.log(d), np.log(np.abs(σ)), 1)[0])
-
-
-def edge_exponents(raw: RawPressure, plane: Any, farthest: float = 1e-3) -> tuple[float, float]:
-    """Exponents at X = a and X = -a fitted from the raw pressure next to the edges.
-
-    Args:
-        raw: pressure of the contact.
         plane: the mesh's plane, see :class:`solvers.fem.plane.Plane`.
-        farthest: of the facets within this distance of the edge, over a, the outer half is used, two
-            facets at least: the innermost cannot follow the singularity and disturb their
-            neighbours, and beyond this distance the pressure's second term biases the exponent.
+        r: positions X/a of the raw pressure.
+        farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
+            two at least: the innermost cannot follow the singularity and disturb their neighbours,
+            and beyond this distance the pressure's second term biases the exponent.
     """
-    left, right = raw.s[0, 0], raw.s[-1, -1]
-    # Gauss points, where a polynomial fits best what it cannot represent.
-    t, _ = np.polynomial.legendre.leggauss(raw.s.shape[1] - 1)
-    t = (t + 1.0) / 2.0
-    length = (raw.s[:, -1] - raw.s[:, 0])[:, None]
-    from_left = raw.s[:, :1] - left + length * t
-    from_right = right - raw.s[:, -1:] + length * (1.0 - t)
-    d_left, d_right, stretch = plane.under_punch(from_left, from_right)
-    σ = raw.density @ raw.basis(t).T / stretch
-    exponents = []
-    for d, stress in ((d_right[::-1], σ[::-1]), (d_left, σ)):  # facets from the edge inwards
+    facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
+    density = _density_of_forces(s, facets, degree)  # symmetric
+    start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
+    nodes = (s[facets[0]] - start[0]) / length[0]
+    basis = BarycentricInterpolator(nodes, np.eye(degree + 1))
+
+    inside = np.abs(r) < 1.0
+    at = plane.surface_coordinate(r[inside])
+    facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
+    values = basis((at - start[facet]) / length[facet])
+    raw = np.full((len(s), len(r)), np.nan)
+    raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
+    raw[:, inside] /= plane.surface_stretch(at)
+
+    t = (np.polynomial.legendre.leggauss(degree)[0] + 1.0) / 2.0
+    d_left, d_right, stretch = plane.under_punch(
+        start[:, None] - s[0] + length[:, None] * t,
+        s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
+    )
+    at_gauss = density[:, facets] @ basis(t).T / stretch
+    edges = []
+    for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
         used = slice(min(last // 2, last - 2), last)
-        exponents.append(fitted_exponent(d[used].ravel(), stress[used].ravel()))
-    return exponents[0], exponents[1]
+        edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
+    return ContactRecovery(chebyshev(plane.surface_position(s)), raw, tuple(edges))
+
+
+def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:
+    """Inverse of the contact's mass matrix per surface coordinate: forces to σ_YY dX/ds at nodes."""
+    t, w = np.polynomial.legendre.leggauss(degree + 1)
+    nodes = (s[facets[0]] - s[0]) / (s[facets[0, -1]] - s[0])
+    basis = BarycentricInterpolator(nodes, np.eye(degree + 1))((t + 1.0) / 2.0)
+    unit_mass = basis.T * (w / 2.0) @ basis
+    banded = np.zeros((degree + 1, len(s)))
+    for row in facets:
+        mass = unit_mass * (s[row[-1]] - s[row[0]])
+        for k in range(degree + 1):
+            banded[degree - k, row[k:]] += np.diagonal(mass, k)
+    return solveh_banded(banded, np.eye(len(s)))

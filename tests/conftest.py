@@ -31,14 +31,15 @@ def tables_run():
 
 def run_scene(name, *changes):
     """Compute a scene of scenes/, its text changed by (old, new) pairs first."""
-    from app.run import compute
+    from app.run import Memory, compute
     from app.scene import parse
 
     text = (HOME / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
     for old, new in changes:
         assert old in text, f"{old!r} is not in scenes/{name}.toml"
         text = text.replace(old, new)
-    return compute(parse(text))
+    data = Memory()
+    return data, compute(parse(text), data)
 
 
 def command(*arguments, cwd=HOME):

@@ -20,6 +20,7 @@ def archive(**changes):
         "states/fem/K_I_right": np.array([0.3]),
         "states/fem/alpha": np.array([-0.4]),
         "states/fem/beta": np.array([-0.6]),
+        "states/fem/estimate": np.array([0.0]),
         "states/fem/slope_under_punch": np.array([0.0]),
         "surface/X_over_a": X,
         "surface/closed_form/sigma_XX": EXACT,
@@ -33,7 +34,7 @@ def archive(**changes):
 
 def test_what_agrees_is_zero():
     found = archive()
-    assert len(found) == 6 and max(found.values()) == 0.0
+    assert len(found) == 7 and max(found.values()) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -43,6 +44,7 @@ def test_what_agrees_is_zero():
         ("states/fem/tangential_force", [5.0], compare.BALANCE, 1.0),
         ("states/fem/K_I_left", [0.27], compare.K_I, 0.1),
         ("states/fem/K_I_right", [0.33], compare.K_I, 0.1),
+        ("states/fem/estimate", [0.1], compare.ESTIMATE, 0.1),
         ("states/fem/alpha", [-0.38], compare.EXPONENTS, 0.02),
         ("states/fem/beta", [-0.62], compare.EXPONENTS, 0.02),
         ("states/fem/slope_under_punch", [0.1], compare.SLOPE, 0.1),

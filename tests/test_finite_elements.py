@@ -48,10 +48,41 @@ def test_forces_balance(tables_run):
     np.testing.assert_allclose(data["states/fem/tangential_force"], -55.3e3 * data["states/g"], rtol=1e-9)
 
 
-def test_one_factorisation_a_speed(tables_run):
+def test_work_does_not_grow_with_the_number_of_states(tables_run):
+    """A factorisation for the results and two of lower degree that measure the error, at each speed."""
+    few, _ = tables_run
+    positions = ", ".join(f"{x:g}" for x in np.linspace(0.0, 1.0, 200))
+    many, _ = run_scene("tables4_5", ("X_over_L = [0.2, 0.8]", f"X_over_L = [{positions}]"))
+    assert len(many["states/f"]) == 1200
+    for data in (few, many):
+        assert list(data["run/fem/factorisations"]) == [3, 3]
+        assert data["run/fem/back_substitutions"].max() < 75
+
+
+def test_states_at_once_are_the_states_one_by_one(tables_run):
     data, _ = tables_run
-    assert list(data["run/fem/factorisations"]) == [1, 1]
-    assert data["run/fem/back_substitutions"].max() < 30
+    one, _ = run_scene(
+        "tables4_5",
+        ("X_over_L = [0.2, 0.8]", "X_over_L = [0.8]"),
+        ("c = [4.786e-7, 0.6]", "c = [0.6]"),
+        ('strokes = ["forward", "backward", "forward"]', 'strokes = ["forward"]'),
+    )
+    for name in ("states/fem/K_I_left", "states/fem/v0", "surface/fem/sigma_XX"):
+        np.testing.assert_allclose(one[name][0], data[name][7], rtol=1e-8)
+
+
+@pytest.mark.parametrize("c", [0.0, 0.9])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-8])
+def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
+    data, _ = run_scene(
+        "tables4_5",
+        ("c = [4.786e-7, 0.6]", f"c = [{c}]"),
+        ("tolerance = 1e-6", f"tolerance = {tolerance}"),
+        ("mu_c = 0.7", "mu_c = 1.0"),
+    )
+    true, estimate = data["states/fem/true_error"].max(), data["states/fem/estimate"].max()
+    assert true <= 2.0 * tolerance and estimate <= tolerance
+    assert true <= 10.0 * estimate
 
 
 def test_high_speed():
@@ -125,7 +156,7 @@ def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
     kind = MESHES[mesh]
     space = Space(*distribute(kind.build(refinement), MPI.COMM_WORLD), TAGS, kind.plane, degree)
     solver = SlidingPunch(space, 2.0, c)
-    state = solver.state(g)
+    state = solver.states(g)
     X = kind.plane.surface_position(space.contact.s)
     exact = FlatPunch(MovingFrame(2.0, c), g)
     t, w = np.polynomial.legendre.leggauss(200)
@@ -139,7 +170,7 @@ def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
         moment += np.sum(
             w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near)
         )
-        errors.append(abs(state.normal @ eval_chebyt(n, X) - moment) / 2.0)
+        errors.append(abs(state.normal[0] @ eval_chebyt(n, X) - moment) / 2.0)
     solver.destroy()
     return max(errors)
 

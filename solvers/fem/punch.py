@@ -13,7 +13,7 @@ The Krylov space of (T, R₀) serves every g at that speed.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
 from solvers.errors import SolveError
@@ -26,22 +26,22 @@ KRYLOV_LIMIT = 120
 
 
 @dataclass(frozen=True)
-class ContactState:
-    """One friction state; lengths over a, stresses over N/(2a), so forces over N/2.
+class ContactStates:
+    """Several friction states; lengths over a, stresses over N/(2a), so forces over N/2.
 
     Attributes:
-        g: σ_XY/σ_YY under the punch.
-        weights: of the basis fields, (k,).
-        normal: consistent nodal forces of σ_YY at the contact nodes, (n,).
+        g: σ_XY/σ_YY under the punch, (states,).
+        weights: of the basis fields, (states, fields).
+        normal: consistent nodal forces of σ_YY at the contact nodes, (states, nodes).
         tangential: the same of σ_XY, read off the assembled equations.
-        v0: indentation relative to the far boundary over N/(2μ).
+        v0: indentation relative to the far boundary over N/(2μ), (states,).
     """
 
-    g: float
+    g: NDArray[np.float64]
     weights: NDArray[np.float64]
     normal: NDArray[np.float64]
     tangential: NDArray[np.float64]
-    v0: float
+    v0: NDArray[np.float64]
 
 
 class SlidingPunch:
@@ -68,78 +68,72 @@ class SlidingPunch:
         self.factor = Factor(A)
         #: Displacements of the basis: first the frictionless punch, then the tangential loads.
         self.fields = [self.factor.solve(b)]
-        self._R0 = self._reactions(self.fields[0])[1]
-        self._size = np.linalg.norm(self._R0)
-        self._V = [self._R0 / self._size]
+        self._forces = [self._reactions(self.fields[0])]
+        R0 = self._forces[0][1]
+        self._size = np.linalg.norm(R0)
+        self._V = [R0 / self._size]
         self._H = np.zeros((KRYLOV_LIMIT + 1, KRYLOV_LIMIT))
-        self._TV: list[NDArray] = []
-        self._done = False
+        self._complete = False
         b.destroy(), held.destroy()
 
-    def state(self, g: float) -> ContactState:
-        """The state with σ_XY = g σ_YY under the punch, the load ∫σ_YY = -N."""
+    def states(self, g: ArrayLike) -> ContactStates:
+        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N."""
+        g = np.atleast_1d(np.asarray(g, dtype=float))
         y = self._contact_forces(g)
-        normal = self._R0 + g * (np.array(self._TV).T @ y if len(y) else 0.0)
-        v0 = -2.0 / normal.sum()  # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        weights = np.zeros(len(self.fields))
-        weights[0] = v0
-        weights[1 : 1 + len(y)] = v0 * g * y
-        u = self._combine(weights)
-        tangential, normal = self._reactions(u)
-        u.destroy()
-        return ContactState(g, weights, normal, tangential, v0)
+        weights = np.zeros((len(g), len(self.fields)))
+        weights[:, 0] = 1.0
+        weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
+        tangential, normal = np.einsum("sk,kin->isn", weights, np.array(self._forces))
+        v0 = -2.0 / normal.sum(axis=1)  # ∫ σ_YY d(X/a) = -2 over N/(2a)
+        scale = v0[:, None]
+        return ContactStates(g, scale * weights, scale * normal, scale * tangential, v0)
 
     def destroy(self) -> None:
         """Free factor and fields."""
         for held in (self.factor, *self._rows, *self.fields):
             held.destroy()
 
-    def _contact_forces(self, g: float) -> NDArray[np.float64]:
-        """Coefficients y of R = V y, the Krylov space extended as far as this g needs."""
+    def _contact_forces(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Coefficients y of R = V y for every g, (states, m); the Krylov space grows as they need."""
+        if not np.any(g):
+            return np.zeros((len(g), 0))
         while True:
-            m = len(self._TV)
-            if g == 0.0:
-                return np.zeros(0)
+            m = len(self.fields) - 1
             if m:
-                e1 = np.zeros(m)
-                e1[0] = self._size
-                y = np.linalg.solve(np.eye(m) - g * self._H[:m, :m], e1)
-                residual = abs(g * self._H[m, m - 1] * y[-1]) / np.linalg.norm(y)
-                if residual <= KRYLOV_TOLERANCE or self._done:
+                e1 = np.zeros((len(g), m))
+                e1[:, 0] = self._size
+                y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)
+                left = np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1)
+                worst = int(np.argmax(left))
+                if self._complete or left[worst] <= KRYLOV_TOLERANCE:
                     return y
             if m == KRYLOV_LIMIT:
                 raise SolveError(
-                    f"the contact forces at g = {g:g} (dimensionless) did not converge in "
-                    f"{KRYLOV_LIMIT} steps: residual {residual:.3g}, wanted {KRYLOV_TOLERANCE:g}"
+                    f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
+                    f"{KRYLOV_LIMIT} steps: residual {left[worst]:.3g}, wanted {KRYLOV_TOLERANCE:g}"
                 )
             self._extend()
 
     def _extend(self) -> None:
         """One Arnoldi step: one back-substitution."""
-        j = len(self._TV)
+        j = len(self.fields) - 1
         nodes = self.space.contact
         b = self.factor.A.createVecLeft()
         b.setValues(nodes.dofs(0), self._V[j][nodes.owned])
         b.assemble()
         self.fields.append(self.factor.solve(b))
         b.destroy()
-        w = self._reactions(self.fields[-1])[1]
-        self._TV.append(w.copy())
+        self._forces.append(self._reactions(self.fields[-1]))
+        w = self._forces[-1][1]
         for _ in range(2):  # twice is enough
             h = np.array(self._V) @ w
             self._H[: j + 1, j] += h
             w = w - np.array(self._V).T @ h
         self._H[j + 1, j] = np.linalg.norm(w)
         # A happy breakdown: the space holds every answer.
-        self._done = self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j])
-        if not self._done:
+        self._complete = self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j])
+        if not self._complete:
             self._V.append(w / self._H[j + 1, j])
-
-    def _combine(self, weights: NDArray[np.float64]) -> PETSc.Vec:
-        u = self.fields[0].duplicate()
-        u.set(0.0)
-        u.maxpy(weights, self.fields)
-        return u
 
     def _reactions(self, u: PETSc.Vec) -> NDArray[np.float64]:
         """Consistent forces in X and Y at the contact nodes, (2, n), the same on every rank."""

@@ -155,9 +155,7 @@ class Space:
         diagonal[(2 * inner.reshape(-1, 1) + np.arange(2)).ravel()] = 1
         starts = np.concatenate([[0], np.cumsum(diagonal)]).astype(np.int32)
         columns = (first + np.flatnonzero(diagonal)).astype(np.int32)
-        A.setValuesCSR(
-            starts, columns, np.ones(len(columns)), addv=PETSc.InsertMode.ADD_VALUES
-        )
+        A.setValuesCSR(starts, columns, np.ones(len(columns)), addv=PETSc.InsertMode.ADD_VALUES)
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

@@ -14,15 +14,15 @@ from solvers.materials import MovingFrame
 
 @dataclass(frozen=True)
 class FlatPunch:
-    """The exact solution at one speed and friction.
+    """The exact solution at one speed and friction, or at several frictions.
 
     Args:
         frame: constants of the moving frame.
-        g: σ_XY/σ_YY under the punch, dimensionless and signed.
+        g: σ_XY/σ_YY under the punch, dimensionless and signed; an array broadcasts against positions.
     """
 
     frame: MovingFrame
-    g: float
+    g: float | NDArray[np.float64]
 
     @property
     def α(self) -> float:

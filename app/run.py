@@ -166,21 +166,18 @@ def _finite_elements(
     run = finite_elements.FiniteElementRun(scene, plan, states, grid, progress)
     κ = solid_of(scene).κ
     for chunk in run.chunks():
-        rows = slice(chunk.start, chunk.stop)
-        data = chunk.data
+        rows, data = slice(chunk.start, chunk.stop), chunk.data
+        punch = FlatPunch(MovingFrame(κ, states.c[chunk.start]), states.g[rows, None])
+        known = {"states/g": states.g[rows], "surface/X_over_a": grid}
+        known |= {"states/alpha": punch.α[:, 0], "states/beta": punch.β[:, 0]}
         if plan.closed_form:
-            punch = FlatPunch(MovingFrame(κ, states.c[chunk.start]), states.g[rows, None])
-            exact = {"states/closed_form/K_I": punch.K_I[:, 0], "states/g": states.g[rows]}
-            exact |= {"states/alpha": punch.α[:, 0], "states/beta": punch.β[:, 0]}
+            known["states/closed_form/K_I"] = punch.K_I[:, 0]
             if plan.surface:
-                exact["surface/X_over_a"] = grid
                 for name, values in _surface_of(punch, grid).items():
-                    exact[f"surface/closed_form/{name}"] = values
+                    known[f"surface/closed_form/{name}"] = values
             if true_error:
-                data["states/fem/true_error"] = compare.K_I_error(data | exact)
-            judge.see(data | exact)
-        else:
-            judge.see(data | {"states/g": states.g[rows]})
+                data["states/fem/true_error"] = compare.K_I_error(data | known)
+        judge.see(data | known)
         for name, values in data.items():
             sink.write(name, rows, values)
     for name in finite_elements.RECORD:

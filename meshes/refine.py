@@ -43,7 +43,7 @@ def degree(mesh: str, tolerance: float, rayleigh: float) -> int:
         rayleigh: Rayleigh function over its value at rest, in (0, 1]; errors grow as it falls.
     """
     digits = -log(_of_cells(mesh, tolerance) * rayleigh) / log(10.0)
-    return min(max(ceil(1.0 + digits), DEGREES[0]), DEGREES[1])
+    return min(max(ceil(0.8 + digits), DEGREES[0]), DEGREES[1])
 
 
 def outer_ξ(mesh: str, tolerance: float) -> float:

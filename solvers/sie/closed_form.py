@@ -5,6 +5,7 @@ ratio σ_XY/σ_YY under the punch: g = -f for a punch that drags the surface alo
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,8 @@ from solvers.materials import MovingFrame
 class FlatPunch:
     """The exact solution at one speed and friction, or at several frictions.
 
+    Properties are numbers, or arrays of the shape of ``g``.
+
     Args:
         frame: constants of the moving frame.
         g: σ_XY/σ_YY under the punch, dimensionless and signed; an array broadcasts against positions.
@@ -25,26 +28,26 @@ class FlatPunch:
     g: float | NDArray[np.float64]
 
     @property
-    def α(self) -> float:
+    def α(self) -> Any:
         """Exponent of the pressure at X = a, in (-1, 0): cot(πα) = g q/n (Eq 42)."""
         return -0.5 - np.arctan(self.g * self.frame.q / self.frame.n) / np.pi
 
     @property
-    def β(self) -> float:
+    def β(self) -> Any:
         """Exponent of the pressure at X = -a: β = -1 - α (Eq 43)."""
         return -0.5 + np.arctan(self.g * self.frame.q / self.frame.n) / np.pi
 
     @property
-    def _cot(self) -> float:
+    def _cot(self) -> Any:
         return self.g * self.frame.q / self.frame.n
 
     @property
-    def _sin(self) -> float:
+    def _sin(self) -> Any:
         """sin(πα), negative; through the cotangent, so that no digit is lost."""
         return -1.0 / np.hypot(1.0, self._cot)
 
     @property
-    def K_I(self) -> float:
+    def K_I(self) -> Any:
         """Normalised mode I stress intensity factor, the same number at both ends (Eqs 56-58).
 
         The limit at X = ±a of -σ_YY/(N/a) divided by (1 - r)^α (1 + r)^β; dimensionless. The two ends

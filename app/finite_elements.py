@@ -87,15 +87,37 @@ class FiniteElementRun:
             for i, speed in speeds:
                 yield from self._at(i, speed.c, speed.degree)
         else:
-            size, rank = self.world.size, self.world.rank
-            for first in range(0, len(speeds), size):
-                mine = speeds[first + rank : first + rank + 1]
-                work = [chunk for i, speed in mine for chunk in self._at(i, speed.c, speed.degree)]
-                for part in self.world.gather(work, root=0) or []:
-                    yield from part
-            self.record = [r for part in self.world.allgather(self.record) for r in part]
+            yield from self._shared_out(speeds)
         self.record.sort(key=lambda entry: entry["speed"])
         self.seconds["finite elements"] = perf_counter() - started - self.seconds["mesh"]
+
+    def _shared_out(self, speeds: list[tuple[int, Any]]) -> Iterator[Chunk]:
+        """Every rank its own speeds; rank 0 takes in what others send between its own chunks."""
+        world = self.world
+        mine = (
+            chunk
+            for i, speed in speeds[world.rank :: world.size]
+            for chunk in self._at(i, speed.c, speed.degree)
+        )
+        if world.rank > 0:
+            pending = [world.isend(chunk, 0) for chunk in mine]
+            MPI.Request.waitall([*pending, world.isend(self.record, 0)])
+            return
+        working = world.size - 1
+        while working or mine is not None:
+            if mine is not None:
+                chunk = next(mine, None)
+                if chunk is None:
+                    mine = None
+                else:
+                    yield chunk
+            while working and (mine is None or world.iprobe()):
+                message = world.recv()
+                if isinstance(message, Chunk):
+                    yield message
+                else:  # a rank's record is the last it sends
+                    self.record += message
+                    working -= 1
 
     def space(self, degree: int) -> Space:
         """The space of a degree; speeds share it, its form and its numbering."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, la
 from dolfinx.cpp.fem import pack_constants
 from mpi4py import MPI
 from numpy.typing import NDArray
@@ -89,12 +89,12 @@ class Space:
         rank_of = np.argsort(np.argsort(everyone, kind="stable"), kind="stable")
         start = sum(len(part) for part in parts[: self.comm.rank])
         owned = rank_of[start : start + len(s)]
-        return SurfaceNodes(np.sort(everyone), owned, self._global(blocks))
+        return SurfaceNodes(np.sort(everyone), owned, self.numbers[blocks])
 
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
-        blocks = self._global(self._owned_blocks("far"))
+        blocks = self.numbers[self._owned_blocks("far")]
         return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
 
     @cached_property
@@ -109,7 +109,7 @@ class Space:
     def assemble(self, κ: float, c: float) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
 
-        Numbers are those of the whole space; the row of an inner unknown holds a 1 on its diagonal.
+        Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
         form, κ_, c_ = self._form
         κ_.value, c_.value = κ, c
@@ -122,44 +122,62 @@ class Space:
         owned = self.mesh.topology.index_map(2).size_local
         nodes = np.array([dofmap.cell_dofs(cell) for cell in range(owned)], dtype=np.int32)
         nodes = nodes.reshape(-1, kernel.nodes)
-        A = self._empty_matrix(nodes[:, outer])
+        numbers = self.numbers[nodes[:, outer]]
+        A = self._empty_matrix(numbers)
         for start in range(0, owned, CHUNK):
             cells = range(start, min(start + CHUNK, owned))
             corners = geometry.x[[geometry.dofmap.links(cell) for cell in cells]]
             condensed, _ = kernel.condense(constants, corners)
             for cell, S in zip(cells, condensed):
-                rows = self._global(nodes[cell, outer])
+                rows = numbers[cell]
                 A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-        self._unit_rows(A, nodes[:, kernel.inner])
         A.assemble()
         return A
 
-    def _empty_matrix(self, outer: NDArray[np.int32]) -> PETSc.Mat:
-        """A matrix with room for what cells with these nodes on their boundary will add."""
-        index_map = self.V.dofmap.index_map
-        local = index_map.size_local
+    def _empty_matrix(self, numbers: NDArray[np.int32]) -> PETSc.Mat:
+        """A matrix with room for what cells with these node numbers will add."""
+        first, last = self._range
         A = PETSc.Mat().create(self.comm)
-        A.setSizes(((2 * local, None), (2 * local, None)), bsize=2)
+        A.setSizes(((2 * (last - first), None), (2 * (last - first), None)), bsize=2)
         A.setType(PETSc.Mat.Type.AIJ)
-        cells_of_node = np.bincount(outer.ravel(), minlength=local)[:local]
-        room = np.repeat(np.maximum(2 * outer.shape[1] * cells_of_node, 1), 2).astype(np.int32)
-        A.setPreallocationNNZ((np.minimum(room, 2 * local), room if self.comm.size > 1 else 0))
+        mine = numbers[(first <= numbers) & (numbers < last)] - first
+        cells_of_node = np.bincount(mine, minlength=last - first)
+        room = np.repeat(np.maximum(2 * numbers.shape[1] * cells_of_node, 1), 2).astype(np.int32)
+        alone = self.comm.size == 1
+        A.setPreallocationNNZ((np.minimum(room, 2 * (last - first)), 0 if alone else room))
         # Cells of other ranks add to nodes on the border between ranks.
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         return A
-
-    def _unit_rows(self, A: PETSc.Mat, inner: NDArray[np.int32]) -> None:
-        """A 1 on the diagonal of every inner unknown; they are owned with their cell."""
-        first, last = A.getOwnershipRange()
-        diagonal = np.zeros(last - first, dtype=np.int32)
-        diagonal[(2 * inner.reshape(-1, 1) + np.arange(2)).ravel()] = 1
-        starts = np.concatenate([[0], np.cumsum(diagonal)]).astype(np.int32)
-        columns = (first + np.flatnonzero(diagonal)).astype(np.int32)
-        A.setValuesCSR(starts, columns, np.ones(len(columns)), addv=PETSc.InsertMode.ADD_VALUES)
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])
         return blocks[blocks < self.V.dofmap.index_map.size_local]
 
-    def _global(self, blocks: NDArray[np.int32]) -> NDArray[np.int32]:
-        return self.V.dofmap.index_map.local_to_global(blocks).astype(np.int32)
+    @cached_property
+    def _inner(self) -> NDArray[np.bool_]:
+        """Which of this rank's nodes, ghosts included, lie inside a cell."""
+        dofmap = self.V.dofmap
+        local = np.array(dofmap.dof_layout.entity_dofs(2, 0), dtype=np.int32)
+        result = np.zeros(len(self.coordinates), dtype=bool)
+        cells = self.mesh.topology.index_map(2)
+        for cell in range(cells.size_local + cells.num_ghosts):
+            result[dofmap.cell_dofs(cell)[local]] = True
+        return result
+
+    @cached_property
+    def _range(self) -> tuple[int, int]:
+        """Numbers of the nodes that this rank owns: from the first to below the last."""
+        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
+        last = self.comm.scan(owned)
+        return last - owned, last
+
+    @cached_property
+    def numbers(self) -> NDArray[np.int32]:
+        """Global number of each local node, ghosts included, without those inside cells (-1)."""
+        index_map = self.V.dofmap.index_map
+        outer = np.flatnonzero(~self._inner[: index_map.size_local])
+        shared = la.vector(index_map)  # in floating point, exact for any number of nodes
+        shared.array[:] = -1.0
+        shared.array[outer] = self._range[0] + np.arange(len(outer))
+        shared.scatter_forward()
+        return shared.array.astype(np.int32)

@@ -77,31 +77,21 @@ class SurfaceTrace:
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     """Trace of the given displacement fields on the whole surface."""
     facets = surface_facets(space, ("contact", "free surface"))
-    dofmap = space.V.dofmap
-    ghosts = dofmap.index_map.ghosts
-    local = np.empty((dofmap.index_map.size_local + len(ghosts), 2))
+    numbers = space.numbers[facets.nodes].ravel()
+    index = (2 * numbers[:, None] + np.arange(2, dtype=np.int32)).ravel()
+    here = PETSc.Vec().createSeq(len(index))
+    where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
+    scatter = PETSc.Scatter().create(fields[0], where, here, None)
     u = np.empty((*facets.nodes.shape, 2, len(fields)))
     for i, field in enumerate(fields):
-        local[: dofmap.index_map.size_local] = field.array_r.reshape(-1, 2)
-        local[dofmap.index_map.size_local :] = _ghost_values(field, ghosts)
-        u[..., i] = local[facets.nodes]
+        scatter.scatter(field, here)
+        u[..., i] = here.array_r.reshape(u.shape[:3])
+    for held in (scatter, where, here):
+        held.destroy()
     parts = space.comm.allgather((facets.s, u))
     s = np.concatenate([part[0] for part in parts])
     order = np.argsort(s[:, 0])
     return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])
-
-
-def _ghost_values(field: PETSc.Vec, ghosts: NDArray) -> NDArray[np.float64]:
-    """Values of nodes that other ranks own, (n, 2)."""
-    index = (2 * np.asarray(ghosts, dtype=np.int32)[:, None] + np.arange(2, dtype=np.int32)).ravel()
-    here = PETSc.Vec().createSeq(len(index))
-    where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
-    scatter = PETSc.Scatter().create(field, where, here, None)
-    scatter.scatter(field, here)
-    values = here.array_r.reshape(-1, 2).copy()
-    for held in (scatter, where, here):
-        held.destroy()
-    return values
 
 
 def _derivative_weights(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:

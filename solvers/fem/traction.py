@@ -43,7 +43,7 @@ class LoadedHalfPlane:
     def load(self, σ_YY: Traction) -> None:
         """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant."""
         forces = self._consistent_forces(σ_YY)
-        node = self.space.V.dofmap.index_map.local_to_global(self._facets.nodes.ravel())
+        node = self.space.numbers[self._facets.nodes.ravel()]
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(

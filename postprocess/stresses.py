@@ -1,4 +1,4 @@
-"""Stresses on the surface from finite element displacements."""
+"""Stresses on the surface, and its flatness, from finite element displacements."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,3 +13,14 @@ def σ_XX_on_surface(κ: float, u_X: NDArray, σ_YY: NDArray) -> NDArray[np.floa
         σ_YY: contact stress over N/(2a); NaN where the surface is free, (n,).
     """
     return 8.0 / (κ + 1.0) * u_X + (3.0 - κ) / (κ + 1.0) * np.nan_to_num(σ_YY)
+
+
+def flatness(X: NDArray, v_X: NDArray) -> NDArray[np.float64]:
+    """Largest |v,X| for |X| <= 0.9a over the largest for |X| >= 1.1a, dimensionless.
+
+    Args:
+        X: positions over a, (n,).
+        v_X: slopes in any unit, (states, n).
+    """
+    under, beside = (np.abs(v_X[:, part]).max(axis=1) for part in (np.abs(X) <= 0.9, np.abs(X) >= 1.1))
+    return under / beside

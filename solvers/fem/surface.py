@@ -74,6 +74,26 @@ class SurfaceTrace:
         return (s - s[0]) / (s[-1] - s[0])
 
 
+class SurfaceSlopes:
+    """Derivatives along X, on the surface, of combinations of displacement fields.
+
+    Args:
+        space: the finite element space.
+        fields: displacements over N/(2μ).
+        X: positions over a.
+    """
+
+    def __init__(self, space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> None:
+        s = space.plane.surface_coordinate(X)
+        stretch = space.plane.surface_stretch(s)[:, None, None]
+        self._basis = gather(space, fields).derivative(s) / stretch
+
+    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
+        u_X, v_X = (weights @ self._basis[:, i].T for i in (0, 1))
+        return u_X, v_X
+
+
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     """Trace of the given displacement fields on the whole surface."""
     facets = surface_facets(space, ("contact", "free surface"))

@@ -1,0 +1,126 @@
+"""Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.states import solid_of
+from meshes.refine import DEGREES, truncation
+from postprocess.estimate import extrapolated
+from postprocess.pressure import ContactRecovery, JacobiPressure, contact_recovery, from_moments
+from postprocess.stresses import flatness, σ_XX_on_surface
+from solvers.fem.punch import ContactStates, SlidingPunch
+from solvers.fem.surface import SurfaceSlopes
+from solvers.materials import MovingFrame
+from solvers.sie.closed_form import FlatPunch
+
+if TYPE_CHECKING:
+    from app.finite_elements import FiniteElementRun
+
+
+@dataclass(frozen=True)
+class Level:
+    """A punch at one degree, and the maps that read its contact forces."""
+
+    punch: SlidingPunch
+    recovery: ContactRecovery
+
+    def pressure(self, states: ContactStates, exact: FlatPunch) -> JacobiPressure:
+        return from_moments(states.normal @ self.recovery.moments, exact.α, exact.β)
+
+
+class PunchAtSpeed:
+    """Rigid punch, pressure unknown, at one speed."""
+
+    def __init__(self, run: "FiniteElementRun", c: float, degree: int) -> None:
+        self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
+        self.levels: list[Level] = []
+        self.solves, self.factorisations, self.residual = 0, 0, 0.0
+
+    def prepare(self, g: NDArray) -> None:
+        """Raise the degree until the measured error of the outermost states is within tolerance."""
+        for degree in range(self.degree - 2, self.degree + 1):
+            self._add_level(degree)
+        probes = np.unique([g[0], g[-1]])
+        tolerance = self.run.scene.solve.tolerance
+        while self.degree < DEGREES[1] and self._estimates(probes).max() > tolerance:
+            self.degree += 1
+            self._add_level(self.degree)
+        self.slopes = None
+        self.levels[-1].punch.states(g)  # the basis is complete before its traces are taken
+        if self.run.plan.surface:
+            punch = self.levels[-1].punch
+            self.slopes = SurfaceSlopes(punch.space, punch.fields, self.run.grid)
+
+    def results(self, g: NDArray) -> dict[str, NDArray]:
+        run, level = self.run, self.levels[-1]
+        states, local = level.punch.states(g), FlatPunch(self.frame, g)
+        pressure = level.pressure(states, local)
+        exponents = level.recovery.exponents(states.normal)
+        N, μ = run.scene.punch.load, solid_of(run.scene).μ
+        data = {
+            "states/fem/K_I_left": pressure.K_I[:, 0],
+            "states/fem/K_I_right": pressure.K_I[:, 1],
+            "states/fem/alpha": exponents[:, 0],
+            "states/fem/beta": exponents[:, 1],
+            "states/fem/normal_force": states.normal.sum(axis=1) * N / 2.0,
+            "states/fem/tangential_force": states.tangential.sum(axis=1) * N / 2.0,
+            "states/fem/v0": states.v0 * N / (2.0 * μ),
+            "states/fem/estimate": self._estimates(g),
+        }
+        if self.slopes:
+            u_X, v_X = self.slopes.of(states.weights)
+            σ_YY = pressure.σ_YY(run.grid)
+            data |= {
+                "states/fem/slope_under_punch": flatness(run.grid, v_X),
+                "surface/fem/sigma_YY": σ_YY,
+                "surface/fem/sigma_YY_raw": states.normal @ level.recovery.raw,
+                "surface/fem/sigma_XX": σ_XX_on_surface(self.frame.κ, u_X, σ_YY),
+            }
+        return data
+
+    def record(self) -> dict[str, float]:
+        for level in self.levels:
+            self._count(level.punch)
+        space = self.levels[-1].punch.space
+        return {
+            "cells": space.cells,
+            "unknowns": space.size,
+            "degree": space.degree,
+            "factorisations": self.factorisations,
+            "back_substitutions": self.solves,
+            "largest_residual": self.residual,
+        }
+
+    def destroy(self) -> None:
+        for level in self.levels:
+            level.punch.destroy()
+
+    def _add_level(self, degree: int) -> None:
+        space = self.run.space(degree)
+        punch = SlidingPunch(space, self.frame.κ, self.frame.c)
+        recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.grid)
+        self.levels.append(Level(punch, recovery))
+        if len(self.levels) > 3:
+            old = self.levels.pop(0).punch
+            self._count(old)
+            old.destroy()
+
+    def _count(self, punch: SlidingPunch) -> None:
+        self.factorisations += 1
+        self.solves += punch.factor.solves
+        self.residual = max(self.residual, punch.factor.largest_residual)
+
+    def _estimates(self, g: NDArray) -> NDArray[np.float64]:
+        """Measured relative error of K_I and of the pressure's moments, (states,)."""
+        quantities = []
+        for level in self.levels:
+            states = level.punch.states(g)
+            local = FlatPunch(self.frame, g)
+            K_I = level.pressure(states, local).K_I
+            moments = states.normal @ level.recovery.moments[:, 1:6]
+            quantities.append(np.column_stack([K_I * np.pi, moments / 2.0]))
+        scene = self.run.scene
+        return extrapolated(*quantities) + truncation(scene.solve.mesh, scene.solve.tolerance) * np.abs(g)

@@ -2,6 +2,7 @@
 # galinx: sets up what is missing, then reproduces the study, runs the tests or a command.
 #   ./run.sh                           reproduce the study into results/
 #   ./run.sh test                      run all tests, those on two ranks included
+#   ./run.sh bench [-o DIR]            measure run time against error
 #   ./run.sh [-n RANKS] COMMAND ...    run, plan, show, paper, plot; COMMAND --help tells more
 set -euo pipefail
 home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -49,6 +50,12 @@ if [ "${1:-}" = test ]; then
   cd "$home"
   "$python" -m pytest tests "$@"
   exec "${mpirun_command[@]}" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
+fi
+
+if [ "${1:-}" = bench ]; then
+  shift
+  set_up "${packages[@]}"
+  exec "$python" "$home/benchmarks/measure.py" "$@"
 fi
 
 ranks=

@@ -109,8 +109,13 @@ def has_closed_form(scene: Scene) -> bool:
 
 def _speed_limits(scene: Scene, all_speeds: tuple[float, ...], fem: bool) -> list[str]:
     κ = solid_of(scene).κ
-    c_R = rayleigh_speed(κ)
-    beyond = [c for c in all_speeds if c >= c_R]
+
+    def from_rayleigh_on(c: float) -> bool:
+        return c >= 1.0 or MovingFrame(κ, c).r <= 0.0
+
+    beyond = [c for c in all_speeds if from_rayleigh_on(c)]
+    near = [c for c in all_speeds if c not in beyond and from_rayleigh_on(c / 0.99)]
+    c_R = rayleigh_speed(κ) if beyond or near else None
     if fem and beyond:
         raise BadInput(
             f"motion: c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
@@ -128,7 +133,6 @@ def _speed_limits(scene: Scene, all_speeds: tuple[float, ...], fem: bool) -> lis
             f"c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
             f"c_R = {c_R:.6g} (over c_s): the closed form is formal there"
         )
-    near = [c for c in all_speeds if 0.99 * c_R <= c < c_R]
     if near:
         warnings.append(
             f"c = {', '.join(f'{c:g}' for c in near)} is within 1 % of the Rayleigh speed "

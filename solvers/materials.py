@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
 
-from scipy.optimize import brentq
-
 
 @dataclass(frozen=True)
 class Solid:
@@ -144,4 +142,6 @@ def rayleigh_speed(κ: float) -> float:
 
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
+    from scipy.optimize import brentq  # slow to import, and seldom needed
+
     return brentq(lambda c: MovingFrame(κ, c).r, 0.1, 1.0 - 1e-15, xtol=1e-16, rtol=1e-15)

@@ -1,0 +1,188 @@
+"""Run time against error of whole galinx processes; see benchmarks/README.md."""
+
+import argparse
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import median
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt
+
+HOME = Path(__file__).parent.parent
+REPEATS = 3
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene of scenes/ with texts replaced, on a number of ranks."""
+
+    name: str
+    scene: str
+    changes: tuple[tuple[str, str], ...] = ()
+    ranks: int = 1
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Medians of a case; seconds of the whole process, memory in MB, errors relative."""
+
+    name: str
+    states: int
+    unknowns: int
+    wall: float
+    cpu: float
+    memory: float
+    K_I: float
+    sigma_YY: float
+    sigma_XX: float
+    estimate: float
+
+
+def positions(count: int) -> str:
+    """A list of so many positions, as a scene has it."""
+    return "X_over_L = [" + ", ".join(f"{x:.6f}" for x in np.linspace(0.0, 1.0, count)) + "]"
+
+
+SPEEDS = "c = [4.786e-7, 0.6]"
+X = "X_over_L = [0.2, 0.8]"
+FEM_ALONE = ('methods = ["closed_form", "fem"]', 'methods = ["fem"]')
+ONE_STROKE = ('strokes = ["forward", "backward", "forward"]', 'strokes = ["forward"]')
+SIXTEEN = ((SPEEDS, f"c = {[n / 20 for n in range(16)]}"), (X, positions(334)), FEM_ALONE)
+
+CASES = [
+    *(
+        Case(f"tolerance 1e-{n}", "tables4_5", (("tolerance = 1e-6", f"tolerance = 1e-{n}"),))
+        for n in range(2, 10)
+    ),
+    *(
+        Case(
+            f"c = 0.9, tolerance 1e-{n}",
+            "tables4_5",
+            ((SPEEDS, "c = [0.9]"), ("tolerance = 1e-6", f"tolerance = 1e-{n}")),
+        )
+        for n in (4, 6, 8)
+    ),
+    Case("study's box", "box"),
+    Case("graded mesh", "graded"),
+    Case("1 state", "tables4_5", ((SPEEDS, "c = [0.6]"), (X, "X_over_L = [0.8]"), ONE_STROKE, FEM_ALONE)),
+    Case("10 002 states", "tables4_5", ((SPEEDS, "c = [0.6]"), (X, positions(3334)), FEM_ALONE)),
+    Case("16 speeds x 1 002 states", "tables4_5", SIXTEEN),
+    Case("the same, 2 ranks", "tables4_5", SIXTEEN, ranks=2),
+    Case("friction alone", "loops"),
+    Case("closed form alone", "tables4_5", ((FEM_ALONE[0], 'methods = ["closed_form"]'),)),
+]
+
+
+def run(case: Case, folder: Path) -> Figures:
+    """Median figures of a case, after one run that warms the caches."""
+    text = (HOME / "scenes" / f"{case.scene}.toml").read_text(encoding="utf-8")
+    for old, new in case.changes:
+        if old not in text:
+            sys.exit(f"error: scenes/{case.scene}.toml no longer holds {old!r}")
+        text = text.replace(old, new)
+    scene, archive = folder / "scene.toml", folder / "out.h5"
+    scene.write_text(text, encoding="utf-8")
+    command = [str(HOME / "run.sh")] + (["-n", str(case.ranks)] if case.ranks > 1 else [])
+    command += ["run", str(scene), "-o", str(archive), "--overwrite"]
+    measured = [_measure(command) for _ in range(REPEATS + 1)][1:]
+    wall, cpu, memory = (median(column) for column in zip(*measured))
+    return Figures(case.name, wall=wall, cpu=cpu, memory=memory, **_results(archive))
+
+
+def _measure(command: list[str]) -> tuple[float, float, float]:
+    started = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode > 1:
+        sys.exit(f"error: {' '.join(command)} ended with status {process.returncode}")
+    return time.perf_counter() - started, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0
+
+
+def _results(archive: Path) -> dict[str, float]:
+    import json
+
+    with h5py.File(archive) as file:
+        worst = json.loads(file.attrs["comparisons"])
+        unknowns = file["run/fem/unknowns"][()].max() if "run/fem" in file else 0
+        states = len(file["states/f"])
+
+    def of(beginning: str) -> float:
+        return next((value for text, value in worst.items() if text.startswith(beginning)), np.nan)
+
+    return {
+        "states": states,
+        "unknowns": int(unknowns),
+        "K_I": of("K_I"),
+        "sigma_YY": of("σ_YY"),
+        "sigma_XX": of("σ_XX"),
+        "estimate": of("estimated"),
+    }
+
+
+def table(figures: list[Figures]) -> str:
+    """The figures as Markdown."""
+    lines = [
+        f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; seconds of "
+        f"the whole process, median of {REPEATS}",
+        "",
+        "| case | states | unknowns | wall (s) | cpu (s) | memory (MB) | K_I | σ_YY | σ_XX | estimate |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for f in figures:
+        errors = (f.K_I, f.sigma_YY, f.sigma_XX, f.estimate)
+        shown = " | ".join("–" if np.isnan(e) else f"{e:.1e}" for e in errors)
+        sizes = f"{f.states} | {f.unknowns or '–'} | {f.wall:.2f} | {f.cpu:.2f} | {f.memory:.0f}"
+        lines.append(f"| {f.name} | {sizes} | {shown} |")
+    return "\n".join(lines) + "\n"
+
+
+def draw(figures: list[Figures], path: Path) -> None:
+    """Error against time."""
+    figure, axis = plt.subplots(figsize=(5.5, 4.0))
+    groups = {"confocal, c <= 0.6": "tolerance", "confocal, c = 0.9": "c = 0.9", "study's box": "study"}
+    for (label, beginning), marker in zip(groups.items(), "osD"):
+        points = [(f.wall, f.K_I) for f in figures if f.name.startswith(beginning)]
+        axis.loglog(*zip(*points), marker=marker, label=label)
+    axis.set_xlabel("wall time of the whole process (s)")
+    axis.set_ylabel("largest relative error of $K_I$ (dimensionless)")
+    axis.grid(alpha=0.3, which="both")
+    axis.legend()
+    figure.tight_layout()
+    figure.savefig(path, dpi=160)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-o", dest="folder", type=Path, default=Path("benchmark"))
+    folder = parser.parse_args().folder
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = []
+    with tempfile.TemporaryDirectory() as work:
+        for i, case in enumerate(CASES):
+            print(f"{i + 1}/{len(CASES)} {case.name}", file=sys.stderr, flush=True)
+            figures.append(run(case, Path(work)))
+    text = table(figures)
+    (folder / "table.md").write_text(text, encoding="utf-8")
+    draw(figures, folder / "error_against_time.png")
+    rows = [asdict(f) for f in figures]
+    units = {"wall": "s", "cpu": "s", "memory": "MB"}
+    with h5py.File(folder / "benchmark.h5", "w") as file:
+        for name in rows[0]:
+            file[name] = [row[name] for row in rows]
+            file[name].attrs["units"] = units.get(name, "1")
+    print(text, end="")
+
+
+if __name__ == "__main__":
+    main()

@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 logging.disable(logging.WARNING)
 
-from static_punch import G, KAPPA, exact_moments
+from static_punch import KAPPA, G, exact_moments
 
 from meshes.gmsh_model import distribute
 from meshes.halfplane import MESHES, check_cells

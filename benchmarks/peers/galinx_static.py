@@ -10,9 +10,6 @@ from statistics import median
 
 import numpy as np
 from mpi4py import MPI
-
-logging.disable(logging.WARNING)
-
 from static_punch import KAPPA, G, exact_moments
 
 from meshes.gmsh_model import distribute
@@ -50,6 +47,7 @@ def solve(degree: int, levels: int, ratio: float, columns: int, outer: float) ->
 
 
 def main() -> None:
+    logging.disable(logging.WARNING)
     wanted = exact_moments()
     for configuration in CONFIGURATIONS:
         times = []

@@ -42,12 +42,9 @@ def half_plane(levels: int, factor: float, radius: float, degree: int) -> ng.Mes
         geometry.Append(["line", left, inner[0]], leftdomain=0, rightdomain=domain, bc="free")
         geometry.Append(["line", inner[1], right], leftdomain=0, rightdomain=domain, bc="free")
         arc = "far" if outside == 0 else "inner"
-        geometry.Append(
-            ["spline3", left, low_left, bottom], leftdomain=domain, rightdomain=outside, bc=arc
-        )
-        geometry.Append(
-            ["spline3", bottom, low_right, right], leftdomain=domain, rightdomain=outside, bc=arc
-        )
+        sides = {"leftdomain": domain, "rightdomain": outside}
+        for quarter in ((left, low_left, bottom), (bottom, low_right, right)):
+            geometry.Append(["spline3", *quarter], bc=arc, **sides)
         inner = [left, right]
     geometry.SetDomainMaxH(1, 1.0)
     mesh = ng.Mesh(geometry.GenerateMesh(maxh=radius, quad_dominated=False, grading=0.9))
@@ -67,9 +64,8 @@ def solve(degree: int, levels: int, factor: float, radius: float) -> tuple[int, 
 
     lame = (3.0 - KAPPA) / (KAPPA - 1.0)
     a = ng.BilinearForm(V, symmetric=False, condense=True)
-    a += (
-        2.0 * ng.InnerProduct(strain(u), strain(w)) + lame * ng.Trace(strain(u)) * ng.Trace(strain(w))
-    ) * ng.dx
+    shear = ng.InnerProduct(strain(u), strain(w))
+    a += (2.0 * shear + lame * ng.Trace(strain(u)) * ng.Trace(strain(w))) * ng.dx
     a.Assemble()
     half = V.ndof // 2
     on_contact = V.components[1].GetDofs(mesh.Boundaries("contact"))
@@ -83,9 +79,8 @@ def solve(degree: int, levels: int, factor: float, radius: float) -> tuple[int, 
     rows = np.concatenate([rows, rows[extra] - half])
     columns = np.concatenate([columns, columns[extra]])
     values = np.concatenate([values, -G * values[extra]])
-    A = ng.la.SparseMatrixd.CreateFromCOO(
-        rows.tolist(), columns.tolist(), values.tolist(), V.ndof, V.ndof
-    )
+    coo = (part.tolist() for part in (rows, columns, values))  # lists are read faster than arrays
+    A = ng.la.SparseMatrixd.CreateFromCOO(*coo, V.ndof, V.ndof)
     field = ng.GridFunction(V)
     field.components[1].Set(-1.0, definedon=mesh.Boundaries("contact"))
     residual = field.vec.CreateVector()

@@ -19,7 +19,7 @@ from app.plan import Plan  # noqa: E402
 from app.scene import Scene  # noqa: E402
 from app.states import States, solid_of  # noqa: E402
 from app.traction_mode import LoadAtSpeed  # noqa: E402
-from meshes.gmsh_model import distribute  # noqa: E402
+from meshes.distributed import distribute  # noqa: E402
 from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402

@@ -1,38 +1,26 @@
-"""The one place that meets gmsh: quadrilaterals become a gmsh model, that becomes a dolfinx mesh."""
-
-from typing import Any
+"""The one place that meets gmsh."""
 
 import gmsh
 import numpy as np
-from dolfinx.io import gmshio
-from mpi4py import MPI
+from numpy.typing import NDArray
 
 from meshes.rings import TAGS, QuadMesh
 
 _LINE, _QUADRANGLE = 1, 3  # gmsh's element types
 
 
-def distribute(mesh: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
-    """Share a mesh out over the ranks of ``comm``.
+def through_gmsh(mesh: QuadMesh) -> QuadMesh:
+    """The mesh as a gmsh model holds it, cells and tagged edges as physical groups.
 
-    The model is built on rank 0 from discrete cells, so every gmsh version gives the same mesh.
-
-    Args:
-        mesh: the whole mesh; looked at on rank 0 only.
-        comm: communicator.
-
-    Returns:
-        The dolfinx mesh and its facet tags.
+    The model is built of discrete cells, so every gmsh version gives the same mesh.
     """
     gmsh.initialize()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        if comm.rank == 0:
-            _build(mesh)
-        result = gmshio.model_to_mesh(gmsh.model, comm, 0, gdim=2)
+        _build(mesh)
+        return _read()
     finally:
         gmsh.finalize()
-    return result[0], result[2]
 
 
 def _build(mesh: QuadMesh) -> None:
@@ -49,3 +37,22 @@ def _build(mesh: QuadMesh) -> None:
         model.mesh.addElementsByType(line, _LINE, [], (mesh.edges[tag] + 1).ravel())
         model.addPhysicalGroup(1, [line], tag)
         model.setPhysicalName(1, tag, name)
+
+
+def _read() -> QuadMesh:
+    """The current model's quadrilaterals and the edges of its tagged lines."""
+    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+    order = np.argsort(numbers)
+    position = np.empty(int(numbers.max()) + 1, dtype=np.int64)
+    position[numbers[order].astype(np.int64)] = np.arange(len(numbers))
+    points = coordinates.reshape(-1, 3)[order, :2]
+
+    def elements(kind: int, entities: NDArray, corners: int) -> NDArray[np.int64]:
+        parts = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
+        return position[np.concatenate(parts).astype(np.int64)].reshape(-1, corners)
+
+    groups = gmsh.model.getPhysicalGroups()
+    of = {group: gmsh.model.getEntitiesForPhysicalGroup(*group) for group in groups}
+    cells = [elements(_QUADRANGLE, entities, 4) for (dim, _), entities in of.items() if dim == 2]
+    edges = {tag: elements(_LINE, entities, 2) for (dim, tag), entities in of.items() if dim == 1}
+    return QuadMesh(points, np.concatenate(cells), edges)

@@ -21,6 +21,9 @@ class Physical:
     def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
         return 1.0, 0.0
 
+    def stretch(self, x: NDArray) -> NDArray:
+        return np.ones(len(x))
+
     def to_physical(self, x: NDArray) -> NDArray:
         return np.asarray(x, dtype=float)
 
@@ -58,6 +61,9 @@ class Confocal:
         B = functions.sin(x[1])
         length = functions.sqrt(A * A + B * B)
         return A / length, B / length
+
+    def stretch(self, x: NDArray) -> NDArray:
+        return np.hypot(np.sinh(x[:, 0]), np.sin(x[:, 1]))
 
     def to_physical(self, x: NDArray) -> NDArray:
         w = np.asarray(x[..., 0]) + 1j * np.asarray(x[..., 1])

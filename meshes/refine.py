@@ -27,11 +27,14 @@ def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
     innermost = (_of_cells(mesh, tolerance) / 3.0) ** 0.5
     levels = ceil(log(pi / 2.0 / innermost) / -log(_RATIO[mesh]))
     reach = outer_ξ(mesh, tolerance) - pi / 2.0
-    count = ceil(reach / _COLUMN[mesh])
+    # The column next to the rings is narrow: the field still turns there.
+    first = min(_COLUMN[mesh], 1.0)
+    count = ceil((reach - first) / _COLUMN[mesh])
     sectors = 2 if β_s > 0.5 else 3
     if mesh == "box":
         sectors = 2  # an even number puts a vertex into the block's corners
-    return Refinement(levels, _RATIO[mesh], sectors, (reach / count,) * count)
+    columns = (first, *((reach - first) / count,) * count)
+    return Refinement(levels, _RATIO[mesh], sectors, columns)
 
 
 def degree(mesh: str, tolerance: float, rayleigh: float) -> int:

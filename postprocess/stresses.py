@@ -1,4 +1,4 @@
-"""Stresses on the surface, and its flatness, from finite element displacements."""
+"""Stresses on the surface and inside, and flatness, from finite element displacements."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,21 @@ def σ_XX_on_surface(κ: float, u_X: NDArray, σ_YY: NDArray) -> NDArray[np.floa
         σ_YY: contact stress over N/(2a); NaN where the surface is free, (n,).
     """
     return 8.0 / (κ + 1.0) * u_X + (3.0 - κ) / (κ + 1.0) * np.nan_to_num(σ_YY)
+
+
+def stresses_inside(κ: float, G: NDArray) -> NDArray[np.float64]:
+    """σ_XX, σ_YY, σ_XY over N/(2a) from displacement gradients (Eqs 6-8).
+
+    Args:
+        κ: Kolosov's constant, above 1.
+        G: μ ∂u_i/∂X_j over N/(2a), (..., 2, 2).
+
+    Returns:
+        Array (3, ...).
+    """
+    u_X, v_Y = G[..., 0, 0], G[..., 1, 1]
+    λ_div = (3.0 - κ) / (κ - 1.0) * (u_X + v_Y)
+    return np.array([2.0 * u_X + λ_div, 2.0 * v_Y + λ_div, G[..., 0, 1] + G[..., 1, 0]])
 
 
 def flatness(X: NDArray, v_X: NDArray) -> NDArray[np.float64]:

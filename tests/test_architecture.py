@@ -10,7 +10,7 @@ ROOMS = ("app", "meshes", "solvers", "postprocess")
 ONE_PLACE = {
     "gmsh": {"meshes/gmsh_model.py"},
     "h5py": {"postprocess/archive.py"},
-    "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py"},
+    "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "meshes/distributed.py"},
     "matplotlib": {"postprocess/figures.py"},
     "pint": {"app/quantities.py"},
 }

@@ -4,7 +4,7 @@ from conftest import run_scene
 from mpi4py import MPI
 from scipy.special import eval_chebyt
 
-from meshes.gmsh_model import distribute
+from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess import compare

@@ -3,7 +3,7 @@ import pytest
 from mpi4py import MPI
 
 from app.plan import unknowns
-from meshes.gmsh_model import distribute
+from meshes.distributed import distribute
 from meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
 from meshes.planes import Confocal
 from meshes.refine import outer_ξ, refinement

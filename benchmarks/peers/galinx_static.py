@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
-from meshes.gmsh_model import distribute
+from meshes.distributed import distribute
 from meshes.halfplane import MESHES, check_cells
 from meshes.rings import TAGS, Refinement
 from postprocess.pressure import contact_recovery

@@ -32,9 +32,14 @@ class CellMatrices:
     inner: NDArray[np.int32]
 
     @property
+    def outer(self) -> NDArray[np.int64]:
+        """Local nodes on a cell's boundary."""
+        return np.setdiff1d(np.arange(self.nodes), self.inner)
+
+    @property
     def outer_dofs(self) -> NDArray[np.int64]:
         """Local unknowns on a cell's boundary, two a node."""
-        return _dofs(np.setdiff1d(np.arange(self.nodes), self.inner))
+        return _dofs(self.outer)
 
     @property
     def inner_dofs(self) -> NDArray[np.int64]:
@@ -69,7 +74,21 @@ class CellMatrices:
         order, b = np.concatenate([self.outer_dofs, self.inner_dofs]), len(self.outer_dofs)
         K = self.tabulate(constants, corners).take(order, axis=1).take(order, axis=2)
         E = -np.linalg.solve(K[:, b:, b:], K[:, b:, :b])
-        return K[:, :b, :b] + K[:, :b, b:] @ E, E
+        return _free_of_translations(K[:, :b, :b] + K[:, :b, b:] @ E), E
+
+
+def _free_of_translations(S: NDArray) -> NDArray[np.float64]:
+    """S with the forces of rigid translations, which are rounding, taken out: P S P.
+
+    Near the Rayleigh speed the body moves far before it deforms; those forces times that motion would
+    be what limits the contact forces' digits.
+    """
+    m, b, _ = S.shape
+    n = b // 2
+    nodes = S.reshape(m, n, 2, n, 2)
+    force = nodes.sum(axis=3, keepdims=True) / n  # on each node by a translation, (m, n, 2, 1, 2)
+    total = force.sum(axis=1, keepdims=True) / n
+    return (nodes - force - force.transpose(0, 3, 4, 1, 2) + total).reshape(m, b, b)
 
 
 def _kernel(ufcx_form: Any) -> Any:

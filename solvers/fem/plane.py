@@ -18,6 +18,9 @@ class Plane(Protocol):
         ``functions`` is the module whose sin, cos, tanh and sqrt suit x: numpy or ufl.
         """
 
+    def stretch(self, x: NDArray) -> NDArray:
+        """Length of a step in physical coordinates over that in the plane, at points (n, 2)."""
+
     def to_physical(self, x: NDArray) -> NDArray:
         """Physical coordinates over a of points (..., 2) of the plane."""
 

@@ -1,5 +1,6 @@
 """The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -111,28 +112,85 @@ class Space:
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
-        form, κ_, c_ = self._form
-        κ_.value, c_.value = κ, c
-        constants = pack_constants(form)
-        dofmap, geometry = self.V.dofmap, self.mesh.geometry
-        kernel = CellMatrices(
-            form, dofmap.dof_layout.num_dofs, np.array(dofmap.dof_layout.entity_dofs(2, 0))
-        )
-        outer = np.setdiff1d(np.arange(kernel.nodes), kernel.inner)
-        owned = self.mesh.topology.index_map(2).size_local
-        nodes = np.array([dofmap.cell_dofs(cell) for cell in range(owned)], dtype=np.int32)
-        nodes = nodes.reshape(-1, kernel.nodes)
-        numbers = self.numbers[nodes[:, outer]]
+        numbers = self._outer_numbers
         A = self._empty_matrix(numbers)
-        for start in range(0, owned, CHUNK):
-            cells = range(start, min(start + CHUNK, owned))
-            corners = geometry.x[[geometry.dofmap.links(cell) for cell in cells]]
-            condensed, _ = kernel.condense(constants, corners)
-            for cell, S in zip(cells, condensed):
-                rows = numbers[cell]
+        for start in range(0, len(numbers), CHUNK):
+            cells = slice(start, start + CHUNK)
+            condensed, _ = self._condensed(κ, c, cells)
+            for rows, S in zip(numbers[cells], condensed):
                 A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
         A.assemble()
         return A
+
+    def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:
+        """Values of condensed fields at nodes by global number, (*numbers.shape, 2, fields).
+
+        Collective; every rank names the nodes it wants.
+        """
+        index = (2 * numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
+        here = PETSc.Vec().createSeq(len(index))
+        where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
+        scatter = PETSc.Scatter().create(fields[0], where, here, None)
+        u = np.empty((*numbers.shape, 2, len(fields)))
+        for i, field in enumerate(fields):
+            scatter.scatter(field, here)
+            u[..., i] = here.array_r.reshape(u.shape[:-1])
+        for held in (scatter, where, here):
+            held.destroy()
+        return u
+
+    def cell_values(
+        self, fields: Sequence[PETSc.Vec], κ: float, c: float, cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Values of condensed fields at all nodes of some of this rank's cells.
+
+        Collective. Inner values follow from the outer ones by the form that gave the fields, with
+        these κ and c.
+
+        Returns:
+            Array (cells, nodes of a cell, 2, fields).
+        """
+        outer = self.fetch(fields, self._outer_numbers[cells])
+        _, E = self._condensed(κ, c, cells)
+        u = np.empty((len(cells), self._kernel.nodes, 2, len(fields)))
+        u[:, self._kernel.outer] = outer
+        for values, extension, boundary in zip(u, E, outer):
+            inner = extension @ boundary.reshape(-1, len(fields))
+            values[self._kernel.inner] = inner.reshape(-1, 2, len(fields))
+        return u
+
+    def cell_coordinates(self, cell: int) -> NDArray[np.float64]:
+        """Coordinates of the nodes of one of this rank's cells in the plane, (nodes, 2)."""
+        return self.coordinates[self._cell_nodes[cell]]
+
+    @cached_property
+    def vertices(self) -> NDArray[np.float64]:
+        """Coordinates of the vertices of the cells this rank owns, (cells, 4, 3)."""
+        geometry = self.mesh.geometry
+        cells = range(self.mesh.topology.index_map(2).size_local)
+        return geometry.x[[geometry.dofmap.links(cell) for cell in cells]].reshape(-1, 4, 3)
+
+    @cached_property
+    def _kernel(self) -> CellMatrices:
+        layout = self.V.dofmap.dof_layout
+        return CellMatrices(self._form[0], layout.num_dofs, np.array(layout.entity_dofs(2, 0)))
+
+    @cached_property
+    def _cell_nodes(self) -> NDArray[np.int32]:
+        """Local nodes of the cells this rank owns, (cells, nodes of a cell)."""
+        cells = range(self.mesh.topology.index_map(2).size_local)
+        nodes = np.array([self.V.dofmap.cell_dofs(cell) for cell in cells], dtype=np.int32)
+        return nodes.reshape(-1, self._kernel.nodes)
+
+    @cached_property
+    def _outer_numbers(self) -> NDArray[np.int32]:
+        """Global numbers of the nodes on the boundary of each cell this rank owns."""
+        return self.numbers[self._cell_nodes[:, self._kernel.outer]]
+
+    def _condensed(self, κ: float, c: float, cells: Any) -> tuple[NDArray, NDArray]:
+        form, κ_, c_ = self._form
+        κ_.value, c_.value = κ, c
+        return self._kernel.condense(pack_constants(form), self.vertices[cells])
 
     def _empty_matrix(self, numbers: NDArray[np.int32]) -> PETSc.Mat:
         """A matrix with room for what cells with these node numbers will add."""

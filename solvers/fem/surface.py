@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
-from scipy.interpolate import BarycentricInterpolator
 
+from solvers.fem.lagrange import lagrange
 from solvers.fem.space import Space
 
 
@@ -60,10 +60,8 @@ class SurfaceTrace:
         facet = np.searchsorted(self.s[:, 0], s, side="right") - 1
         facet = np.clip(facet, 0, len(self.s) - 1)
         start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
-        slopes = np.einsum(
-            "ni,ni...->n...", _derivative_weights(self._reference_nodes, (s - start) / length),
-            self.u[facet],
-        )  # fmt: skip
+        _, by_node = lagrange(self._reference_nodes, (s - start) / length)
+        slopes = np.einsum("ni,ni...->n...", by_node, self.u[facet])
         return slopes / length[:, None, None]
 
     @property
@@ -97,30 +95,9 @@ class SurfaceSlopes:
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     """Trace of the given displacement fields on the whole surface."""
     facets = surface_facets(space, ("contact", "free surface"))
-    numbers = space.numbers[facets.nodes].ravel()
-    index = (2 * numbers[:, None] + np.arange(2, dtype=np.int32)).ravel()
-    here = PETSc.Vec().createSeq(len(index))
-    where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
-    scatter = PETSc.Scatter().create(fields[0], where, here, None)
-    u = np.empty((*facets.nodes.shape, 2, len(fields)))
-    for i, field in enumerate(fields):
-        scatter.scatter(field, here)
-        u[..., i] = here.array_r.reshape(u.shape[:3])
-    for held in (scatter, where, here):
-        held.destroy()
+    u = space.fetch(fields, space.numbers[facets.nodes])
     parts = space.comm.allgather((facets.s, u))
     s = np.concatenate([part[0] for part in parts])
     order = np.argsort(s[:, 0])
     return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])
 
-
-def _derivative_weights(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """Derivatives at t of the Lagrange polynomials of the nodes, (len(t), len(nodes))."""
-    n = len(nodes)
-    basis = BarycentricInterpolator(nodes, np.eye(n))
-    # Differentiate at the nodes, where it is exact, and interpolate the result.
-    weights = basis.wi
-    D = (weights[None, :] / weights[:, None]) / (nodes[:, None] - nodes[None, :] + np.eye(n))
-    np.fill_diagonal(D, 0.0)
-    np.fill_diagonal(D, -D.sum(axis=1))
-    return basis(t) @ D

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
-from scipy.interpolate import BarycentricInterpolator
 
+from solvers.fem.lagrange import lagrange
 from solvers.fem.linear import Factor
 from solvers.fem.space import Space
 from solvers.fem.surface import surface_facets
@@ -76,7 +76,7 @@ class LoadedHalfPlane:
             from_left = nodes[0] - left + length * (1.0 - t if at_right else t)
             from_right = right - nodes[-1] + length * (t if at_right else 1.0 - t)
             position = 1.0 - t if at_right else t
-            basis = BarycentricInterpolator((nodes - nodes[0]) / length, np.eye(len(nodes)))(position)
+            basis, _ = lagrange((nodes - nodes[0]) / length, position)
             d_left, d_right, stretch = self.space.plane.under_punch(from_left, from_right)
             forces[i] = (w * length * stretch * σ_YY(d_left, d_right)) @ basis
         return forces

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from meshes.gmsh_model import distribute
+from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from solvers.fem import surface

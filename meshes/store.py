@@ -1,0 +1,49 @@
+"""Meshes of earlier runs, kept in the user's cache folder."""
+
+import hashlib
+import os
+import zipfile
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from meshes.rings import QuadMesh
+
+#: Part of every key; raised when what is kept, or how it is made, changes.
+_FORMAT = 1
+
+
+def _path(pattern: QuadMesh) -> Path:
+    """Where the mesh of a pattern is kept; the name is a hash of everything that it depends on."""
+    key = hashlib.sha256(f"{_FORMAT}".encode())
+    for array in (pattern.points, pattern.cells, *pattern.edges.values()):
+        key.update(f"{array.dtype}{array.shape}".encode() + array.tobytes())
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(home) / "galinx" / "meshes" / f"{key.hexdigest()[:24]}.npz"
+
+
+def is_kept(pattern: QuadMesh) -> bool:
+    """Was a mesh of this pattern made before?"""
+    return _path(pattern).is_file()
+
+
+def load(pattern: QuadMesh) -> QuadMesh | None:
+    """The mesh made of this pattern by an earlier run; None if there is none, or a damaged one."""
+    try:
+        with np.load(_path(pattern)) as file:
+            edges = {int(name): file[name] for name in file.files if name.isdigit()}
+            return QuadMesh(file["points"], file["cells"], edges)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+
+
+def keep(pattern: QuadMesh, mesh: QuadMesh) -> None:
+    """Keep a mesh for later runs; a folder that cannot be written is no fault."""
+    path = _path(pattern)
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.npz")
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        edges = {str(tag): edges for tag, edges in mesh.edges.items()}
+        np.savez(temporary, points=mesh.points, cells=mesh.cells, **edges)
+        os.replace(temporary, path)

@@ -1,0 +1,117 @@
+"""Displacement gradients inside the half-plane, of combinations of fields, at any points.
+
+Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from solvers.errors import MeshError
+from solvers.fem.lagrange import lagrange
+from solvers.fem.space import Space
+
+#: How far outside a cell, over its size, a point still counts as inside.
+_SLACK = 1e-9
+
+
+class InteriorGradients:
+    """Displacement gradients along X and Y at given points.
+
+    Args:
+        space: the finite element space.
+        κ, c: Kolosov's constant and the speed of the fields.
+        fields: displacements over N/(2μ), condensed.
+        points: positions over a with Y <= 0, (n, 2).
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+
+    def __init__(
+        self, space: Space, κ: float, c: float, fields: Sequence[PETSc.Vec], points: NDArray
+    ) -> None:
+        x = space.plane.from_physical(points)
+        vertices = space.vertices[..., :2]
+        holder, local = _locate(vertices, x)
+        mine = np.flatnonzero(holder >= 0)
+        found = space.comm.allreduce((holder >= 0).astype(int))
+        if not found.all():
+            X, Y = points[np.argmin(found)]
+            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+        cells, place = np.unique(holder[mine], return_inverse=True)
+        values = space.cell_values(fields, κ, c, cells)
+        gradients = np.zeros((len(points), 2, 2, len(fields)))
+        for n, i in zip(mine, place):
+            corners = vertices[cells[i]]
+            grid, nodes = _tensor_order(corners, space.cell_coordinates(cells[i]))
+            reference = _reference_gradient(nodes, local[n], values[i][grid])
+            gradients[n] = np.einsum("rcf,rx->cxf", reference, np.linalg.inv(_jacobian(corners, local[n])))
+        # A point on the border between two ranks' cells is found by both.
+        gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
+        cos, sin = (value * np.ones(len(x)) for value in space.plane.rotation(x.T, np))
+        R = np.array([[cos, -sin], [sin, cos]]) / space.plane.stretch(x)
+        self._basis = np.einsum("ncxf,Xxn->ncXf", gradients, R)
+
+    def of(self, weights: NDArray) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
+        return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
+
+
+def _locate(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """For each point the cell that holds it, -1 if none does, and its place in the unit square."""
+    low, high = vertices.min(axis=1), vertices.max(axis=1)
+    slack = _SLACK * (high - low)
+    holder, local = np.full(len(x), -1), np.zeros((len(x), 2))
+    for n, point in enumerate(x):
+        for cell in np.flatnonzero(np.all((low - slack <= point) & (point <= high + slack), axis=1)):
+            t = _pull_back(vertices[cell], point)
+            if np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK)):
+                holder[n], local[n] = cell, t
+                break
+    return holder, local
+
+
+def _jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """∂x/∂t as [component of x, component of t]; vertices in dolfinx's order 00, 10, 01, 11."""
+    a, b = t
+    by_a = (1 - b) * (vertices[1] - vertices[0]) + b * (vertices[3] - vertices[2])
+    by_b = (1 - a) * (vertices[2] - vertices[0]) + a * (vertices[3] - vertices[1])
+    return np.column_stack([by_a, by_b])
+
+
+def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
+    """Place in the unit square of a point, by Newton's method for the bilinear map.
+
+    NaN where that does not converge: the point is then far outside the cell.
+    """
+    t = np.array([0.5, 0.5])
+    for _ in range(25):
+        a, b = t
+        image = np.array([(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b]) @ vertices
+        step = np.linalg.solve(_jacobian(vertices, t), x - image)
+        t = t + step
+        if np.abs(step).max() < 1e-14 * max(1.0, np.abs(t).max()):
+            return t
+    return np.full(2, np.nan)
+
+
+def _tensor_order(
+    vertices: NDArray, coordinates: NDArray
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Nodes of a cell as a grid [i, j] along its two directions, and their places in [0, 1]."""
+    t = np.array([_pull_back(vertices, x) for x in coordinates])
+    n = round(np.sqrt(len(t)))
+    by_a = np.argsort(t[:, 0], kind="stable").reshape(n, n)  # columns of nodes, far apart
+    grid = np.take_along_axis(by_a, np.argsort(t[by_a, 1], axis=1), axis=1)
+    return grid, t[grid[:, 0], 0]
+
+
+def _reference_gradient(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """Derivatives along the unit square's directions of nodal values u (p+1, p+1, ...)."""
+    values, slopes = lagrange(nodes, t)
+    along_a = np.einsum("i,j,ij...->...", slopes[0], values[1], u)
+    along_b = np.einsum("i,j,ij...->...", values[0], slopes[1], u)
+    return np.stack([along_a, along_b])

@@ -3,7 +3,6 @@
 import json
 import sys
 import traceback
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -12,6 +11,7 @@ import click
 from app import __version__, errors, ranks
 from app import scene as scenes
 from app.errors import BadInput, MachineFailure
+from app.progress import Progress
 from postprocess.errors import UnreadableArchive, UnwritableArchive
 from solvers.errors import MeshError, SolveError
 
@@ -49,10 +49,11 @@ def run(scene: Path, output: Path | None, overwrite: bool) -> int:
         return errors.GOOD
     from postprocess import archive
 
-    with archive.Writer(target) as writer:
-        attributes = compute(checked, writer, _progress())
+    with archive.Writer(target) as writer, Progress() as progress:
+        attributes = compute(checked, writer, progress)
+        progress.say("checking the archive")
         writer.finish(attributes)
-    data, attributes = archive.read(target, surfaces=False)
+    data, attributes = archive.read(target, stresses=False)
     _print_summary(data, attributes)
     print(f"archive: {target}")
     return _status(attributes)
@@ -74,6 +75,7 @@ def plan(scene: Path) -> int:
             print(f"do    {text}")
         for text in planned.skipped:
             print(f"skip  {text}")
+        print(f"cost  {planning.expense(checked, planned)}")
         for text in planned.warnings:
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
@@ -89,7 +91,7 @@ def show(archive: Path, as_json: bool) -> int:
     """
     from postprocess.archive import read
 
-    data, attributes = read(archive, surfaces=False)
+    data, attributes = read(archive, stresses=False)
     if ranks.is_root():
         if as_json:
             print(json.dumps(_as_json(data, attributes), ensure_ascii=False, indent=1))
@@ -107,7 +109,7 @@ def paper(folder: Path) -> int:
     """
     from app.paper import reproduce
 
-    return errors.GOOD if reproduce(folder, _progress()) else errors.FAILED_VERDICT
+    return errors.GOOD if reproduce(folder) else errors.FAILED_VERDICT
 
 
 @cli.command()
@@ -165,13 +167,6 @@ def _stop(status: int) -> NoReturn:
 
 def _status(attributes: dict[str, Any]) -> int:
     return errors.FAILED_VERDICT if attributes["verdict"] == "FAIL" else errors.GOOD
-
-
-def _progress() -> Callable[[str], None]:
-    """Say on a terminal's error stream what is being done; nothing elsewhere."""
-    if not (ranks.is_root() and sys.stderr.isatty()):
-        return lambda text: None
-    return lambda text: print(f"... {text}", file=sys.stderr, flush=True)
 
 
 def _print_summary(data: dict[str, Any], attributes: dict[str, Any]) -> None:

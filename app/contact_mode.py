@@ -6,15 +6,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from app.displacement import Displacement
 from app.states import solid_of
 from meshes.refine import DEGREES, truncation
 from postprocess.estimate import extrapolated
 from postprocess.pressure import ContactRecovery, JacobiPressure, contact_recovery, from_moments
-from postprocess.stresses import flatness, σ_XX_on_surface
 from solvers.fem.punch import ContactStates, SlidingPunch
-from solvers.fem.surface import SurfaceSlopes
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
+
+#: States, spread over all of a speed, whose measured error decides the degree.
+PROBES = 9
 
 if TYPE_CHECKING:
     from app.finite_elements import FiniteElementRun
@@ -38,21 +40,25 @@ class PunchAtSpeed:
         self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
         self.levels: list[Level] = []
         self.solves, self.factorisations, self.residual = 0, 0, 0.0
+        self._rounding = 0.0
 
     def prepare(self, g: NDArray) -> None:
-        """Raise the degree until the measured error of the outermost states is within tolerance."""
+        """Raise the degree until the measured error of sample states is within tolerance.
+
+        Args:
+            g: the speed's values of σ_XY/σ_YY, sorted.
+        """
         for degree in range(self.degree - 2, self.degree + 1):
             self._add_level(degree)
-        probes = np.unique([g[0], g[-1]])
+        probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
         while self.degree < DEGREES[1] and self._estimates(probes).max() > tolerance:
             self.degree += 1
             self._add_level(self.degree)
-        self.slopes = None
-        self.levels[-1].punch.states(g)  # the basis is complete before its traces are taken
-        if self.run.plan.surface:
-            punch = self.levels[-1].punch
-            self.slopes = SurfaceSlopes(punch.space, punch.fields, self.run.grid)
+        self._rounding = self._asymmetry(probes)
+        punch, plan = self.levels[-1].punch, self.run.plan
+        punch.states(g)  # the basis is complete before its traces are taken
+        self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
 
     def results(self, g: NDArray) -> dict[str, NDArray]:
         run, level = self.run, self.levels[-1]
@@ -70,16 +76,10 @@ class PunchAtSpeed:
             "states/fem/v0": states.v0 * N / (2.0 * μ),
             "states/fem/estimate": self._estimates(g),
         }
-        if self.slopes:
-            u_X, v_X = self.slopes.of(states.weights)
-            σ_YY = pressure.σ_YY(run.grid)
-            data |= {
-                "states/fem/slope_under_punch": flatness(run.grid, v_X),
-                "surface/fem/sigma_YY": σ_YY,
-                "surface/fem/sigma_YY_raw": states.normal @ level.recovery.raw,
-                "surface/fem/sigma_XX": σ_XX_on_surface(self.frame.κ, u_X, σ_YY),
-            }
-        return data
+        if run.plan.surface:
+            data["surface/fem/sigma_YY_raw"] = states.normal @ level.recovery.raw
+            data |= self.displacement.on_surface(states.weights, pressure.σ_YY(run.plan.grid))
+        return data | self.displacement.inside(states.weights)
 
     def record(self) -> dict[str, float]:
         for level in self.levels:
@@ -101,7 +101,7 @@ class PunchAtSpeed:
     def _add_level(self, degree: int) -> None:
         space = self.run.space(degree)
         punch = SlidingPunch(space, self.frame.κ, self.frame.c)
-        recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.grid)
+        recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.plan.grid)
         self.levels.append(Level(punch, recovery))
         if len(self.levels) > 3:
             old = self.levels.pop(0).punch
@@ -123,4 +123,14 @@ class PunchAtSpeed:
             moments = states.normal @ level.recovery.moments[:, 1:6]
             quantities.append(np.column_stack([K_I * np.pi, moments / 2.0]))
         scene = self.run.scene
-        return extrapolated(*quantities) + truncation(scene.solve.mesh, scene.solve.tolerance) * np.abs(g)
+        cut = truncation(scene.solve.mesh, scene.solve.tolerance) * np.abs(g)
+        return extrapolated(*quantities) + cut + self._rounding
+
+    def _asymmetry(self, g: NDArray) -> float:
+        """Largest relative difference of K_I left at g and right at -g, which only rounding makes."""
+        level = self.levels[-1]
+        K_I, mirrored = (
+            level.pressure(level.punch.states(sign * g), FlatPunch(self.frame, sign * g)).K_I
+            for sign in (1.0, -1.0)
+        )
+        return float(np.abs(K_I - mirrored[:, ::-1]).max() * np.pi)

@@ -1,7 +1,6 @@
 """The study as a program: its tables and figures, computed and set beside what it printed."""
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ import numpy as np
 
 from app import ranks
 from app import scene as scenes
+from app.progress import Progress
 from app.run import compute
 from app.states import solid_of
 from solvers.friction.dahl import Dahl, runge_kutta
@@ -77,10 +77,9 @@ def table1_rows() -> list[tuple[list[float], list[float]]]:
     ]
 
 
-def reproduce(folder: Path, progress: Callable[[str], None]) -> bool:
+def reproduce(folder: Path) -> bool:
     """Write the study's archive, tables and figures into ``folder``; True where all agrees."""
     study = scenes.read(_SCENES / "study.toml")
-    progress("the study's states")
     if not ranks.is_root():
         compute(study)
         return True  # the verdict is rank 0's
@@ -88,14 +87,15 @@ def reproduce(folder: Path, progress: Callable[[str], None]) -> bool:
 
     folder.mkdir(parents=True, exist_ok=True)
     results = []
-    for name, scene in (("study.h5", study), ("loops.h5", scenes.read(_SCENES / "loops.toml"))):
-        with archive.Writer(folder / name) as writer:
-            writer.finish(compute(scene, writer, progress))
-        results.append(archive.read(folder / name))
-    (data, attributes), (loops, _) = results
+    with Progress() as progress:
+        for name, scene in (("study.h5", study), ("loops.h5", scenes.read(_SCENES / "loops.toml"))):
+            with archive.Writer(folder / name) as writer:
+                writer.finish(compute(scene, writer, progress))
+            results.append(archive.read(folder / name))
+        (data, attributes), (loops, _) = results
+        progress.say("figures")
+        _figures(folder, data, loops)
     good = _tables(folder, data, attributes, study)
-    progress("figures")
-    _figures(folder, data, loops)
     print(f"written to {folder}: study.h5, loops.h5, tables.txt, Figs 2 and 5-10 as PDF and PNG")
     print(f"verdict: {'PASS' if good else 'FAIL'}")
     return good

@@ -3,15 +3,23 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from app import ranks
+from app import cost, ranks
 from app.errors import BadInput
 from app.scene import Scene
 from app.states import solid_of, speeds
+from meshes import store
 from meshes.halfplane import MESHES
-from meshes.refine import degree, refinement, truncation
+from meshes.refine import degree, reach, refinement, truncation
 from meshes.rings import QuadMesh, Refinement
 from solvers.materials import MovingFrame, rayleigh_speed
+
+#: Components of the stress tensor that are archived inside.
+INSIDE = ("XX", "YY", "XY")
+
+#: Floating-point numbers that the states of a chunk may have at once.
+CHUNK_NUMBERS = 2_000_000
 
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
@@ -36,7 +44,9 @@ class Plan:
 
     Attributes:
         states: number of states.
-        closed_form, fem, surface: whether these are needed.
+        closed_form, fem, surface, interior: whether these are needed.
+        grid: positions X/a of surface stresses, (n,).
+        points: positions X/a, Y/a of stresses inside, (n, 2).
         refinement: of the one mesh all speeds share, None without finite elements.
         speeds: finite element work by speed.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
@@ -49,11 +59,20 @@ class Plan:
     closed_form: bool
     fem: bool
     surface: bool
+    interior: bool
+    grid: NDArray[np.float64]
+    points: NDArray[np.float64]
     refinement: Refinement | None
     speeds: tuple[SpeedPlan, ...]
     shared_speeds: bool
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
+
+    @property
+    def chunk(self) -> int:
+        """States treated at once: what they hold in memory is bounded."""
+        numbers = 5 * len(self.grid) * self.surface + 10 * len(self.points) * self.interior
+        return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -63,7 +82,7 @@ def make_plan(scene: Scene) -> Plan:
         BadInput: finite elements are asked for where they have no answer.
     """
     asked, friction = set(scene.output.quantities), scene.friction
-    contact = bool(asked & {"sif", "surface"})
+    contact = bool(asked - {"friction"})
     fem = contact and "fem" in scene.solve.methods
     closed = contact and "closed_form" in scene.solve.methods and has_closed_form(scene)
     all_speeds = tuple(dict.fromkeys(speeds(scene)))
@@ -71,7 +90,10 @@ def make_plan(scene: Scene) -> Plan:
         len(speeds(scene)) * len(friction.mu_c) * len(friction.sigma0_over_load)
         * len(friction.delta) * len(scene.motion.strokes) * len(set(scene.motion.X_over_L))
     )  # fmt: skip
+    points = np.reshape(scene.output.points, (-1, 2))
     warnings = [*scene.warnings, *_speed_limits(scene, all_speeds, fem)]
+    if len(points):
+        _check_points(scene, points, closed, fem)
     speed_plans: tuple[SpeedPlan, ...] = ()
     mesh = None
     if fem:
@@ -88,10 +110,24 @@ def make_plan(scene: Scene) -> Plan:
                 f'tolerance {tolerance:g}; use mesh = "confocal" or "graded"'
             )
     return Plan(
-        count, closed, fem, contact and "surface" in asked, mesh, speed_plans,
-        _share_speeds(mesh, speed_plans),
-        tuple(_skipped(scene, contact, closed, fem)), tuple(warnings),
+        count, closed, fem, contact and "surface" in asked, contact and "interior" in asked,
+        surface_grid(), points, mesh, speed_plans, _share_speeds(mesh, speed_plans),
+        tuple(_skipped(scene, contact, closed, mesh)), tuple(warnings),
     )  # fmt: skip
+
+
+def _check_points(scene: Scene, points: NDArray, closed: bool, fem: bool) -> None:
+    far = np.abs(points).max()
+    if fem and far > 0.6 * reach(scene.solve.mesh, scene.solve.tolerance):
+        limit = 0.6 * reach(scene.solve.mesh, scene.solve.tolerance)
+        raise BadInput(
+            f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
+    if closed and solid_of(scene).κ <= 1.0:
+        raise BadInput(
+            'output.points: the closed form inside needs ν < 1/2 in plane strain; use methods = ["fem"]'
+        )
 
 
 def _share_speeds(mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:
@@ -141,17 +177,20 @@ def _speed_limits(scene: Scene, all_speeds: tuple[float, ...], fem: bool) -> lis
     return warnings
 
 
-def _skipped(scene: Scene, contact: bool, closed: bool, fem: bool) -> list[str]:
+def _skipped(scene: Scene, contact: bool, closed: bool, mesh: Refinement | None) -> list[str]:
     skipped = []
     if not contact:
-        skipped.append("contact mechanics: only friction is asked for")
-    elif not closed:
+        return ["contact mechanics: only friction is asked for"]
+    if not closed:
         why = "not in solve.methods" if has_closed_form(scene) else "the pressure is given"
         skipped.append(f"closed form: {why}")
-    if contact and not fem:
+    if mesh is None:
         skipped.append("mesh and finite elements: fem is not in solve.methods")
-    if contact and "surface" not in scene.output.quantities:
-        skipped.append("surface stresses: not in output.quantities")
+    elif store.is_kept(MESHES[scene.solve.mesh].build(mesh)):
+        skipped.append("gmsh: an earlier run made the same mesh")
+    for quantity, what in (("surface", "stresses on the surface"), ("interior", "stresses inside")):
+        if quantity not in scene.output.quantities:
+            skipped.append(f"{what}: not in output.quantities")
     return skipped
 
 
@@ -167,18 +206,41 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     result = [f"friction: {plan.states} states, Dahl's law, integrator {scene.friction.integrator}"]
     if plan.closed_form:
         result.append(f"closed form: {plan.states} states")
-    if plan.fem and plan.refinement:
-        mesh = MESHES[scene.solve.mesh].build(plan.refinement)
-        result.append(f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds")
-        result += [
-            f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
-            f"{unknowns(mesh, speed.degree)} unknowns; one factorisation serves all states, two of lower "
-            "degree measure its error"
-            for speed in plan.speeds
-        ]
+    if plan.refinement:
+        result += _fem_lines(scene, plan, MESHES[scene.solve.mesh].build(plan.refinement))
     if plan.surface:
-        result.append(f"surface stresses: {plan.states} x {len(surface_grid())} points")
+        result.append(f"stresses on the surface: {plan.states} x {len(plan.grid)} points")
+    if plan.interior:
+        result.append(f"stresses inside: {plan.states} x {len(plan.points)} points")
     return result
+
+
+def _fem_lines(scene: Scene, plan: Plan, mesh: QuadMesh) -> list[str]:
+    result = [f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds"]
+    result += [
+        f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
+        f"{unknowns(mesh, speed.degree)} unknowns; one factorisation serves all states, two of lower "
+        "degree measure its error"
+        for speed in plan.speeds
+    ]
+    if ranks.size() > 1:
+        how = "each takes whole speeds" if plan.shared_speeds else "together on one mesh"
+        result.append(f"ranks: {ranks.size()}, {how}")
+    return result
+
+
+def expense(scene: Scene, plan: Plan) -> str:
+    """Estimated time and memory of a plan."""
+    if not plan.refinement:
+        return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
+    mesh = MESHES[scene.solve.mesh].build(plan.refinement)
+    cells, highest = len(mesh.cells), max(speed.degree for speed in plan.speeds)
+    speeds = sum(cost.seconds_of_speed(cells, speed.degree) for speed in plan.speeds) / ranks.size()
+    states = cost.STATE * plan.states
+    memory = cost.bytes_of(cells, unknowns(mesh, highest), highest, CHUNK_NUMBERS)
+    parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
+    total = cost.START + speeds + states
+    return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"
 
 
 def surface_grid() -> np.ndarray:

@@ -1,7 +1,6 @@
 """Run a scene: plan, compute, judge, archive."""
 
 import json
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Protocol
@@ -11,12 +10,14 @@ from numpy.typing import NDArray
 
 from app import __version__
 from app.errors import BadInput, MachineFailure
-from app.plan import Plan, has_closed_form, lines, make_plan, surface_grid
+from app.plan import INSIDE, Plan, has_closed_form, lines, make_plan
+from app.progress import Progress
 from app.scene import Scene
-from app.states import States, enumerate_states, solid_of
+from app.states import States, enumerate_states, pieces, solid_of
 from postprocess import compare
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
+from solvers.sie.field import stresses
 
 #: A balance of nodal forces further off than this, over N, is a fault whatever the tolerance.
 BALANCE_LIMIT = 1e-9
@@ -24,9 +25,6 @@ BALANCE_LIMIT = 1e-9
 #: In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement and
 #: so has about half the digits of the moments that the tolerance speaks of.
 SLOPE_FACTOR = 10.0
-
-#: States of the closed form treated at once.
-CHUNK = 1000
 
 #: What tells one state from another, and its friction.
 STATE_FIELDS = ("motion", "X_over_L", "c", "mu_c", "sigma0_over_load", "delta", "f", "g")
@@ -58,9 +56,7 @@ class Memory(dict[str, Any]):
         self[name][rows] = values
 
 
-def compute(
-    scene: Scene, sink: Sink | None = None, progress: Callable[[str], None] = lambda text: None
-) -> dict[str, Any]:
+def compute(scene: Scene, sink: Sink | None = None, progress: Progress | None = None) -> dict[str, Any]:
     """Compute what a scene asks for, into ``sink``.
 
     Under MPI this is collective; results reach the sink of rank 0.
@@ -72,25 +68,30 @@ def compute(
         BadInput: the scene asks for what has no answer.
     """
     sink = Memory() if sink is None else sink
+    progress = progress or Progress()
+    started = perf_counter()
     plan = make_plan(scene)
     states = enumerate_states(scene)
     judge = Judge(scene)
-    grid = surface_grid()
-    seconds: dict[str, float] = {}
     sink.put("scene/text", scene.text)
     for name in STATE_FIELDS:
         sink.put(f"states/{name}", getattr(states, name))
-    exponents = _closed_form_of(scene, states, ("α", "β"))
-    sink.put("states/alpha", exponents[0])
-    sink.put("states/beta", exponents[1])
+    for name, shape in closed_form_datasets(plan).items():
+        sink.reserve(name, (len(states), *shape))
     if plan.surface:
-        sink.put("surface/X_over_a", grid)
-    if plan.closed_form:
-        started = perf_counter()
-        _closed_form(scene, plan, states, grid, sink)
-        seconds["closed form"] = perf_counter() - started
+        sink.put("surface/X_over_a", plan.grid)
+    if plan.interior:
+        for i, name in enumerate(("X_over_a", "Y_over_a")):
+            sink.put(f"interior/{name}", plan.points[:, i])
+    seconds = {"friction": perf_counter() - started}
     if plan.fem:
-        seconds |= _finite_elements(scene, plan, states, grid, sink, judge, progress)
+        seconds |= _finite_elements(scene, plan, states, sink, judge, progress)
+    elif plan.closed_form:
+        started = perf_counter()
+        for rows in pieces(states, plan.chunk):
+            _write(sink, rows, closed_form_of(scene, plan, states, rows))
+            progress.done(rows.stop, len(states))
+        seconds["closed form"] = perf_counter() - started
     sink.put("run/done", lines(scene, plan))
     sink.put("run/skipped", list(plan.skipped))
     sink.put("run/steps", list(seconds))
@@ -108,47 +109,45 @@ def compute(
     }
 
 
-def _punches(scene: Scene, states: States) -> Iterator[tuple[slice, FlatPunch]]:
-    """Closed forms of the states, chunk by chunk; a chunk has one speed."""
-    κ = solid_of(scene).κ
-    for c in dict.fromkeys(states.c.tolist()):
-        mine = np.flatnonzero(states.c == c)
-        for first in range(mine[0], mine[-1] + 1, CHUNK):
-            rows = slice(first, min(first + CHUNK, mine[-1] + 1))
-            yield rows, FlatPunch(MovingFrame(κ, c), states.g[rows, None])
+def closed_form_datasets(plan: Plan) -> dict[str, tuple[int, ...]]:
+    """Shape of a state's entry in every dataset of :func:`closed_form_of`."""
+    shapes: dict[str, tuple[int, ...]] = {}
+    if plan.closed_form or plan.fem:
+        shapes = {"states/alpha": (), "states/beta": ()}
+    if plan.closed_form:
+        shapes["states/closed_form/K_I"] = ()
+        if plan.surface:
+            shapes |= {f"surface/closed_form/sigma_{ij}": (len(plan.grid),) for ij in ("YY", "XX")}
+        if plan.interior:
+            shapes |= {f"interior/closed_form/sigma_{ij}": (len(plan.points),) for ij in INSIDE}
+    return shapes
 
 
-def _closed_form_of(scene: Scene, states: States, names: tuple[str, ...]) -> list[NDArray]:
-    """Properties of the closed form, one entry a state."""
-    parts = [[getattr(punch, name)[:, 0] for name in names] for _, punch in _punches(scene, states)]
-    return [np.concatenate(column) for column in zip(*parts)]
+def closed_form_of(scene: Scene, plan: Plan, states: States, rows: slice) -> dict[str, NDArray]:
+    """Exponents, and what else of the closed form is asked for, of states at one speed."""
+    punch = FlatPunch(MovingFrame(solid_of(scene).κ, states.c[rows.start]), states.g[rows, None])
+    data = {"states/alpha": punch.α[:, 0], "states/beta": punch.β[:, 0]}
+    if plan.closed_form:
+        data["states/closed_form/K_I"] = punch.K_I[:, 0]
+        if plan.surface:
+            σ_YY = np.where(np.abs(plan.grid) > 1.0, np.nan, punch.σ_YY(plan.grid))
+            data["surface/closed_form/sigma_YY"] = σ_YY
+            data["surface/closed_form/sigma_XX"] = punch.σ_XX(plan.grid)
+        if plan.interior:
+            for ij, values in zip(INSIDE, stresses(punch, *plan.points.T)):
+                data[f"interior/closed_form/sigma_{ij}"] = values
+    return data
 
 
-def _closed_form(scene: Scene, plan: Plan, states: States, grid: NDArray, sink: Sink) -> None:
-    sink.put("states/closed_form/K_I", _closed_form_of(scene, states, ("K_I",))[0])
-    if plan.surface:
-        for name in ("sigma_YY", "sigma_XX"):
-            sink.reserve(f"surface/closed_form/{name}", (len(states), len(grid)))
-        for rows, punch in _punches(scene, states):
-            for name, values in _surface_of(punch, grid).items():
-                sink.write(f"surface/closed_form/{name}", rows, values)
-
-
-def _surface_of(punch: FlatPunch, grid: NDArray) -> dict[str, NDArray]:
-    σ_YY = np.where(np.abs(grid) > 1.0, np.nan, punch.σ_YY(grid))
-    return {"sigma_YY": σ_YY, "sigma_XX": punch.σ_XX(grid)}
+def _write(sink: Sink, rows: slice, data: dict[str, NDArray]) -> None:
+    for name, values in data.items():
+        sink.write(name, rows, values)
 
 
 def _finite_elements(
-    scene: Scene,
-    plan: Plan,
-    states: States,
-    grid: NDArray,
-    sink: Sink,
-    judge: "Judge",
-    progress: Callable[[str], None],
+    scene: Scene, plan: Plan, states: States, sink: Sink, judge: "Judge", progress: Progress
 ) -> dict[str, float]:
-    """Write the finite element datasets; returns the wall times."""
+    """Write the datasets of finite elements and of the closed form beside them; the wall times."""
     started = perf_counter()
     try:
         from app import finite_elements
@@ -157,32 +156,28 @@ def _finite_elements(
             f"finite elements need {error.name}, which is not installed; "
             "run ./run.sh once, it installs what is missing"
         ) from error
-    imports = perf_counter() - started
-    for name, shape in finite_elements.datasets(plan, scene.solve.mode, len(grid)).items():
+    seconds = {"import of dolfinx": perf_counter() - started, "comparison and archive": 0.0}
+    for name, shape in finite_elements.datasets(plan, scene.solve.mode).items():
         sink.reserve(name, (len(states), *shape))
     true_error = plan.closed_form and scene.solve.mode == "contact"
     if true_error:
         sink.reserve("states/fem/true_error", (len(states),))
-    run = finite_elements.FiniteElementRun(scene, plan, states, grid, progress)
-    κ = solid_of(scene).κ
-    for chunk in run.chunks():
-        rows, data = slice(chunk.start, chunk.stop), chunk.data
-        punch = FlatPunch(MovingFrame(κ, states.c[chunk.start]), states.g[rows, None])
-        known = {"states/g": states.g[rows], "surface/X_over_a": grid}
-        known |= {"states/alpha": punch.α[:, 0], "states/beta": punch.β[:, 0]}
-        if plan.closed_form:
-            known["states/closed_form/K_I"] = punch.K_I[:, 0]
-            if plan.surface:
-                for name, values in _surface_of(punch, grid).items():
-                    known[f"surface/closed_form/{name}"] = values
-            if true_error:
-                data["states/fem/true_error"] = compare.K_I_error(data | known)
-        judge.see(data | known)
-        for name, values in data.items():
-            sink.write(name, rows, values)
+    run = finite_elements.FiniteElementRun(scene, plan, states, progress)
+    finished = 0
+    for rows, data in run.chunks():
+        started = perf_counter()
+        exact = closed_form_of(scene, plan, states, rows)
+        if true_error:
+            data["states/fem/true_error"] = compare.K_I_error(data | exact)
+        judge.see(data | exact | {"states/g": states.g[rows], "surface/X_over_a": plan.grid})
+        _write(sink, rows, data | exact)
+        finished += rows.stop - rows.start
+        progress.done(finished, len(states))
+        seconds["comparison and archive"] += perf_counter() - started
     for name in finite_elements.RECORD:
         sink.put(f"run/fem/{name}", np.array([entry[name] for entry in run.record]))
-    return {"import of dolfinx": imports, **run.seconds}
+    run.seconds["finite elements"] -= seconds["comparison and archive"]
+    return seconds | run.seconds
 
 
 class Judge:

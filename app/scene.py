@@ -14,7 +14,7 @@ from app.errors import BadInput
 from app.quantities import to_si
 
 METHODS = ("closed_form", "fem")
-QUANTITIES = ("friction", "sif", "surface")
+QUANTITIES = ("friction", "sif", "surface", "interior")
 
 
 def _number(unit: str = "") -> Callable[[Any], float]:
@@ -52,6 +52,15 @@ def _pressure(value: Any) -> Any:
     if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
         raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
     return pairs
+
+
+def _points(value: Any) -> tuple[tuple[float, float], ...]:
+    if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+        raise ValueError(f"found {value!r}, expected a list of pairs [X/a, Y/a]")
+    points = tuple((to_si(X, ""), to_si(Y, "")) for X, Y in value)
+    if outside := [Y for _, Y in points if Y >= 0.0]:
+        raise ValueError(f"found Y/a = {outside[0]:g}, expected Y/a < 0: the solid lies below the punch")
+    return points
 
 
 def _each(*checks: Any) -> Any:
@@ -140,8 +149,9 @@ class Output:
     """[output]"""
 
     quantities: tuple[str, ...] = _key(
-        _names, _each(is_.in_(QUANTITIES)), "what is asked for", QUANTITIES
+        _names, _each(is_.in_(QUANTITIES)), "what is asked for", QUANTITIES[:3]
     )
+    points: tuple[tuple[float, float], ...] = _key(_points, None, "points inside, [X/a, Y/a]", ())
 
 
 _SECTIONS: dict[str, type] = {
@@ -267,10 +277,15 @@ def _contradictions(scene: Scene) -> list[str]:
         faults.append("motion: c and speed exclude each other; keep one")
     if scene.motion.c is None and scene.motion.speed is None:
         faults.append("motion: expected c (over the shear wave speed) or speed (m/s)")
-    if asked & {"sif", "surface"} and not solve.methods:
+    if asked - {"friction"} and not solve.methods:
         faults.append(
             "solve.methods is empty, but output.quantities asks for "
             f"{', '.join(sorted(asked - {'friction'}))}; name closed_form, fem or both"
+        )
+    if ("interior" in asked) != bool(scene.output.points):
+        faults.append(
+            'output: the quantity "interior" and output.points go together, as in '
+            "points = [[0.0, -0.5], [1.0, -0.5]] (X/a, Y/a); give both or none"
         )
     if solve.pressure != "closed_form" and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')

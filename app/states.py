@@ -1,5 +1,6 @@
 """The states a scene asks for: every combination of its lists, in the order they are archived."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -57,6 +58,14 @@ def speeds(scene: Scene) -> tuple[float, ...]:
                 f"motion.speed = {speed:g} m/s: expected less than the shear wave speed {c_s:.6g} m/s"
             )
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
+
+
+def pieces(states: States, size: int, c: float | None = None) -> Iterator[slice]:
+    """Runs of at most ``size`` states, each at one speed; of all speeds, or of one."""
+    for speed in dict.fromkeys(states.c.tolist()) if c is None else (c,):
+        mine = np.flatnonzero(states.c == speed)  # the speed is the slowest index
+        for first in range(int(mine[0]), int(mine[-1]) + 1, size):
+            yield slice(first, min(first + size, int(mine[-1]) + 1))
 
 
 def enumerate_states(scene: Scene) -> States:

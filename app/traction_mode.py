@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from postprocess.stresses import flatness, σ_XX_on_surface
-from solvers.fem.surface import SurfaceSlopes
+from app.displacement import Displacement
 from solvers.fem.traction import LoadedHalfPlane
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
@@ -31,30 +30,24 @@ class LoadAtSpeed:
         for value in g if self.given == "closed_form" else [0.0]:
             self.column[value] = len(self.loaded.fields)
             self.loaded.load(self._load(value))
-        self.slopes = None
-        if self.run.plan.surface:
-            self.slopes = SurfaceSlopes(self.loaded.space, self.loaded.fields, self.run.grid)
+        loaded = self.loaded
+        self.displacement = Displacement(self.frame, loaded.space, loaded.fields, self.run.plan)
 
     def results(self, g: NDArray) -> dict[str, NDArray]:
         run, N = self.run, self.run.scene.punch.load
         columns = np.array([self.column[self._key(value)] for value in g])
         normal = np.array(self.loaded.resultants)[columns // 2] * N / 2.0
         data = {"states/fem/normal_force": normal, "states/fem/tangential_force": g * normal}
-        if self.slopes:
-            rows = np.arange(len(g))
-            weights = np.zeros((len(g), len(self.loaded.fields)))
-            weights[rows, columns], weights[rows, columns + 1] = 1.0, g
-            u_X, v_X = self.slopes.of(weights)
-            inside = np.abs(run.grid) < 1.0
-            r = run.grid[inside]
-            σ_YY = np.full((len(g), len(run.grid)), np.nan)
+        weights = np.zeros((len(g), len(self.loaded.fields)))
+        rows = np.arange(len(g))
+        weights[rows, columns], weights[rows, columns + 1] = 1.0, g
+        if run.plan.surface:
+            inside = np.abs(run.plan.grid) < 1.0
+            r = run.plan.grid[inside]
+            σ_YY = np.full((len(g), len(run.plan.grid)), np.nan)
             σ_YY[:, inside] = [self._load(self._key(value))(1.0 + r, 1.0 - r) for value in g]
-            data |= {
-                "states/fem/slope_under_punch": flatness(run.grid, v_X),
-                "surface/fem/sigma_YY": σ_YY,
-                "surface/fem/sigma_XX": σ_XX_on_surface(self.frame.κ, u_X, σ_YY),
-            }
-        return data
+            data |= self.displacement.on_surface(weights, σ_YY)
+        return data | self.displacement.inside(weights)
 
     def record(self) -> dict[str, float]:
         space, factor = self.loaded.space, self.loaded.factor

@@ -57,9 +57,14 @@ def outer_ξ(mesh: str, tolerance: float) -> float:
     return log(2.0 * 100.0 / tolerance)
 
 
+def reach(mesh: str, tolerance: float) -> float:
+    """Distance of the far boundary over a, the least where it is no circle."""
+    return exp(outer_ξ(mesh, tolerance)) / 2.0
+
+
 def truncation(mesh: str, tolerance: float) -> float:
     """Estimated relative error of K_I from the finite outer radius, times σ_XY/σ_YY: a/R."""
-    return 2.0 * exp(-outer_ξ(mesh, tolerance))
+    return 1.0 / reach(mesh, tolerance)
 
 
 def _of_cells(mesh: str, tolerance: float) -> float:

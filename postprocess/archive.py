@@ -127,12 +127,12 @@ def _synchronise(path: Path) -> None:
         os.close(handle)
 
 
-def read(path: Path, surfaces: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
+def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
     """What an archive holds.
 
     Args:
         path: the file.
-        surfaces: also the surface stresses, which can be large.
+        stresses: also those on the surface and inside, which can be large.
 
     Returns:
         Arrays and text by path, and the root's attributes.
@@ -154,7 +154,7 @@ def read(path: Path, surfaces: bool = True) -> tuple[dict[str, Any], dict[str, A
                     f"to {SCHEMA_VERSION}; install a newer one"
                 )
             for group in file:
-                if surfaces or group != "surface":
+                if stresses or group not in ("surface", "interior"):
                     file[group].visititems(
                         lambda name, item, group=group: _collect(data, f"{group}/{name}", item)
                     )

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 #: Names of the comparisons, as archives and tests refer to them.
-BALANCE, K_I, ESTIMATE, PRESSURE, IN_PLANE, EXPONENTS, SLOPE = (
+BALANCE, K_I, ESTIMATE, PRESSURE, IN_PLANE, INSIDE, EXPONENTS, SLOPE = (
     "force balance",
     "K_I",
     "estimate",
     "sigma_YY",
     "sigma_XX",
+    "stresses inside",
     "exponents",
     "slope under the punch",
 )
@@ -49,6 +50,14 @@ def comparisons(data: dict[str, Any], load: float) -> list[Comparison]:
         found.append(Comparison(EXPONENTS, "fitted edge exponents, absolute", np.abs(off).max()))
     if "surface/fem/sigma_XX" in data and "surface/closed_form/sigma_XX" in data:
         found += _on_surface(data)
+    if "interior/fem/sigma_XX" in data and "interior/closed_form/sigma_XX" in data:
+        fem, exact = (
+            np.array([data[f"interior/{method}/sigma_{ij}"] for ij in ("XX", "YY", "XY")])
+            for method in ("fem", "closed_form")
+        )
+        error = np.abs(fem - exact).max(axis=(0, 2)) / np.abs(exact).max(axis=(0, 2))
+        text = "stresses inside, over the largest of a state"
+        found.append(Comparison(INSIDE, text, error.max()))
     if "states/fem/slope_under_punch" in data:
         value = data["states/fem/slope_under_punch"].max()
         found.append(Comparison(SLOPE, "v,X under the punch over that beside it", value))

@@ -39,6 +39,17 @@ FIELDS: dict[str, tuple[str, str]] = {
         "contact stress from the nodal forces through the mass matrix, NaN outside the contact",
     ),
     "surface/fem/sigma_XX": ("N/(2a)", "in-plane stress on the surface"),
+    "interior/X_over_a": ("1", "positions inside, along the surface, over the half-width"),
+    "interior/Y_over_a": ("1", "positions inside, outwards, over the half-width; negative"),
+    **{
+        f"interior/{method}/sigma_{ij}": ("N/(2a)", f"{what} inside, {source}")
+        for method, source in (("closed_form", "from the potentials"), ("fem", "from the displacement"))
+        for ij, what in (
+            ("XX", "in-plane normal stress along X"),
+            ("YY", "normal stress along Y"),
+            ("XY", "shear stress"),
+        )
+    },
     "run/fem/c": ("1", "speeds with finite elements, over shear wave speed"),
     "run/fem/cells": ("1", "cells of the mesh"),
     "run/fem/unknowns": ("1", "unknowns"),

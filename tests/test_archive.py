@@ -75,7 +75,7 @@ def test_rows_come_in_any_order(tmp_path):
         writer.write("surface/fem/sigma_XX", slice(0, 2), rows[:2])
         writer.finish(ATTRIBUTES)
     np.testing.assert_array_equal(archive.read(path)[0]["surface/fem/sigma_XX"], rows)
-    assert "surface/fem/sigma_XX" not in archive.read(path, surfaces=False)[0]
+    assert "surface/fem/sigma_XX" not in archive.read(path, stresses=False)[0]
 
 
 def test_an_archive_that_is_not_finished_leaves_nothing(tmp_path):

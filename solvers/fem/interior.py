@@ -48,7 +48,9 @@ class InteriorGradients:
             corners = vertices[cells[i]]
             grid, nodes = _tensor_order(corners, space.cell_coordinates(cells[i]))
             reference = _reference_gradient(nodes, local[n], values[i][grid])
-            gradients[n] = np.einsum("rcf,rx->cxf", reference, np.linalg.inv(_jacobian(corners, local[n])))
+            gradients[n] = np.einsum(
+                "rcf,rx->cxf", reference, np.linalg.inv(_jacobian(corners, local[n]))
+            )
         # A point on the border between two ranks' cells is found by both.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
         cos, sin = (value * np.ones(len(x)) for value in space.plane.rotation(x.T, np))

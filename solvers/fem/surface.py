@@ -100,4 +100,3 @@ def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     s = np.concatenate([part[0] for part in parts])
     order = np.argsort(s[:, 0])
     return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])
-

@@ -43,6 +43,9 @@ export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 mpirun_command=(mpirun --mca btl self,vader --oversubscribe)
+# All ranks are on this machine: looking for fast networks, or starting a daemon for a single process,
+# would take a quarter of a second each time.
+export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_ess_singleton_isolated="${OMPI_MCA_ess_singleton_isolated:-1}"
 
 if [ "${1:-}" = test ]; then
   shift

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from app.displacement import Displacement
 from app.states import solid_of
 from meshes.refine import DEGREES, truncation
-from postprocess.estimate import extrapolated
+from postprocess.estimate import differences, remaining_share
 from postprocess.pressure import ContactRecovery, JacobiPressure, contact_recovery, from_moments
 from solvers.fem.punch import ContactStates, SlidingPunch
 from solvers.materials import MovingFrame
@@ -40,7 +40,6 @@ class PunchAtSpeed:
         self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
         self.levels: list[Level] = []
         self.solves, self.factorisations, self.residual = 0, 0, 0.0
-        self._rounding = 0.0
 
     def prepare(self, g: NDArray) -> None:
         """Raise the degree until the measured error of sample states is within tolerance.
@@ -52,10 +51,14 @@ class PunchAtSpeed:
             self._add_level(degree)
         probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
-        while self.degree < DEGREES[1] and self._estimates(probes).max() > tolerance:
+        self._measure(probes)
+        cut = self._cut(probes).max()
+        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
+        enough = max(tolerance, 1.1 * cut)
+        while self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
             self.degree += 1
             self._add_level(self.degree)
-        self._rounding = self._asymmetry(probes)
+            self._measure(probes)
         punch, plan = self.levels[-1].punch, self.run.plan
         punch.states(g)  # the basis is complete before its traces are taken
         self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
@@ -113,18 +116,28 @@ class PunchAtSpeed:
         self.solves += punch.factor.solves
         self.residual = max(self.residual, punch.factor.largest_residual)
 
+    def _measure(self, g: NDArray) -> None:
+        """Find how the error goes on beyond the last degree, and what rounding does to it."""
+        coarse, middle, fine = (self._quantities(level, g) for level in self.levels)
+        self._share = remaining_share(differences(coarse, middle), differences(middle, fine))
+        self._rounding = self._asymmetry(g)
+
     def _estimates(self, g: NDArray) -> NDArray[np.float64]:
-        """Measured relative error of K_I and of the pressure's moments, (states,)."""
-        quantities = []
-        for level in self.levels:
-            states = level.punch.states(g)
-            local = FlatPunch(self.frame, g)
-            K_I = level.pressure(states, local).K_I
-            moments = states.normal @ level.recovery.moments[:, 1:6]
-            quantities.append(np.column_stack([K_I * np.pi, moments / 2.0]))
-        scene = self.run.scene
-        cut = truncation(scene.solve.mesh, scene.solve.tolerance) * np.abs(g)
-        return extrapolated(*quantities) + cut + self._rounding
+        """Estimated relative error of K_I and of the pressure's moments, (states,)."""
+        middle, fine = (self._quantities(level, g) for level in self.levels[1:])
+        return self._share * differences(middle, fine) + self._cut(g) + self._rounding
+
+    def _cut(self, g: NDArray) -> NDArray[np.float64]:
+        """Estimated relative error from the finite outer radius, (states,)."""
+        solve, at_rest = self.run.scene.solve, MovingFrame(self.frame.κ, 0.0)
+        return truncation(solve.mesh, solve.tolerance, self.frame.r / at_rest.r) * np.abs(g)
+
+    def _quantities(self, level: Level, g: NDArray) -> NDArray[np.float64]:
+        """What the error is measured on, each about 1: (states, quantities)."""
+        states = level.punch.states(g)
+        K_I = level.pressure(states, FlatPunch(self.frame, g)).K_I
+        moments = states.normal @ level.recovery.moments[:, 1:6]
+        return np.column_stack([K_I * np.pi, moments / 2.0])
 
     def _asymmetry(self, g: NDArray) -> float:
         """Largest relative difference of K_I left at g and right at -g, which only rounding makes."""

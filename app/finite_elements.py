@@ -23,6 +23,7 @@ from app.traction_mode import LoadAtSpeed  # noqa: E402
 from meshes.distributed import distribute  # noqa: E402
 from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
+from meshes.store import obtain  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 
 #: What works at one speed, by the scene's mode.
@@ -62,7 +63,7 @@ class FiniteElementRun:
         kind = MESHES[self.scene.solve.mesh]
         cells = kind.build(self.plan.refinement)
         check_cells(cells)
-        mesh = distribute(cells, self.comm)
+        mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
         self._spaces: dict[int, Space] = {}
         self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p)
         self.seconds["mesh"] = perf_counter() - started
@@ -81,7 +82,9 @@ class FiniteElementRun:
         """
         world = self.world
         counter = Counter(world)
-        mine = (chunk for i in counter.until(len(self.plan.speeds)) for chunk in self._at(i))
+        # The fastest are the dearest: begun last, they would leave the other ranks waiting.
+        order = np.argsort([-speed.c for speed in self.plan.speeds])
+        mine = (chunk for i in counter.until(len(order)) for chunk in self._at(int(order[i])))
         if world.rank > 0:
             pending: list[MPI.Request] = []
             for chunk in mine:

@@ -7,20 +7,17 @@ import numpy as np
 import ufl
 from mpi4py import MPI
 
-from meshes import store
 from meshes.rings import QuadMesh
 
 #: dolfinx numbers a quadrilateral's vertices row by row, the pattern and gmsh go round it.
 _ORDER = [0, 1, 3, 2]
 
 
-def distribute(pattern: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
+def distribute(mesh: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
     """Share a mesh out over the ranks of ``comm``.
 
-    gmsh is started only if no earlier run made the same mesh.
-
     Args:
-        pattern: the whole mesh; looked at on rank 0 only.
+        mesh: the whole mesh; looked at on rank 0 only.
         comm: communicator.
 
     Returns:
@@ -29,7 +26,6 @@ def distribute(pattern: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
     points, cells = np.empty((0, 2)), np.empty((0, 4), dtype=np.int64)
     edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
     if comm.rank == 0:
-        mesh = store.load(pattern) or _made(pattern)
         points, cells = mesh.points, mesh.cells[:, _ORDER]
         edges = np.concatenate(list(mesh.edges.values()))
         tags = np.repeat(np.array([*mesh.edges], np.int32), [len(part) for part in mesh.edges.values()])
@@ -40,11 +36,3 @@ def distribute(pattern: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
     result.topology.create_connectivity(facet, facet + 1)
     adjacency = dolfinx.cpp.graph.AdjacencyList_int32(entities)
     return result, dolfinx.mesh.meshtags_from_entities(result, facet, adjacency, values.astype(np.int32))
-
-
-def _made(pattern: QuadMesh) -> QuadMesh:
-    from meshes.gmsh_model import through_gmsh
-
-    mesh = through_gmsh(pattern)
-    store.keep(pattern, mesh)
-    return mesh

@@ -1,6 +1,6 @@
 """How fine a mesh has to be for a wanted accuracy; the rule was measured, see docs/verification.md."""
 
-from math import ceil, exp, log, pi
+from math import ceil, exp, log, log10, pi, sqrt
 
 from meshes.halfplane import BOX_DEPTH
 from meshes.rings import Refinement
@@ -38,15 +38,17 @@ def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
 
 
 def degree(mesh: str, tolerance: float, rayleigh: float) -> int:
-    """Polynomial degree that reaches ``tolerance``.
+    """Polynomial degree that should reach ``tolerance``; the measured error may ask for more.
 
     Args:
         mesh: name of the mesh.
         tolerance: wanted relative accuracy.
         rayleigh: Rayleigh function over its value at rest, in (0, 1]; errors grow as it falls.
     """
-    digits = -log(_of_cells(mesh, tolerance) * rayleigh) / log(10.0)
-    return min(max(ceil(0.8 + digits), DEGREES[0]), DEGREES[1])
+    digits = -log10(_of_cells(mesh, tolerance))
+    lost = -log10(rayleigh)
+    wanted = ceil(3.4 - 0.4 * lost + (0.7 + 0.23 * lost) * digits)
+    return min(max(wanted, DEGREES[0]), DEGREES[1])
 
 
 def outer_ξ(mesh: str, tolerance: float) -> float:
@@ -62,9 +64,12 @@ def reach(mesh: str, tolerance: float) -> float:
     return exp(outer_ξ(mesh, tolerance)) / 2.0
 
 
-def truncation(mesh: str, tolerance: float) -> float:
-    """Estimated relative error of K_I from the finite outer radius, times σ_XY/σ_YY: a/R."""
-    return 1.0 / reach(mesh, tolerance)
+def truncation(mesh: str, tolerance: float, rayleigh: float = 1.0) -> float:
+    """Estimated relative error of K_I from the finite outer radius R, times σ_XY/σ_YY.
+
+    a/R at rest; it was seen to grow as the root of the Rayleigh function over its value at rest falls.
+    """
+    return 1.0 / (reach(mesh, tolerance) * sqrt(rayleigh))
 
 
 def _of_cells(mesh: str, tolerance: float) -> float:

@@ -28,19 +28,30 @@ def is_kept(pattern: QuadMesh) -> bool:
     return _path(pattern).is_file()
 
 
-def load(pattern: QuadMesh) -> QuadMesh | None:
-    """The mesh made of this pattern by an earlier run; None if there is none, or a damaged one."""
+def obtain(pattern: QuadMesh) -> QuadMesh:
+    """The mesh of a pattern: that of an earlier run, or gmsh's, which is then kept."""
+    kept = _load(_path(pattern))
+    if kept:
+        return kept
+    from meshes.gmsh_model import through_gmsh  # a slow import, for nothing if the mesh is kept
+
+    mesh = through_gmsh(pattern)
+    _keep(_path(pattern), mesh)
+    return mesh
+
+
+def _load(path: Path) -> QuadMesh | None:
+    """The mesh in a file; None if there is none, or a damaged one."""
     try:
-        with np.load(_path(pattern)) as file:
+        with np.load(path) as file:
             edges = {int(name): file[name] for name in file.files if name.isdigit()}
             return QuadMesh(file["points"], file["cells"], edges)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
 
 
-def keep(pattern: QuadMesh, mesh: QuadMesh) -> None:
-    """Keep a mesh for later runs; a folder that cannot be written is no fault."""
-    path = _path(pattern)
+def _keep(path: Path, mesh: QuadMesh) -> None:
+    """Write a mesh at once or not at all; a folder that cannot be written is no fault."""
     temporary = path.with_name(f"{path.name}.{os.getpid()}.npz")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)

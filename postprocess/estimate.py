@@ -7,20 +7,27 @@ from numpy.typing import NDArray
 #: upper end convergence is too slow to be summed, and the estimate says that it is large.
 RATIO = (0.2, 0.9)
 
+#: The ratio of successive differences is not quite constant; this covers it.
+SAFETY = 2.0
 
-def extrapolated(coarse: NDArray, middle: NDArray, fine: NDArray) -> NDArray[np.float64]:
-    """Error of ``fine``, from three successive degrees whose errors fall like a geometric series.
 
-    With differences d₀ = |middle - coarse| and d₁ = |fine - middle| and ρ = d₁/d₀ what is left is
-    d₁ ρ/(1 - ρ).
+def differences(coarse: NDArray, fine: NDArray) -> NDArray[np.float64]:
+    """Largest difference of each state's quantities between two degrees, (states,).
 
     Args:
-        coarse, middle, fine: quantities of each state, (states, quantities).
-
-    Returns:
-        Largest over the quantities, (states,).
+        coarse, fine: (states, quantities).
     """
-    d0 = np.abs(middle - coarse).max(axis=1)
-    d1 = np.abs(fine - middle).max(axis=1)
-    ρ = np.clip(d1 / np.maximum(d0, np.finfo(float).tiny), *RATIO)
-    return d1 * ρ / (1.0 - ρ)
+    return np.abs(fine - coarse).max(axis=1)
+
+
+def remaining_share(first: NDArray, second: NDArray) -> float:
+    """What is left of an error over the last difference: ``SAFETY`` times the geometric ρ/(1 - ρ).
+
+    The ratio ρ of successive differences is that of their largest, because a single state's first
+    difference may happen to vanish.
+
+    Args:
+        first, second: successive differences of several states, (states,).
+    """
+    ρ = np.clip(second.max() / max(first.max(), np.finfo(float).tiny), *RATIO)
+    return float(SAFETY * ρ / (1.0 - ρ))

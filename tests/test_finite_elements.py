@@ -84,7 +84,7 @@ def test_states_at_once_are_the_states_one_by_one(tables_run):
 
 
 @pytest.mark.parametrize("c", [0.0, 0.9])
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-8])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
 def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
     data, _ = run_scene(
         "tables4_5",
@@ -93,8 +93,8 @@ def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
         ("mu_c = 0.7", "mu_c = 1.0"),
     )
     true, estimate = data["states/fem/true_error"].max(), data["states/fem/estimate"].max()
-    assert true <= 2.0 * tolerance and estimate <= tolerance
-    assert true <= 10.0 * estimate
+    assert true <= tolerance and estimate <= tolerance
+    assert true <= 3.0 * estimate
 
 
 def test_high_speed():

@@ -1,5 +1,4 @@
 import numpy as np
-import pytest
 from scipy.special import eval_jacobi, roots_jacobi
 
 from postprocess import estimate, pressure
@@ -48,8 +47,11 @@ def test_fitted_exponents():
 
 
 def test_the_estimate_sums_a_geometric_series():
-    limit = np.array([[1.0, 2.0]])
-    error = np.array([[0.3, -0.2]])
-    results = [limit + error * 0.5**n for n in range(3)]
-    assert estimate.extrapolated(*results)[0] == pytest.approx(0.3 * 0.25)
-    assert estimate.extrapolated(limit, limit, limit)[0] == 0.0
+    limit = np.array([[1.0, 2.0], [3.0, 4.0]])
+    error = np.array([[0.3, -0.2], [0.0, 0.1]])
+    coarse, middle, fine = (limit + error * 0.5**n for n in range(3))
+    first, second = estimate.differences(coarse, middle), estimate.differences(middle, fine)
+    np.testing.assert_allclose(first, [0.15, 0.05])
+    share = estimate.remaining_share(first, second)
+    np.testing.assert_allclose(share * second, estimate.SAFETY * np.array([0.075, 0.025]))
+    assert np.isfinite(estimate.remaining_share(0.0 * first, second))

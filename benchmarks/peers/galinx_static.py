@@ -13,6 +13,7 @@ from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
 from meshes.distributed import distribute
+from meshes.gmsh_model import through_gmsh
 from meshes.halfplane import MESHES, check_cells
 from meshes.rings import TAGS, Refinement
 from postprocess.pressure import contact_recovery
@@ -38,7 +39,7 @@ def solve(degree: int, levels: int, ratio: float, columns: int, outer: float) ->
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, ratio, 1, (width,) * columns))
     check_cells(cells)
-    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, degree)
+    space = Space(*distribute(through_gmsh(cells), MPI.COMM_SELF), TAGS, kind.plane, degree)
     punch = SlidingPunch(space, KAPPA, 0.0)
     recovery = contact_recovery(space.contact.s, degree, space.plane, np.zeros(0))
     moments = punch.states(G).normal[0] @ recovery.moments[:, :6]

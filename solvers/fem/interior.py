@@ -41,16 +41,15 @@ class InteriorGradients:
         if not found.all():
             X, Y = points[np.argmin(found)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-        cells, place = np.unique(holder[mine], return_inverse=True)
+        cells = np.unique(holder[mine])
         values = space.cell_values(fields, κ, c, cells)
         gradients = np.zeros((len(points), 2, 2, len(fields)))
-        for n, i in zip(mine, place):
-            corners = vertices[cells[i]]
-            grid, nodes = _tensor_order(corners, space.cell_coordinates(cells[i]))
-            reference = _reference_gradient(nodes, local[n], values[i][grid])
-            gradients[n] = np.einsum(
-                "rcf,rx->cxf", reference, np.linalg.inv(_jacobian(corners, local[n]))
-            )
+        grid, nodes = _tensor_order(space.reference_nodes)
+        for cell, u in zip(cells, values[:, grid]):
+            here = np.flatnonzero(holder == cell)
+            reference = _reference_gradients(nodes, local[here], u)
+            J = np.array([_jacobian(vertices[cell], t) for t in local[here]])
+            gradients[here] = np.einsum("nrcf,nrx->ncxf", reference, np.linalg.inv(J))
         # A point on the border between two ranks' cells is found by both.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
         cos, sin = (value * np.ones(len(x)) for value in space.plane.rotation(x.T, np))
@@ -100,20 +99,16 @@ def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
     return np.full(2, np.nan)
 
 
-def _tensor_order(
-    vertices: NDArray, coordinates: NDArray
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Nodes of a cell as a grid [i, j] along its two directions, and their places in [0, 1]."""
-    t = np.array([_pull_back(vertices, x) for x in coordinates])
-    n = round(np.sqrt(len(t)))
-    by_a = np.argsort(t[:, 0], kind="stable").reshape(n, n)  # columns of nodes, far apart
-    grid = np.take_along_axis(by_a, np.argsort(t[by_a, 1], axis=1), axis=1)
-    return grid, t[grid[:, 0], 0]
+def _tensor_order(reference: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Local nodes as a grid [i, j] along the two directions of the unit square, and their places."""
+    n = round(np.sqrt(len(reference)))
+    grid = np.lexsort(np.round(reference, 9).T[::-1]).reshape(n, n)
+    return grid, reference[grid[:, 0], 0]
 
 
-def _reference_gradient(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """Derivatives along the unit square's directions of nodal values u (p+1, p+1, ...)."""
-    values, slopes = lagrange(nodes, t)
-    along_a = np.einsum("i,j,ij...->...", slopes[0], values[1], u)
-    along_b = np.einsum("i,j,ij...->...", values[0], slopes[1], u)
-    return np.stack([along_a, along_b])
+def _reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """Derivatives along the unit square's directions at points t of nodal values u (p+1, p+1, ...)."""
+    (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
+    along_a = np.einsum("ni,nj,ij...->n...", slope_a, value_b, u, optimize=True)
+    along_b = np.einsum("ni,nj,ij...->n...", value_a, slope_b, u, optimize=True)
+    return np.stack([along_a, along_b], axis=1)

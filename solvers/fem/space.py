@@ -159,9 +159,10 @@ class Space:
             values[self._kernel.inner] = inner.reshape(-1, 2, len(fields))
         return u
 
-    def cell_coordinates(self, cell: int) -> NDArray[np.float64]:
-        """Coordinates of the nodes of one of this rank's cells in the plane, (nodes, 2)."""
-        return self.coordinates[self._cell_nodes[cell]]
+    @property
+    def reference_nodes(self) -> NDArray[np.float64]:
+        """Positions of a cell's local nodes in the unit square, the same for every cell, (nodes, 2)."""
+        return self.V.element.interpolation_points()
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:

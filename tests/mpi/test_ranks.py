@@ -8,6 +8,7 @@ from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from solvers.fem import surface
+from solvers.fem.interior import InteriorGradients
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
 from solvers.fem.traction import LoadedHalfPlane
@@ -24,18 +25,22 @@ def on(comm, mesh):
 
 @pytest.mark.parametrize("mesh", ["confocal", "graded"])
 def test_a_shared_mesh_gives_what_one_rank_gives(mesh):
-    states, traces = [], []
+    states, traces, gradients = [], [], []
+    points = np.array([[0.3, -0.2], [-1.5, -0.7], [1.0, -0.01], [4.0, -40.0], [0.0, -1.0]])
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         space = on(comm, mesh)
         punch = SlidingPunch(space, 2.0, 0.6)
         states.append(punch.states(-0.66))
         trace = surface.gather(space, punch.fields[:3])
         traces.append(trace.derivative(np.array([-1.9, -0.7, 0.3, 1.2, 1.8])))
+        inside = InteriorGradients(space, 2.0, 0.6, punch.fields, points)
+        gradients.append(inside.of(states[-1].weights))
         punch.destroy()
     alone, shared = states
     np.testing.assert_allclose(shared.normal, alone.normal, rtol=1e-8, atol=1e-12)
     assert shared.v0[0] == pytest.approx(alone.v0[0], rel=1e-10)
     np.testing.assert_allclose(traces[1][..., 0], traces[0][..., 0], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(gradients[1], gradients[0], rtol=1e-8, atol=1e-10)
 
 
 def test_shared_tractions_give_what_one_rank_gives():

@@ -60,7 +60,8 @@ class PunchAtSpeed:
             self._add_level(self.degree)
             self._measure(probes)
         punch, plan = self.levels[-1].punch, self.run.plan
-        punch.states(g)  # the basis is complete before its traces are taken
+        for first in range(0, len(g), plan.chunk):  # the basis is complete before its traces are taken
+            punch.states(g[first : first + plan.chunk])
         self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
 
     def results(self, g: NDArray) -> dict[str, NDArray]:

@@ -1,7 +1,7 @@
 """The finite element work of a plan, from mesh to the numbers that are archived."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from time import perf_counter
 from typing import Any
 
@@ -24,6 +24,7 @@ from meshes.distributed import distribute  # noqa: E402
 from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
 from meshes.store import obtain  # noqa: E402
+from postprocess.compare import Comparison  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 
 #: What works at one speed, by the scene's mode.
@@ -36,20 +37,34 @@ AHEAD = 4
 RECORD = ("c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual")
 
 
-#: States in a row of the archive, and their datasets by path.
-Chunk = tuple[slice, dict[str, NDArray]]
+#: Rows of the archive, their datasets by path, and what comparing them found.
+Chunk = tuple[slice, dict[str, NDArray], list[Comparison]]
 
 
 class FiniteElementRun:
     """Walks through the speeds of a plan; collective over MPI's world.
+
+    Args:
+        scene, plan, states: what is to be done.
+        progress: is told about it.
+        complete: adds to a chunk's datasets what does not come from finite elements, and compares;
+            called on the rank that computed the chunk.
 
     Attributes:
         record: by name in ``RECORD``, one entry a speed, complete after the walk.
         seconds: wall time by step.
     """
 
-    def __init__(self, scene: Scene, plan: Plan, states: States, progress: Progress) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        plan: Plan,
+        states: States,
+        progress: Progress,
+        complete: Callable[[slice, dict[str, NDArray]], list[Comparison]],
+    ) -> None:
         self.scene, self.plan, self.states, self.progress = scene, plan, states, progress
+        self.complete = complete
         self.world = MPI.COMM_WORLD
         self.comm = MPI.COMM_SELF if plan.shared_speeds else self.world
         self.κ = solid_of(scene).κ
@@ -124,7 +139,8 @@ class FiniteElementRun:
         speed = MODES[self.scene.solve.mode](self, c, degree)
         speed.prepare(np.unique(self.states.g[self.states.c == c]))
         for rows in pieces(self.states, self.plan.chunk, c):
-            yield rows, speed.results(self.states.g[rows])
+            data = speed.results(self.states.g[rows])
+            yield rows, data, self.complete(rows, data)
         self.record.append({"speed": i, "c": c} | speed.record())
         speed.destroy()
 

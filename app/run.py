@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from app import __version__
+from app import __version__, ranks
 from app.errors import BadInput, MachineFailure
 from app.plan import INSIDE, Plan, has_closed_form, lines, make_plan
 from app.progress import Progress
@@ -56,6 +56,19 @@ class Memory(dict[str, Any]):
         self[name][rows] = values
 
 
+class Nowhere:
+    """The sink of ranks other than 0."""
+
+    def put(self, name: str, value: Any) -> None:
+        pass
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        pass
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        pass
+
+
 def compute(scene: Scene, sink: Sink | None = None, progress: Progress | None = None) -> dict[str, Any]:
     """Compute what a scene asks for, into ``sink``.
 
@@ -67,7 +80,8 @@ def compute(scene: Scene, sink: Sink | None = None, progress: Progress | None = 
     Raises:
         BadInput: the scene asks for what has no answer.
     """
-    sink = Memory() if sink is None else sink
+    if sink is None or not ranks.is_root():
+        sink = Nowhere()
     progress = progress or Progress()
     started = perf_counter()
     plan = make_plan(scene)
@@ -156,27 +170,35 @@ def _finite_elements(
             f"finite elements need {error.name}, which is not installed; "
             "run ./run.sh once, it installs what is missing"
         ) from error
-    seconds = {"import of dolfinx": perf_counter() - started, "comparison and archive": 0.0}
+    seconds = {"import of dolfinx": perf_counter() - started, "archive": 0.0}
     for name, shape in finite_elements.datasets(plan, scene.solve.mode).items():
         sink.reserve(name, (len(states), *shape))
     true_error = plan.closed_form and scene.solve.mode == "contact"
     if true_error:
         sink.reserve("states/fem/true_error", (len(states),))
-    run = finite_elements.FiniteElementRun(scene, plan, states, progress)
-    finished = 0
-    for rows, data in run.chunks():
-        started = perf_counter()
-        exact = closed_form_of(scene, plan, states, rows)
+
+    def complete(rows: slice, data: dict[str, NDArray]) -> list[compare.Comparison]:
+        """Add the closed form to a chunk and compare, on the rank that computed the chunk."""
+        data |= closed_form_of(scene, plan, states, rows)
         if true_error:
-            data["states/fem/true_error"] = compare.K_I_error(data | exact)
-        judge.see(data | exact | {"states/g": states.g[rows], "surface/X_over_a": plan.grid})
-        _write(sink, rows, data | exact)
+            data["states/fem/true_error"] = compare.K_I_error(data)
+        positions = {"states/g": states.g[rows], "surface/X_over_a": plan.grid}
+        return compare.comparisons(data | positions, scene.punch.load)
+
+    run = finite_elements.FiniteElementRun(scene, plan, states, progress, complete)
+    finished = 0
+    for rows, data, found in run.chunks():
+        if not ranks.is_root():
+            continue  # all ranks share one mesh and have the same results
+        started = perf_counter()
+        judge.see(found)
+        _write(sink, rows, data)
         finished += rows.stop - rows.start
         progress.done(finished, len(states))
-        seconds["comparison and archive"] += perf_counter() - started
+        seconds["archive"] += perf_counter() - started
     for name in finite_elements.RECORD:
         sink.put(f"run/fem/{name}", np.array([entry[name] for entry in run.record]))
-    run.seconds["finite elements"] -= seconds["comparison and archive"]
+    run.seconds["finite elements"] -= seconds["archive"]
     return seconds | run.seconds
 
 
@@ -188,7 +210,6 @@ class Judge:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self._load = scene.punch.load
         self.worst: dict[str, float] = {}
         tolerance = scene.solve.tolerance
         self._limits = {compare.BALANCE: BALANCE_LIMIT, compare.K_I: tolerance}
@@ -199,9 +220,9 @@ class Judge:
             self._limits = {}
         self._judged: dict[str, float] = {}
 
-    def see(self, data: dict[str, Any]) -> None:
-        """Take the next chunk into account; NaN is worse than any number."""
-        for found in compare.comparisons(data, self._load):
+    def see(self, comparisons: list[compare.Comparison]) -> None:
+        """Take a chunk's comparisons into account; NaN is worse than any number."""
+        for found in comparisons:
             value = float(np.max([self.worst.get(found.text, 0.0), found.value]))
             self.worst[found.text] = value
             if found.name in self._limits:

@@ -4,6 +4,7 @@ Inner unknowns were condensed; they are found again for the cells that hold a po
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,22 +36,22 @@ class InteriorGradients:
     ) -> None:
         x = space.plane.from_physical(points)
         vertices = space.vertices[..., :2]
-        holder, local = _locate(vertices, x)
-        mine = np.flatnonzero(holder >= 0)
-        found = space.comm.allreduce((holder >= 0).astype(int))
+        held = _locate(vertices, x)
+        found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
         if not found.all():
             X, Y = points[np.argmin(found)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-        cells = np.unique(holder[mine])
+        cells = np.unique(held.cell)
         values = space.cell_values(fields, κ, c, cells)
         gradients = np.zeros((len(points), 2, 2, len(fields)))
         grid, nodes = _tensor_order(space.reference_nodes)
         for cell, u in zip(cells, values[:, grid]):
-            here = np.flatnonzero(holder == cell)
-            reference = _reference_gradients(nodes, local[here], u)
-            J = np.array([_jacobian(vertices[cell], t) for t in local[here]])
-            gradients[here] = np.einsum("nrcf,nrx->ncxf", reference, np.linalg.inv(J))
-        # A point on the border between two ranks' cells is found by both.
+            here = held.cell == cell
+            reference = _reference_gradients(nodes, held.t[here], u)
+            J = np.array([_jacobian(vertices[cell], t) for t in held.t[here]])
+            in_plane = np.einsum("nrcf,nrx->ncxf", reference, np.linalg.inv(J))
+            np.add.at(gradients, held.point[here], in_plane)
+        # On the border between cells the gradient jumps; it is their mean.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
         cos, sin = (value * np.ones(len(x)) for value in space.plane.rotation(x.T, np))
         R = np.array([[cos, -sin], [sin, cos]]) / space.plane.stretch(x)
@@ -61,18 +62,31 @@ class InteriorGradients:
         return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
 
 
-def _locate(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """For each point the cell that holds it, -1 if none does, and its place in the unit square."""
+@dataclass(frozen=True)
+class _Held:
+    """Pairs of a point and a cell of this rank that holds it.
+
+    Attributes:
+        point, cell: their numbers, (n,).
+        t: place of the point in the cell's unit square, (n, 2).
+    """
+
+    point: NDArray[np.int64]
+    cell: NDArray[np.int64]
+    t: NDArray[np.float64]
+
+
+def _locate(vertices: NDArray, x: NDArray) -> _Held:
     low, high = vertices.min(axis=1), vertices.max(axis=1)
     slack = _SLACK * (high - low)
-    holder, local = np.full(len(x), -1), np.zeros((len(x), 2))
+    found = []
     for n, point in enumerate(x):
         for cell in np.flatnonzero(np.all((low - slack <= point) & (point <= high + slack), axis=1)):
             t = _pull_back(vertices[cell], point)
             if np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK)):
-                holder[n], local[n] = cell, t
-                break
-    return holder, local
+                found.append((n, cell, *t))
+    pairs = np.reshape(np.array(found, dtype=float), (-1, 4))
+    return _Held(pairs[:, 0].astype(int), pairs[:, 1].astype(int), pairs[:, 2:])
 
 
 def _jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:

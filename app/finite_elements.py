@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Iterator
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
 from meshes.store import obtain  # noqa: E402
 from postprocess.compare import Comparison  # noqa: E402
+from solvers.fem.clock import Clock  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 
 #: What works at one speed, by the scene's mode.
@@ -52,7 +52,7 @@ class FiniteElementRun:
 
     Attributes:
         record: by name in ``RECORD``, one entry a speed, complete after the walk.
-        seconds: wall time by step.
+        clock: wall time by step, of this rank.
     """
 
     def __init__(
@@ -69,26 +69,24 @@ class FiniteElementRun:
         self.comm = MPI.COMM_SELF if plan.shared_speeds else self.world
         self.κ = solid_of(scene).κ
         self.record: list[dict[str, float]] = []
-        self.seconds = {"mesh": 0.0, "finite elements": 0.0}
+        self.clock = Clock()
 
     def chunks(self) -> Iterator[Chunk]:
         """Results, in any order of states; on rank 0 only where speeds are shared out."""
-        started = perf_counter()
         self.progress.say(f"mesh: {self.scene.solve.mesh}")
-        kind = MESHES[self.scene.solve.mesh]
-        cells = kind.build(self.plan.refinement)
-        check_cells(cells)
-        mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
+        with self.clock("mesh"):
+            kind = MESHES[self.scene.solve.mesh]
+            cells = kind.build(self.plan.refinement)
+            check_cells(cells)
+            mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
         self._spaces: dict[int, Space] = {}
-        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p)
-        self.seconds["mesh"] = perf_counter() - started
+        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p, self.clock)
         if not self.plan.shared_speeds:
             for i in range(len(self.plan.speeds)):
                 yield from self._at(i)
         else:
             yield from self._shared_out()
         self.record.sort(key=lambda entry: entry["speed"])
-        self.seconds["finite elements"] = perf_counter() - started - self.seconds["mesh"]
 
     def _shared_out(self) -> Iterator[Chunk]:
         """Ranks take speeds as they become free; rank 0 works too, and takes in the others' results.
@@ -139,8 +137,11 @@ class FiniteElementRun:
         speed = MODES[self.scene.solve.mode](self, c, degree)
         speed.prepare(np.unique(self.states.g[self.states.c == c]))
         for rows in pieces(self.states, self.plan.chunk, c):
-            data = speed.results(self.states.g[rows])
-            yield rows, data, self.complete(rows, data)
+            with self.clock("recovery"):
+                data = speed.results(self.states.g[rows])
+            with self.clock("closed form and comparison"):
+                found = self.complete(rows, data)
+            yield rows, data, found
         self.record.append({"speed": i, "c": c} | speed.record())
         speed.destroy()
 

@@ -9,6 +9,7 @@ from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess import compare
 from solvers.errors import MeshError, SolveError
+from solvers.fem.clock import Clock
 from solvers.fem.linear import Factor
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
@@ -224,4 +225,4 @@ def test_a_singular_matrix_is_not_taken_for_a_solution():
     b = A.createVecLeft()
     b.set(1.0)
     with pytest.raises(SolveError):
-        Factor(A).solve(b)
+        Factor(A, Clock()).solve(b)

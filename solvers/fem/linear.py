@@ -6,6 +6,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from solvers.errors import SolveError
+from solvers.fem.clock import Clock
 
 #: Prefix of the options database, so that ``-galinx_ksp_view`` and the like work.
 PREFIX = "galinx_"
@@ -18,15 +19,20 @@ RESIDUAL_LIMIT = 1e-8
 class Factor:
     """Cholesky factor of a symmetric positive definite matrix, kept for many right-hand sides.
 
+    Args:
+        A: the matrix; it belongs to the factor from now on.
+        clock: takes the time of factorisation and back-substitutions.
+
     Attributes:
         solves: back-substitutions done.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
     """
 
-    def __init__(self, A: PETSc.Mat) -> None:
+    def __init__(self, A: PETSc.Mat, clock: Clock) -> None:
         A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         A.setOption(PETSc.Mat.Option.SPD, True)
         self.A, self.solves, self.largest_residual = A, 0, 0.0
+        self._clock = clock
         self._residual = A.createVecLeft()
         self._ksp = PETSc.KSP().create(A.comm)
         self._ksp.setOptionsPrefix(PREFIX)
@@ -37,7 +43,8 @@ class Factor:
         pc.setFactorSolverType("mumps")
         self._ksp.setFromOptions()
         try:
-            self._ksp.setUp()
+            with clock("factorisation"):
+                self._ksp.setUp()
         except PETSc.Error as error:
             raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
 
@@ -47,6 +54,10 @@ class Factor:
         Raises:
             SolveError: PETSc did not converge, or x is not finite, or it does not solve the system.
         """
+        with self._clock("back-substitutions"):
+            return self._solve(b)
+
+    def _solve(self, b: PETSc.Vec) -> PETSc.Vec:
         x = self.A.createVecRight()
         self._ksp.solve(b, x)
         self.solves += 1

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from solvers.errors import MeshError
+from solvers.fem.clock import Clock
 from solvers.fem.compiler import jit_options
 from solvers.fem.condensation import CHUNK, CellMatrices
 from solvers.fem.forms import moving_stiffness
@@ -47,15 +48,23 @@ class Space:
         tags: number of the tag of each of the parts "contact", "free surface" and "far".
         plane: the plane that the mesh lives in.
         degree: polynomial degree, at least 1.
+        clock: takes the time of what is done with the space.
 
     Raises:
         MeshError: a part of the boundary has no facet.
     """
 
     def __init__(
-        self, mesh: Any, facet_tags: Any, tags: dict[str, int], plane: Plane, degree: int
+        self,
+        mesh: Any,
+        facet_tags: Any,
+        tags: dict[str, int],
+        plane: Plane,
+        degree: int,
+        clock: Clock | None = None,
     ) -> None:
         self.mesh, self.plane, self.degree = mesh, plane, degree
+        self.clock = Clock() if clock is None else clock
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
@@ -105,21 +114,23 @@ class Space:
         u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
         κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
         form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
-        return fem.form(form, jit_params=jit_options()), κ, c
+        with self.clock("forms"):
+            return fem.form(form, jit_params=jit_options()), κ, c
 
     def assemble(self, κ: float, c: float) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
-        numbers = self._outer_numbers
-        A = self._empty_matrix(numbers)
-        for start in range(0, len(numbers), CHUNK):
-            cells = slice(start, start + CHUNK)
-            condensed, _ = self._condensed(κ, c, cells)
-            for rows, S in zip(numbers[cells], condensed):
-                A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-        A.assemble()
+        numbers = self._outer_numbers  # the form is compiled here, the first time
+        with self.clock("assembly"):
+            A = self._empty_matrix(numbers)
+            for start in range(0, len(numbers), CHUNK):
+                cells = slice(start, start + CHUNK)
+                condensed, _ = self._condensed(κ, c, cells)
+                for rows, S in zip(numbers[cells], condensed):
+                    A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+            A.assemble()
         return A
 
     def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -15,9 +15,10 @@ packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h
 test_packages=(python3-pytest python3-sympy python3-mpmath)
 
 missing() { # the packages of the arguments that are not installed
-  local package
+  local installed package
+  installed=$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null | sed -n 's/ install ok installed$//p')
   for package in "$@"; do
-    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || echo "$package"
+    grep -qx "$package" <<<"$installed" || echo "$package"
   done
 }
 

@@ -17,7 +17,6 @@ from app.states import States, enumerate_states, pieces, solid_of
 from postprocess import compare
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
-from solvers.sie.field import stresses
 
 #: A balance of nodal forces further off than this, over N, is a fault whatever the tolerance.
 BALANCE_LIMIT = 1e-9
@@ -148,6 +147,8 @@ def closed_form_of(scene: Scene, plan: Plan, states: States, rows: slice) -> dic
             data["surface/closed_form/sigma_YY"] = σ_YY
             data["surface/closed_form/sigma_XX"] = punch.σ_XX(plan.grid)
         if plan.interior:
+            from solvers.sie.field import stresses  # SciPy's special functions, a slow import
+
             for ij, values in zip(INSIDE, stresses(punch, *plan.points.T)):
                 data[f"interior/closed_form/sigma_{ij}"] = values
     return data

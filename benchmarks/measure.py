@@ -1,13 +1,14 @@
 """Run time against error of whole galinx processes; see benchmarks/README.md."""
 
 import argparse
+import json
 import os
 import platform
 import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from statistics import median
 
@@ -59,6 +60,8 @@ FEM_ALONE = ('methods = ["closed_form", "fem"]', 'methods = ["fem"]')
 ONE_STROKE = ('strokes = ["forward", "backward", "forward"]', 'strokes = ["forward"]')
 SIXTEEN = ((SPEEDS, f"c = {[n / 20 for n in range(16)]}"), (X, positions(334)), FEM_ALONE)
 
+FINE = ("tolerance = 1e-6", "tolerance = 1e-9")
+
 CASES = [
     *(
         Case(f"tolerance 1e-{n}", "tables4_5", (("tolerance = 1e-6", f"tolerance = 1e-{n}"),))
@@ -78,6 +81,9 @@ CASES = [
     Case("10 002 states", "tables4_5", ((SPEEDS, "c = [0.6]"), (X, positions(3334)), FEM_ALONE)),
     Case("16 speeds x 1 002 states", "tables4_5", SIXTEEN),
     Case("the same, 2 ranks", "tables4_5", SIXTEEN, ranks=2),
+    Case("16 speeds x 1 002 states, 1e-9", "tables4_5", (*SIXTEEN, FINE)),
+    Case("the same, 1e-9, 2 ranks", "tables4_5", (*SIXTEEN, FINE), ranks=2),
+    Case("2 speeds x 50 001 states", "tables4_5", ((X, positions(16667)),)),
     Case("friction alone", "loops"),
     Case("closed form alone", "tables4_5", ((FEM_ALONE[0], 'methods = ["closed_form"]'),)),
 ]
@@ -99,9 +105,11 @@ def run(case: Case, folder: Path) -> Figures:
     return Figures(case.name, wall=wall, cpu=cpu, memory=memory, **_results(archive))
 
 
-def _measure(command: list[str]) -> tuple[float, float, float]:
+def _measure(command: list[str], environment: dict[str, str] | None = None) -> tuple[float, float, float]:
     started = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode > 1:
@@ -110,8 +118,6 @@ def _measure(command: list[str]) -> tuple[float, float, float]:
 
 
 def _results(archive: Path) -> dict[str, float]:
-    import json
-
     with h5py.File(archive) as file:
         worst = json.loads(file.attrs["comparisons"])
         unknowns = file["run/fem/unknowns"][()].max() if "run/fem" in file else 0
@@ -128,6 +134,35 @@ def _results(archive: Path) -> dict[str, float]:
         "sigma_XX": of("σ_XX"),
         "estimate": of("estimated"),
     }
+
+
+def without_start() -> list[Figures]:
+    """One state at rest: galinx's default, and the study's block with its number of elements."""
+    script = HOME / "benchmarks" / "study_box.py"
+    environment = os.environ | {"PYTHONPATH": str(HOME)}
+    text = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, check=True
+    ).stdout
+    nothing = {"states": 1, "sigma_YY": np.nan, "sigma_XX": np.nan, "estimate": np.nan}
+    rows = [json.loads(line) for line in text.splitlines()]
+    names = [field.name for field in fields(Figures)]
+    return [Figures(**{k: v for k, v in (nothing | row).items() if k in names}) for row in rows]
+
+
+def steps(folder: Path) -> str:
+    """Where the time of Tables 4 and 5 goes, with nothing in the caches and with all, as Markdown."""
+    scene, archive = HOME / "scenes" / "tables4_5.toml", folder / "out.h5"
+    command = [str(HOME / "run.sh"), "run", str(scene), "-o", str(archive), "--overwrite"]
+    found = []
+    environment = os.environ | {"XDG_CACHE_HOME": str(folder / "cache")}
+    for _ in range(2):  # cold, then warm
+        wall, _, _ = _measure(command, environment)
+        with h5py.File(archive) as file:
+            seconds = dict(zip(file["run/steps"].asstr()[()], file["run/seconds"][()]))
+        found.append({"whole process": wall} | seconds)
+    lines = ["| step | cold (s) | warm (s) |", "|---|---|---|"]
+    lines += [f"| {name} | {found[0][name]:.3f} | {found[1][name]:.3f} |" for name in found[0]]
+    return "\n".join(lines) + "\n"
 
 
 def table(figures: list[Figures]) -> str:
@@ -150,11 +185,17 @@ def table(figures: list[Figures]) -> str:
 def draw(figures: list[Figures], path: Path) -> None:
     """Error against time."""
     figure, axis = plt.subplots(figsize=(5.5, 4.0))
-    groups = {"confocal, c <= 0.6": "tolerance", "confocal, c = 0.9": "c = 0.9", "study's box": "study"}
-    for (label, beginning), marker in zip(groups.items(), "osD"):
-        points = [(f.wall, f.K_I) for f in figures if f.name.startswith(beginning)]
+    groups = {
+        "confocal, c <= 0.6": "tolerance",
+        "confocal, c = 0.9": "c = 0.9",
+        "the study's box": "study's box",
+        "default, one state, start apart": "default, one",
+        "145 040 quadratic elements, the same": "study's element",
+    }
+    for (label, beginning), marker in zip(groups.items(), "osD^v"):
+        points = [(f.cpu, f.K_I) for f in figures if f.name.startswith(beginning)]
         axis.loglog(*zip(*points), marker=marker, label=label)
-    axis.set_xlabel("wall time of the whole process (s)")
+    axis.set_xlabel("processor time (s), of the whole process if not said otherwise")
     axis.set_ylabel("largest relative error of $K_I$ (dimensionless)")
     axis.grid(alpha=0.3, which="both")
     axis.legend()
@@ -172,7 +213,9 @@ def main() -> None:
         for i, case in enumerate(CASES):
             print(f"{i + 1}/{len(CASES)} {case.name}", file=sys.stderr, flush=True)
             figures.append(run(case, Path(work)))
-    text = table(figures)
+        print("one state, start apart", file=sys.stderr, flush=True)
+        figures += without_start()
+        text = table(figures) + "\n" + steps(Path(work))
     (folder / "table.md").write_text(text, encoding="utf-8")
     draw(figures, folder / "error_against_time.png")
     rows = [asdict(f) for f in figures]

@@ -29,7 +29,10 @@ def distribute(mesh: QuadMesh, comm: MPI.Comm) -> tuple[Any, Any]:
         points, cells = mesh.points, mesh.cells[:, _ORDER]
         edges = np.concatenate(list(mesh.edges.values()))
         tags = np.repeat(np.array([*mesh.edges], np.int32), [len(part) for part in mesh.edges.values()])
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, 1))
+    # The form compiler names this variant in the element when it compiles, not when it finds the form in
+    # its cache; named here, the form has one key in both cases.
+    element = ufl.VectorElement("Lagrange", ufl.quadrilateral, 1, variant="equispaced")
+    domain = ufl.Mesh(element)
     result = dolfinx.mesh.create_mesh(comm, cells, points, domain)
     facet = result.topology.dim - 1
     entities, values = dolfinx.cpp.io.distribute_entity_data(result._mesh, facet, edges, tags)

@@ -2,6 +2,7 @@ import sys
 
 import numpy as np
 import pytest
+from conftest import command
 
 from meshes import store
 from meshes.halfplane import MESHES
@@ -46,3 +47,17 @@ def test_a_damaged_file_is_replaced(pattern, tmp_path, damage):
 def test_a_folder_that_cannot_be_written_is_no_fault(pattern, tmp_path):
     (tmp_path / "galinx").write_text("a file where the folder should be", encoding="utf-8")
     same(store.obtain(pattern), pattern)
+
+
+def test_a_second_run_compiles_nothing_and_makes_no_mesh(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    listings = []
+    for _ in range(2):
+        assert (
+            command("run", "scenes/high_speed.toml", "-o", tmp_path / "out.h5", "--overwrite").returncode
+            == 0
+        )
+        files = (tmp_path / "galinx").rglob("*")
+        listings.append({path: path.stat().st_mtime_ns for path in files if path.is_file()})
+    assert any(path.suffix == ".so" for path in listings[0])
+    assert listings[0] == listings[1]

@@ -1,0 +1,93 @@
+"""One friction state at rest: galinx's default, and the study's block with as many quadratic elements
+as its own model has. Prints a JSON line of each; times are without start-up.
+"""
+
+import json
+import logging
+import resource
+import time
+from collections.abc import Callable
+
+import numpy as np
+from mpi4py import MPI
+
+from app.run import Memory, compute
+from app.scene import parse
+from meshes.distributed import distribute
+from meshes.gmsh_model import through_gmsh
+from meshes.halfplane import MESHES, check_cells
+from meshes.refine import refinement
+from meshes.rings import TAGS, QuadMesh, Refinement
+from postprocess.pressure import contact_recovery, from_moments
+from solvers.fem.punch import SlidingPunch
+from solvers.fem.space import Space
+from solvers.materials import MovingFrame
+from solvers.sie.closed_form import FlatPunch
+
+#: Elements of the study's model.
+ELEMENTS = 145_106
+#: σ_XY/σ_YY of the largest friction in Tables 4 and 5.
+G = -0.66
+
+
+#: The same state, by default settings.
+SCENE = """
+solid = {E = "193 GPa", nu = 0.25, rho = "7860 kg/m^3"}
+friction = {mu_c = 0.7, sigma0_over_load = "25000 1/m"}
+motion = {c = 0.0, strokes = ["forward"], X_over_L = 0.8}
+output = {quantities = ["sif"]}
+"""
+
+
+def block() -> QuadMesh:
+    """The box pattern with its rings and columns cut until it has the wanted number of cells."""
+    coarse = refinement("box", 1e-2, 1.0)
+    rings = 4 * coarse.sectors * coarse.levels
+    k = round((ELEMENTS / (rings + 2 * coarse.sectors * len(coarse.columns))) ** 0.5)
+    sectors, levels = k * coarse.sectors, k * coarse.levels
+    fans = 2 * sectors
+    columns = round((ELEMENTS - 4 * sectors * levels - fans) / (2 * sectors))
+    widths = (sum(coarse.columns) / columns,) * columns
+    return MESHES["box"].build(Refinement(levels, coarse.ratio ** (1.0 / k), sectors, widths))
+
+
+def study() -> tuple[float, int, int]:
+    """Error of K_I, cells and unknowns of the study's size."""
+    pattern, plane = block(), MESHES["box"].plane
+    check_cells(pattern)
+    space = Space(*distribute(through_gmsh(pattern), MPI.COMM_SELF), TAGS, plane, 2)
+    punch = SlidingPunch(space, 2.0, 0.0)
+    recovery = contact_recovery(space.contact.s, 2, plane, np.array([0.0]))
+    local = FlatPunch(MovingFrame(2.0, 0.0), np.array([G]))
+    pressure = from_moments(punch.states(G).normal @ recovery.moments, local.α, local.β)
+    punch.destroy()
+    return float(np.abs(pressure.K_I / local.K_I - 1.0).max()), space.cells, space.size
+
+
+def default() -> tuple[float, int, int]:
+    """The same of galinx's default, its measured error and the closed form included."""
+    data = Memory()
+    compute(parse(SCENE), data)
+    cells, unknowns = (int(data[f"run/fem/{name}"][0]) for name in ("cells", "unknowns"))
+    return float(data["states/fem/true_error"][0]), cells, unknowns
+
+
+def measured(name: str, work: Callable[[], tuple[float, int, int]]) -> dict[str, object]:
+    """Figures of a second run: forms are compiled, libraries loaded."""
+    work()
+    wall, cpu = time.perf_counter(), time.process_time()
+    error, cells, unknowns = work()
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    figures = {"name": name, "cells": cells, "unknowns": unknowns, "wall": wall, "cpu": cpu}
+    return figures | {"memory": memory, "K_I": error}
+
+
+def main() -> None:
+    logging.disable(logging.WARNING)
+    print(json.dumps(measured("default, one state at rest, start apart", default)), flush=True)
+    print(json.dumps(measured("study's element count, the same", study)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

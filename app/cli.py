@@ -1,6 +1,7 @@
-"""The command line: run, plan, show, paper, plot."""
+"""The command line: run, plan, show, check, paper, plot."""
 
 import json
+import signal
 import sys
 import traceback
 from pathlib import Path
@@ -31,7 +32,8 @@ def cli() -> None:
 @click.argument("scene", type=_ARCHIVE)
 @click.option("-o", "output", type=_ARCHIVE, help="Archive; default: the scene's name with .h5.")
 @click.option("--overwrite", is_flag=True, help="Replace an archive of that name.")
-def run(scene: Path, output: Path | None, overwrite: bool) -> int:
+@click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
+def run(scene: Path, output: Path | None, overwrite: bool, resume: bool) -> int:
     """Compute SCENE and archive the results.
 
     Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
@@ -48,11 +50,22 @@ def run(scene: Path, output: Path | None, overwrite: bool) -> int:
         compute(checked)
         return errors.GOOD
     from postprocess import archive
+    from postprocess.journal import Journal
 
-    with archive.Writer(target) as writer, Progress() as progress:
-        attributes = compute(checked, writer, progress)
-        progress.say("checking the archive")
-        writer.finish(attributes)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
+    try:
+        with journal, archive.Writer(target, journal.folder) as writer, Progress() as progress:
+            attributes = compute(checked, writer, progress, journal)
+            progress.say("checking the archive")
+            writer.finish(attributes)
+            journal.complete()
+    except KeyboardInterrupt:
+        kept = journal.states
+        go_on = (
+            f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
+        )
+        raise MachineFailure(f"interrupted; {go_on}") from None
     data, attributes = archive.read(target, stresses=False)
     _print_summary(data, attributes)
     print(f"archive: {target}")
@@ -98,6 +111,24 @@ def show(archive: Path, as_json: bool) -> int:
         else:
             _print_summary(data, attributes)
     return errors.GOOD
+
+
+@cli.command()
+@click.argument("archive", type=_ARCHIVE)
+def check(archive: Path) -> int:
+    """Verify ARCHIVE: checksums, completeness, layout, finite values, balances, verdict.
+
+    Example: ./run.sh check tables.h5
+    """
+    from app.judge import BALANCE_LIMIT
+    from postprocess.check import faults
+
+    found = faults(archive, BALANCE_LIMIT)
+    if ranks.is_root():
+        for text in found:
+            print(f"fault: {text}")
+        print(f"{archive}: {'is whole' if not found else f'{len(found)} faults'}")
+    return errors.GOOD if not found else errors.FAILED_VERDICT
 
 
 @cli.command()

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ logging.getLogger("py.warnings").setLevel(logging.ERROR)
 
 from app.contact_mode import PunchAtSpeed  # noqa: E402
 from app.counter import Counter  # noqa: E402
-from app.plan import INSIDE, Plan  # noqa: E402
+from app.plan import INSIDE, RECORD, Plan  # noqa: E402
 from app.progress import Progress  # noqa: E402
 from app.scene import Scene  # noqa: E402
 from app.states import States, pieces, solid_of  # noqa: E402
@@ -24,21 +25,19 @@ from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
 from meshes.store import obtain  # noqa: E402
 from postprocess.compare import Comparison  # noqa: E402
+from postprocess.journal import Part  # noqa: E402
+from solvers.errors import SolveError  # noqa: E402
 from solvers.fem.clock import Clock  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 
 #: What works at one speed, by the scene's mode.
 MODES = {"contact": PunchAtSpeed, "traction": LoadAtSpeed}
 
-#: Chunks that a rank may have computed and rank 0 not yet taken in.
+#: Adds to a part's datasets what does not come from finite elements, and compares.
+Complete = Callable[[slice, dict[str, NDArray]], list[Comparison]]
+
+#: Parts that a rank may have computed and rank 0 not yet taken in.
 AHEAD = 4
-
-#: Datasets of one entry a speed.
-RECORD = ("c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual")
-
-
-#: Rows of the archive, their datasets by path, and what comparing them found.
-Chunk = tuple[slice, dict[str, NDArray], list[Comparison]]
 
 
 class FiniteElementRun:
@@ -47,11 +46,10 @@ class FiniteElementRun:
     Args:
         scene, plan, states: what is to be done.
         progress: is told about it.
-        complete: adds to a chunk's datasets what does not come from finite elements, and compares;
-            called on the rank that computed the chunk.
+        complete: called for every part on the rank that computed it.
+        finished: first rows of the parts that need not be computed again; looked at on rank 0.
 
     Attributes:
-        record: by name in ``RECORD``, one entry a speed, complete after the walk.
         clock: wall time by step, of this rank.
     """
 
@@ -61,18 +59,26 @@ class FiniteElementRun:
         plan: Plan,
         states: States,
         progress: Progress,
-        complete: Callable[[slice, dict[str, NDArray]], list[Comparison]],
+        complete: Complete,
+        finished: frozenset[int] = frozenset(),
     ) -> None:
         self.scene, self.plan, self.states, self.progress = scene, plan, states, progress
         self.complete = complete
         self.world = MPI.COMM_WORLD
         self.comm = MPI.COMM_SELF if plan.shared_speeds else self.world
         self.κ = solid_of(scene).κ
-        self.record: list[dict[str, float]] = []
+        self.finished = self.world.bcast(finished)
         self.clock = Clock()
 
-    def chunks(self) -> Iterator[Chunk]:
-        """Results, in any order of states; on rank 0 only where speeds are shared out."""
+    def parts(self) -> Iterator[Part]:
+        """Results, in any order of states; on rank 0 only where speeds are shared out.
+
+        The part that is a speed's last has its record: numbers by name in ``RECORD``, the ``speed``, and
+        a ``failure`` where it could not be solved.
+        """
+        todo = [i for i, speed in enumerate(self.plan.speeds) if self._todo(speed.c)]
+        if not todo:
+            return
         self.progress.say(f"mesh: {self.scene.solve.mesh}")
         with self.clock("mesh"):
             kind = MESHES[self.scene.solve.mesh]
@@ -81,49 +87,52 @@ class FiniteElementRun:
             mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
         self._spaces: dict[int, Space] = {}
         self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p, self.clock)
-        if not self.plan.shared_speeds:
-            for i in range(len(self.plan.speeds)):
-                yield from self._at(i)
+        if self.plan.shared_speeds:
+            yield from self._shared_out(todo)
         else:
-            yield from self._shared_out()
-        self.record.sort(key=lambda entry: entry["speed"])
+            for i in todo:
+                yield from self._at(i)
 
-    def _shared_out(self) -> Iterator[Chunk]:
+    def _todo(self, c: float) -> list[slice]:
+        return [
+            rows for rows in pieces(self.states, self.plan.chunk, c) if rows.start not in self.finished
+        ]
+
+    def _shared_out(self, speeds: list[int]) -> Iterator[Part]:
         """Ranks take speeds as they become free; rank 0 works too, and takes in the others' results.
 
-        Nobody is more than ``AHEAD`` chunks ahead of rank 0, so memory stays bounded.
+        Nobody is more than ``AHEAD`` parts ahead of rank 0, so memory stays bounded.
         """
         world = self.world
         counter = Counter(world)
         # The fastest are the dearest: begun last, they would leave the other ranks waiting.
-        order = np.argsort([-speed.c for speed in self.plan.speeds])
-        mine = (chunk for i in counter.until(len(order)) for chunk in self._at(int(order[i])))
+        order = sorted(speeds, key=lambda i: -self.plan.speeds[i].c)
+        mine = (part for i in counter.until(len(order)) for part in self._at(order[i]))
         if world.rank > 0:
             pending: list[MPI.Request] = []
-            for chunk in mine:
-                pending.append(world.issend(chunk, 0))
+            for part in mine:
+                pending.append(world.issend(part, 0))
                 if len(pending) > AHEAD:
                     pending.pop(0).wait()
-            MPI.Request.waitall([*pending, world.isend(self.record, 0)])
+            MPI.Request.waitall([*pending, world.isend(None, 0)])
         else:
             yield from self._taken_in(mine)
         counter.free()
 
-    def _taken_in(self, mine: Iterator[Chunk]) -> Iterator[Chunk]:
+    def _taken_in(self, mine: Iterator[Part]) -> Iterator[Part]:
         working, busy = self.world.size - 1, True
         while working or busy:
             if busy:
-                chunk = next(mine, None)
-                busy = chunk is not None
-                if chunk:
-                    yield chunk
+                part = next(mine, None)
+                busy = part is not None
+                if part:
+                    yield part
             while working and (not busy or self.world.iprobe()):
                 message = self.world.recv()
-                if isinstance(message, tuple):
-                    yield message
-                else:  # a rank's record is the last it sends
-                    self.record += message
+                if message is None:  # the last that a rank sends
                     working -= 1
+                else:
+                    yield message
 
     def space(self, degree: int) -> Space:
         """The space of a degree; speeds share it, its form and its numbering."""
@@ -131,19 +140,40 @@ class FiniteElementRun:
             self._spaces[degree] = self._space_of(degree)
         return self._spaces[degree]
 
-    def _at(self, i: int) -> Iterator[Chunk]:
+    def _at(self, i: int) -> Iterator[Part]:
         c, degree = self.plan.speeds[i].c, self.plan.speeds[i].degree
         self.progress.say(f"finite elements at c = {c:g} ({i + 1} of {len(self.plan.speeds)})")
-        speed = MODES[self.scene.solve.mode](self, c, degree)
-        speed.prepare(np.unique(self.states.g[self.states.c == c]))
-        for rows in pieces(self.states, self.plan.chunk, c):
-            with self.clock("recovery"):
-                data = speed.results(self.states.g[rows])
-            with self.clock("closed form and comparison"):
-                found = self.complete(rows, data)
-            yield rows, data, found
-        self.record.append({"speed": i, "c": c} | speed.record())
-        speed.destroy()
+        speed = None
+        try:
+            speed = MODES[self.scene.solve.mode](self, c, degree)
+            speed.prepare(np.unique(self.states.g[self.states.c == c]))
+            *others, last = self._todo(c)
+            for rows in others:
+                yield self._part(rows, speed.results)
+            part = self._part(last, speed.results)
+            yield replace(part, record={"speed": i, "c": c} | speed.record())
+        except SolveError as error:
+            yield from self._failed(i, str(error))
+        finally:
+            if speed:
+                speed.destroy()
+
+    def _part(self, rows: slice, results: Callable[[NDArray], dict[str, NDArray]]) -> Part:
+        with self.clock("recovery"):
+            data = results(self.states.g[rows])
+        with self.clock("closed form and comparison"):
+            found = self.complete(rows, data)
+        return Part(rows, data, found, None)
+
+    def _failed(self, i: int, why: str) -> Iterator[Part]:
+        """Parts of a speed that could not be solved: NaN, and nothing compared."""
+        c, shapes = self.plan.speeds[i].c, datasets(self.plan, self.scene.solve.mode)
+        for rows in self._todo(c):
+            count = rows.stop - rows.start
+            data = {name: np.full((count, *shape), np.nan) for name, shape in shapes.items()}
+            self.complete(rows, data)
+            record = {"speed": i, **dict.fromkeys(RECORD, 0.0), "c": c, "failure": why}
+            yield Part(rows, data, [], record)
 
 
 def datasets(plan: Plan, mode: str) -> dict[str, tuple[int, ...]]:

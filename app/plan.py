@@ -18,6 +18,9 @@ from solvers.materials import MovingFrame, rayleigh_speed
 #: Components of the stress tensor that are archived inside.
 INSIDE = ("XX", "YY", "XY")
 
+#: What is recorded of the finite element work at a speed.
+RECORD = ("c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual")
+
 #: Floating-point numbers that the states of a chunk may have at once.
 CHUNK_NUMBERS = 2_000_000
 

@@ -11,7 +11,8 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from app.run import Memory, compute
+from app.collector import Memory
+from app.run import compute
 from app.scene import parse
 from meshes.distributed import distribute
 from meshes.gmsh_model import through_gmsh

@@ -5,6 +5,7 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
+import shutil
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -31,15 +32,17 @@ class Writer:
 
     Args:
         path: final name.
+        folder: where it is written, on the same file system; beside its final name if not given.
 
     Raises:
         UnwritableArchive: the file system refused, or what was read back differs.
         KeyError: the path of a dataset is not in ``FIELDS``.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, folder: Path | None = None) -> None:
         self.path = path
-        self._temporary = path.with_name(f".{path.name}.{os.getpid()}.partial")
+        self._temporary = (folder or path.parent) / f".{path.name}.{os.getpid()}.partial"
+        self._bytes = 0
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
@@ -75,6 +78,7 @@ class Writer:
                 name, shape, dtype, chunks=(rows, *shape[1:]), fletcher32=True
             )
             self._describe(name, dataset)
+            self._bytes += dataset.size * dataset.dtype.itemsize
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
         """Write rows of a reserved dataset."""
@@ -112,7 +116,13 @@ class Writer:
             yield
         except (OSError, RuntimeError) as error:
             reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
-            raise UnwritableArchive(f"cannot write {self.path}: {reason}") from error
+            raise UnwritableArchive(f"cannot write {self.path}: {reason}; {self._space()}") from error
+
+    def _space(self) -> str:
+        with suppress(OSError):
+            free = shutil.disk_usage(self.path.parent).free
+            return f"it needs {self._bytes / 1e6:.3g} MB, {free / 1e6:.3g} MB are free"
+        return f"it needs {self._bytes / 1e6:.3g} MB"
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:
@@ -140,9 +150,48 @@ def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, A
     Raises:
         UnreadableArchive: no archive, a damaged one, or one of a newer layout.
     """
+    with _opened(path) as file:
+        data = {
+            name: _values(dataset, slice(None))
+            for name, dataset in _datasets(file)
+            if stresses or not name.startswith(("surface/", "interior/"))
+        }
+        return data, dict(file.attrs)
+
+
+def read_rows(path: Path, rows: slice) -> dict[str, Any]:
+    """Datasets of some states by path, and those that all states share.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
+    """
+    with _opened(path) as file:
+        states = len(file["states/g"])
+        return {
+            name: _values(dataset, rows if dataset.shape[:1] == (states,) else slice(None))
+            for name, dataset in _datasets(file)
+            if name.startswith(("states/", "surface/", "interior/"))
+        }
+
+
+def described(path: Path) -> dict[str, tuple[str, tuple[int, ...]]]:
+    """Unit and shape of every dataset by path.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
+    """
+    with _opened(path) as file:
+        return {
+            name: (str(dataset.attrs.get("units", "")), dataset.shape)
+            for name, dataset in _datasets(file)
+        }
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """An archive of this program whose layout this version knows."""
     if not path.is_file():
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
-    data: dict[str, Any] = {}
     try:
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
@@ -153,19 +202,26 @@ def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, A
                     f"{path} has schema version {attributes['schema_version']}, this program reads up "
                     f"to {SCHEMA_VERSION}; install a newer one"
                 )
-            for group in file:
-                if stresses or group not in ("surface", "interior"):
-                    file[group].visititems(
-                        lambda name, item, group=group: _collect(data, f"{group}/{name}", item)
-                    )
+            yield file
     except (OSError, RuntimeError, KeyError) as error:
         raise UnreadableArchive(
             f"{path} is not a whole HDF5 file ({error}); it is damaged or was cut short, run again"
         ) from error
-    return data, attributes
 
 
-def _collect(data: dict[str, Any], name: str, item: Any) -> None:
-    if isinstance(item, h5py.Dataset):
-        text = h5py.check_string_dtype(item.dtype) is not None
-        data[name] = item.asstr()[()] if text else item[()]
+def _datasets(file: h5py.File) -> list[tuple[str, h5py.Dataset]]:
+    found: list[tuple[str, h5py.Dataset]] = []
+
+    def visit(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset):
+            found.append((name, item))
+
+    file.visititems(visit)
+    return found
+
+
+def _values(dataset: h5py.Dataset, rows: slice) -> Any:
+    if dataset.shape == ():
+        rows = ()
+    text = h5py.check_string_dtype(dataset.dtype) is not None
+    return dataset.asstr()[rows] if text else dataset[rows]

@@ -7,3 +7,11 @@ class UnreadableArchive(Exception):
 
 class UnwritableArchive(Exception):
     """The file system refused an archive; the message says why."""
+
+
+class ArchiveInUse(UnwritableArchive):
+    """Another run is writing the same archive."""
+
+
+class LeftOver(UnwritableArchive):
+    """An interrupted run left something; the message says what can be done with it."""

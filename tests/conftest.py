@@ -31,7 +31,8 @@ def tables_run():
 
 def run_scene(name, *changes):
     """Compute a scene of scenes/, its text changed by (old, new) pairs first."""
-    from app.run import Memory, compute
+    from app.collector import Memory
+    from app.run import compute
     from app.scene import parse
 
     text = (HOME / "scenes" / f"{name}.toml").read_text(encoding="utf-8")

@@ -14,7 +14,12 @@ from app import scene as scenes
 from app.errors import BadInput, MachineFailure
 from app.progress import Progress
 from postprocess.errors import UnreadableArchive, UnwritableArchive
-from solvers.errors import MeshError, SolveError
+from solvers.errors import CompilerError, MeshError, SolveError
+
+#: Failures whose message says all; others show where they happened.
+_FAILURES = (
+    MachineFailure, UnwritableArchive, SolveError, MeshError, CompilerError, OSError, MemoryError,
+)  # fmt: skip
 
 _ARCHIVE = click.Path(path_type=Path)
 
@@ -174,7 +179,7 @@ def run_from_shell() -> None:
     except click.exceptions.Abort:
         _complain("interrupted; nothing was written")
         _stop(errors.FAILURE)
-    except (MachineFailure, UnwritableArchive, SolveError, MeshError, OSError, MemoryError) as error:
+    except _FAILURES as error:
         _complain(str(error) or "out of memory")
         _stop(errors.FAILURE)
     except Exception as error:

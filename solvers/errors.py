@@ -7,3 +7,7 @@ class SolveError(RuntimeError):
 
 class MeshError(ValueError):
     """A mesh lacks what the half-plane needs; the message names it."""
+
+
+class CompilerError(Exception):
+    """A form could not be compiled; the message says why."""

@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 from solvers.errors import MeshError
 from solvers.fem.clock import Clock
-from solvers.fem.compiler import jit_options
+from solvers.fem.compiler import compiling
 from solvers.fem.condensation import CHUNK, CellMatrices
 from solvers.fem.forms import moving_stiffness
 from solvers.fem.plane import Plane
@@ -68,7 +68,9 @@ class Space:
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        self.V = fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
+        element = ufl.VectorElement("Lagrange", mesh.ufl_cell(), degree)
+        with self.clock("forms"), compiling(self.comm) as options:
+            self.V = fem.FunctionSpace(mesh, element, jit_params=options)
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -114,8 +116,8 @@ class Space:
         u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
         κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
         form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
-        with self.clock("forms"):
-            return fem.form(form, jit_params=jit_options()), κ, c
+        with self.clock("forms"), compiling(self.comm) as options:
+            return fem.form(form, jit_params=options), κ, c
 
     def assemble(self, κ: float, c: float) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.

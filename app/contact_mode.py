@@ -39,7 +39,7 @@ class PunchAtSpeed:
     def __init__(self, run: "FiniteElementRun", c: float, degree: int) -> None:
         self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
         self.levels: list[Level] = []
-        self.solves, self.factorisations, self.residual = 0, 0, 0.0
+        self.solves, self.factorisations, self.residual, self.condition = 0, 0, 0.0, 0.0
 
     def prepare(self, g: NDArray) -> None:
         """Raise the degree until the measured error of sample states is within tolerance.
@@ -96,6 +96,7 @@ class PunchAtSpeed:
             "factorisations": self.factorisations,
             "back_substitutions": self.solves,
             "largest_residual": self.residual,
+            "largest_condition": self.condition,
         }
 
     def destroy(self) -> None:
@@ -116,6 +117,7 @@ class PunchAtSpeed:
         self.factorisations += 1
         self.solves += punch.factor.solves
         self.residual = max(self.residual, punch.factor.largest_residual)
+        self.condition = max(self.condition, punch.factor.condition)
 
     def _measure(self, g: NDArray) -> None:
         """Find how the error goes on beyond the last degree, and what rounding does to it."""

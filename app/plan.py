@@ -19,7 +19,10 @@ from solvers.materials import MovingFrame, rayleigh_speed
 INSIDE = ("XX", "YY", "XY")
 
 #: What is recorded of the finite element work at a speed.
-RECORD = ("c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual")
+RECORD = (
+    "c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual",
+    "largest_condition",
+)  # fmt: skip
 
 #: Floating-point numbers that the states of a chunk may have at once.
 CHUNK_NUMBERS = 2_000_000

@@ -58,6 +58,7 @@ class LoadAtSpeed:
             "factorisations": 1,
             "back_substitutions": factor.solves,
             "largest_residual": factor.largest_residual,
+            "largest_condition": factor.condition,
         }
 
     def destroy(self) -> None:

@@ -9,6 +9,7 @@ from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess import compare
 from solvers.errors import MeshError, SolveError
+from solvers.fem import linear
 from solvers.fem.clock import Clock
 from solvers.fem.linear import Factor
 from solvers.fem.punch import SlidingPunch
@@ -226,3 +227,24 @@ def test_a_singular_matrix_is_not_taken_for_a_solution():
     b.set(1.0)
     with pytest.raises(SolveError):
         Factor(A, Clock()).solve(b)
+
+
+def small_punch():
+    kind = MESHES["confocal"]
+    cells = kind.build(Refinement(6, 0.35, 2, (3.0,) * 3))
+    return SlidingPunch(Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 7), 2.0, 0.6)
+
+
+def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
+    expected = small_punch().states(0.5).normal
+    monkeypatch.setattr(linear, "WORKSPACE", (-80, 400))
+    np.testing.assert_allclose(small_punch().states(0.5).normal, expected, rtol=1e-9)
+    monkeypatch.setattr(linear, "WORKSPACE", (-80, -80))
+    with pytest.raises(SolveError, match="status -9.*it wanted [0-9]+ MB a rank"):
+        small_punch()
+
+
+def test_the_condition_is_recorded(tables_run):
+    data, _ = tables_run
+    assert (data["run/fem/largest_condition"] > 1e3).all()
+    assert (data["run/fem/largest_condition"] < 1e7).all()

@@ -15,6 +15,12 @@ PREFIX = "galinx_"
 #: meshes' condition numbers let a sound factor reach about 1e-12.
 RESIDUAL_LIMIT = 1e-8
 
+#: MUMPS's statuses for a workspace that it estimated too small, and for memory that it did not get.
+_TOO_SMALL = (-8, -9, -11, -14, -15, -17, -20)
+_MEMORY = (-5, -7, -13, -19, -22)
+#: Percent by which MUMPS enlarges its estimate of the workspace: its own default, then once more.
+WORKSPACE = (35, 400)
+
 
 class Factor:
     """Cholesky factor of a symmetric positive definite matrix, kept for many right-hand sides.
@@ -25,6 +31,7 @@ class Factor:
 
     Attributes:
         solves: back-substitutions done.
+        condition: MUMPS's estimate of the condition number, known after the first solve.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
     """
 
@@ -34,19 +41,45 @@ class Factor:
         self.A, self.solves, self.largest_residual = A, 0, 0.0
         self._clock = clock
         self._residual = A.createVecLeft()
-        self._ksp = PETSc.KSP().create(A.comm)
+        self.condition = 0.0
+        with clock("factorisation"):
+            for percent in WORKSPACE:
+                self._factorise(percent)
+                if self._mumps.getMumpsInfog(1) not in _TOO_SMALL:
+                    break
+        self._check_factor()
+
+    def _factorise(self, percent: int) -> None:
+        self._ksp = PETSc.KSP().create(self.A.comm)
         self._ksp.setOptionsPrefix(PREFIX)
-        self._ksp.setOperators(A)
+        self._ksp.setOperators(self.A)
         self._ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = self._ksp.getPC()
         pc.setType(PETSc.PC.Type.CHOLESKY)
         pc.setFactorSolverType("mumps")
         self._ksp.setFromOptions()
+        pc.setFactorSetUpSolverType()
+        self._mumps = pc.getFactorMatrix()
+        self._mumps.setMumpsIcntl(14, percent)
         try:
-            with clock("factorisation"):
-                self._ksp.setUp()
+            self._ksp.setUp()
         except PETSc.Error as error:
             raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
+
+    def _check_factor(self) -> None:
+        status = self._mumps.getMumpsInfog(1)
+        if status == 0:
+            return
+        if status in _MEMORY + _TOO_SMALL:
+            largest, total = (self._mumps.getMumpsInfog(i) for i in (16, 17))
+            raise SolveError(
+                f"the factorisation ran out of memory (MUMPS's status {status}); it wanted {largest} MB "
+                f"a rank, {total} MB in all: use more ranks, a larger tolerance, or more memory"
+            )
+        raise SolveError(
+            f"the factorisation failed (MUMPS's status {status}): the matrix is singular or not positive "
+            "definite, as above the Rayleigh speed"
+        )
 
     def solve(self, b: PETSc.Vec) -> PETSc.Vec:
         """Solution of A x = b.
@@ -55,7 +88,13 @@ class Factor:
             SolveError: PETSc did not converge, or x is not finite, or it does not solve the system.
         """
         with self._clock("back-substitutions"):
-            return self._solve(b)
+            if self.solves:
+                return self._solve(b)
+            self._mumps.setMumpsIcntl(11, 1)  # error analysis, worth a few back-substitutions
+            x = self._solve(b)
+            self._mumps.setMumpsIcntl(11, 0)
+            self.condition = self._mumps.getMumpsRinfog(10)
+            return x
 
     def _solve(self, b: PETSc.Vec) -> PETSc.Vec:
         x = self.A.createVecRight()
@@ -64,8 +103,8 @@ class Factor:
         reason = self._ksp.getConvergedReason()
         if reason <= 0:
             raise SolveError(
-                f"the linear solve failed, PETSc's converged reason {reason}: the factorisation met a "
-                "matrix that is not positive definite, or memory ran out"
+                f"the linear solve failed, PETSc's converged reason {reason}: the right-hand side or the "
+                "matrix is not finite, or memory ran out"
             )
         self.A.mult(x, self._residual)
         self._residual.aypx(-1.0, b)

@@ -1,6 +1,7 @@
 """The command line: run, plan, show, check, paper, plot."""
 
 import json
+import os
 import signal
 import sys
 import traceback
@@ -195,10 +196,14 @@ def _complain(message: str) -> None:
 
 
 def _stop(status: int) -> NoReturn:
-    """End with a failure that other ranks may not share."""
+    """End at once with a failure that other ranks may not share.
+
+    HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
+    """
+    sys.stdout.flush(), sys.stderr.flush()
     if ranks.size() > 1:
         ranks.abort(status)
-    sys.exit(status)
+    os._exit(status)
 
 
 def _status(attributes: dict[str, Any]) -> int:

@@ -5,7 +5,6 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
-import shutil
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -17,6 +16,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from postprocess.disk import refused
 from postprocess.errors import UnreadableArchive, UnwritableArchive
 from postprocess.fields import FIELDS
 
@@ -115,14 +115,7 @@ class Writer:
         try:
             yield
         except (OSError, RuntimeError) as error:
-            reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
-            raise UnwritableArchive(f"cannot write {self.path}: {reason}; {self._space()}") from error
-
-    def _space(self) -> str:
-        with suppress(OSError):
-            free = shutil.disk_usage(self.path.parent).free
-            return f"it needs {self._bytes / 1e6:.3g} MB, {free / 1e6:.3g} MB are free"
-        return f"it needs {self._bytes / 1e6:.3g} MB"
+            raise refused(self.path, error, self._bytes) from error
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:

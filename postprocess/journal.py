@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from postprocess.compare import Comparison
-from postprocess.errors import ArchiveInUse, LeftOver, UnwritableArchive
+from postprocess.disk import refused
+from postprocess.errors import ArchiveInUse, LeftOver
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Journal:
             self._check_left_over()
             (self.folder / "key").write_text(self._key, encoding="utf-8")
         except OSError as error:
-            raise UnwritableArchive(f"cannot write {self.target}: {os.strerror(error.errno)}") from error
+            raise refused(self.target, error) from error
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -111,7 +112,7 @@ class Journal:
             np.savez(temporary, **part.data, told=np.array(json.dumps(told)))
             os.replace(temporary, path)
         except OSError as error:
-            raise UnwritableArchive(f"cannot write {self.target}: {os.strerror(error.errno)}") from error
+            raise refused(self.target, error) from error
 
     def complete(self) -> None:
         """The archive holds everything; the parts are no longer needed."""

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BarycentricInterpolator
 from scipy.linalg import solveh_banded
 from scipy.special import gammaln
 
@@ -150,12 +149,11 @@ def contact_recovery(
     density = _density_of_forces(s, facets, degree)  # symmetric
     start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
     nodes = (s[facets[0]] - start[0]) / length[0]
-    basis = BarycentricInterpolator(nodes, np.eye(degree + 1))
 
     inside = np.abs(r) < 1.0
     at = plane.surface_coordinate(r[inside])
     facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
-    values = basis((at - start[facet]) / length[facet])
+    values = _lagrange(nodes, (at - start[facet]) / length[facet])
     raw = np.full((len(s), len(r)), np.nan)
     raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
     raw[:, inside] /= plane.surface_stretch(at)
@@ -165,7 +163,7 @@ def contact_recovery(
         start[:, None] - s[0] + length[:, None] * t,
         s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
     )
-    at_gauss = density[:, facets] @ basis(t).T / stretch
+    at_gauss = density[:, facets] @ _lagrange(nodes, t).T / stretch
     edges = []
     for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
@@ -178,7 +176,7 @@ def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.f
     """Inverse of the contact's mass matrix per surface coordinate: forces to σ_YY dX/ds at nodes."""
     t, w = np.polynomial.legendre.leggauss(degree + 1)
     nodes = (s[facets[0]] - s[0]) / (s[facets[0, -1]] - s[0])
-    basis = BarycentricInterpolator(nodes, np.eye(degree + 1))((t + 1.0) / 2.0)
+    basis = _lagrange(nodes, (t + 1.0) / 2.0)
     unit_mass = basis.T * (w / 2.0) @ basis
     banded = np.zeros((degree + 1, len(s)))
     for row in facets:
@@ -186,3 +184,9 @@ def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.f
         for k in range(degree + 1):
             banded[degree - k, row[k:]] += np.diagonal(mass, k)
     return solveh_banded(banded, np.eye(len(s)))
+
+
+def _lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """Values at t of the Lagrange polynomials of the nodes, all in [0, 1]: (len(t), len(nodes))."""
+    at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
+    return at_t @ np.linalg.inv(at_nodes)

@@ -45,8 +45,9 @@ class Factor:
         with clock("factorisation"):
             for percent in WORKSPACE:
                 self._factorise(percent)
-                if self._mumps.getMumpsInfog(1) not in _TOO_SMALL:
+                if self._mumps.getMumpsInfog(1) not in _TOO_SMALL or percent == WORKSPACE[-1]:
                     break
+                self._ksp.destroy()
         self._check_factor()
 
     def _factorise(self, percent: int) -> None:

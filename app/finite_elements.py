@@ -86,7 +86,7 @@ class FiniteElementRun:
             check_cells(cells)
             mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
         self._spaces: dict[int, Space] = {}
-        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p, self.clock)
+        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p, self.plan.mixed, self.clock)
         if self.plan.shared_speeds:
             yield from self._shared_out(todo)
         else:

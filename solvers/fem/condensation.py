@@ -23,13 +23,16 @@ class CellMatrices:
 
     Attributes:
         form: dolfinx's compiled form with one cell integral and no coefficients.
-        nodes: nodes of a cell.
+        nodes: nodes of a cell, two unknowns each.
         inner: which of them lie inside it.
+        pressures: unknowns of a discontinuous pressure, which follow those of the nodes; 0 or at least 2.
+            Two of them stay: without its mean the pressure inside a cell is not determined.
     """
 
     form: Any
     nodes: int
     inner: NDArray[np.int32]
+    pressures: int = 0
 
     @property
     def outer(self) -> NDArray[np.int64]:
@@ -38,19 +41,20 @@ class CellMatrices:
 
     @property
     def outer_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns on a cell's boundary, two a node."""
-        return _dofs(self.outer)
+        """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
+        kept = 2 * self.nodes + np.arange(min(self.pressures, 2))
+        return np.concatenate([_dofs(self.outer), kept])
 
     @property
     def inner_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns inside a cell, two a node."""
-        return _dofs(self.inner)
+        """Local unknowns that are eliminated."""
+        return np.concatenate([_dofs(self.inner), 2 * self.nodes + np.arange(2, self.pressures)])
 
     def tabulate(self, constants: NDArray, corners: NDArray) -> NDArray[np.float64]:
         """Element matrices of cells with the given vertex coordinates (m, 4, 3): (m, 2n, 2n)."""
         ffi = cffi.FFI()
         kernel = _kernel(self.form.ufcx_form)
-        size = 2 * self.nodes
+        size = 2 * self.nodes + self.pressures
         result = np.zeros((len(corners), size, size))
         corners = np.ascontiguousarray(corners)
         constants = np.ascontiguousarray(constants)
@@ -71,24 +75,31 @@ class CellMatrices:
         Returns:
             S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b), and E = -K_ii⁻¹ K_ib, (m, i, b).
         """
+        K = self.tabulate(constants, corners)
+        if self.pressures:
+            # The first of the two pressures that stay is the mean; the rest is orthogonal to it.
+            n = self.pressures
+            modes, _ = np.linalg.qr(np.column_stack([np.ones(n), np.eye(n)[:, 1:]]))
+            K[:, -n:] = modes.T @ K[:, -n:]
+            K[:, :, -n:] = K[:, :, -n:] @ modes
         order, b = np.concatenate([self.outer_dofs, self.inner_dofs]), len(self.outer_dofs)
-        K = self.tabulate(constants, corners).take(order, axis=1).take(order, axis=2)
+        K = K.take(order, axis=1).take(order, axis=2)
         E = -np.linalg.solve(K[:, b:, b:], K[:, b:, :b])
-        return _free_of_translations(K[:, :b, :b] + K[:, :b, b:] @ E), E
+        S = K[:, :b, :b] + K[:, :b, b:] @ E
+        return _free_of_translations(S, len(self.outer)), E
 
 
-def _free_of_translations(S: NDArray) -> NDArray[np.float64]:
+def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
     """S with the forces of rigid translations, which are rounding, taken out: P S P.
 
     Near the Rayleigh speed the body moves far before it deforms; those forces times that motion would
     be what limits the contact forces' digits.
     """
-    m, b, _ = S.shape
-    n = b // 2
-    nodes = S.reshape(m, n, 2, n, 2)
-    force = nodes.sum(axis=3, keepdims=True) / n  # on each node by a translation, (m, n, 2, 1, 2)
-    total = force.sum(axis=1, keepdims=True) / n
-    return (nodes - force - force.transpose(0, 3, 4, 1, 2) + total).reshape(m, b, b)
+    T = np.zeros((S.shape[1], 2))  # orthonormal
+    T[: 2 * nodes : 2, 0] = T[1 : 2 * nodes : 2, 1] = nodes**-0.5
+    force = S @ T
+    outer = force @ T.T
+    return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force) @ T.T
 
 
 def _kernel(ufcx_form: Any) -> Any:

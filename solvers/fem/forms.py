@@ -30,3 +30,18 @@ def moving_stiffness(u: Any, w: Any, plane: Plane, x: Any, κ: Any, c: Any, degr
     Gu, Gw = gradient(u, plane, x), gradient(w, plane, x)
     energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
+
+
+def mixed_stiffness(
+    u: Any, p: Any, w: Any, q: Any, plane: Plane, x: Any, κ: Any, c: Any, degree: int
+) -> Any:
+    """The same with an unknown p = -λ div u/μ (times the plane's stretch), for ν up to 1/2.
+
+    ∫ 2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
+    displacement alone carries λ, rounding grows with it.
+    """
+    Gu, Gw = gradient(u, plane, x), gradient(w, plane, x)
+    compliance = (κ - 1) / (3 - κ)  # μ/λ
+    energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
+    energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q
+    return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})

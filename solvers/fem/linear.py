@@ -23,11 +23,12 @@ WORKSPACE = (35, 400)
 
 
 class Factor:
-    """Cholesky factor of a symmetric positive definite matrix, kept for many right-hand sides.
+    """Factor of a symmetric matrix, kept for many right-hand sides.
 
     Args:
         A: the matrix; it belongs to the factor from now on.
         clock: takes the time of factorisation and back-substitutions.
+        definite: positive definite, so that Cholesky's method needs no pivots.
 
     Attributes:
         solves: back-substitutions done.
@@ -35,9 +36,9 @@ class Factor:
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
     """
 
-    def __init__(self, A: PETSc.Mat, clock: Clock) -> None:
+    def __init__(self, A: PETSc.Mat, clock: Clock, definite: bool = True) -> None:
         A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        A.setOption(PETSc.Mat.Option.SPD, True)
+        A.setOption(PETSc.Mat.Option.SPD, definite)
         self.A, self.solves, self.largest_residual = A, 0, 0.0
         self._clock = clock
         self._residual = A.createVecLeft()

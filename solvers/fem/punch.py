@@ -65,7 +65,7 @@ class SlidingPunch:
         held.setValues(nodes.dofs(1), np.full(len(nodes.blocks), -1.0))
         held.assemble()
         A.zeroRowsColumns(np.concatenate([nodes.dofs(1), space.far_dofs]), 1.0, held, b)
-        self.factor = Factor(A, space.clock)
+        self.factor = Factor(A, space.clock, definite=not space.mixed)
         #: Displacements of the basis: first the frictionless punch, then the tangential loads.
         self.fields = [self.factor.solve(b)]
         self._forces = [self._reactions(self.fields[0])]

@@ -17,7 +17,7 @@ from solvers.errors import MeshError
 from solvers.fem.clock import Clock
 from solvers.fem.compiler import compiling
 from solvers.fem.condensation import CHUNK, CellMatrices
-from solvers.fem.forms import moving_stiffness
+from solvers.fem.forms import mixed_stiffness, moving_stiffness
 from solvers.fem.plane import Plane
 
 
@@ -48,6 +48,7 @@ class Space:
         tags: number of the tag of each of the parts "contact", "free surface" and "far".
         plane: the plane that the mesh lives in.
         degree: polynomial degree, at least 1.
+        mixed: with an unknown pressure in each cell, for nearly and fully incompressible solids.
         clock: takes the time of what is done with the space.
 
     Raises:
@@ -61,16 +62,15 @@ class Space:
         tags: dict[str, int],
         plane: Plane,
         degree: int,
+        mixed: bool = False,
         clock: Clock | None = None,
     ) -> None:
-        self.mesh, self.plane, self.degree = mesh, plane, degree
+        self.mesh, self.plane, self.degree, self.mixed = mesh, plane, degree, mixed
         self.clock = Clock() if clock is None else clock
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        element = ufl.VectorElement("Lagrange", mesh.ufl_cell(), degree)
-        with self.clock("forms"), compiling(self.comm) as options:
-            self.V = fem.FunctionSpace(mesh, element, jit_params=options)
+        self.V = self._function_space(ufl.VectorElement("Lagrange", mesh.ufl_cell(), degree))
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -113,11 +113,22 @@ class Space:
     def _form(self) -> tuple[Any, fem.Constant, fem.Constant]:
         """The compiled form with its constants κ and c, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
-        u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
         κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
-        form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
+        if self.mixed:
+            # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
+            pressure = ufl.FiniteElement("DQ", self.mesh.ufl_cell(), self.degree - 2)
+            W = self._function_space(ufl.MixedElement(self.V.ufl_element(), pressure))
+            (u, p), (w, q) = ufl.TrialFunctions(W), ufl.TestFunctions(W)
+            form = mixed_stiffness(u, p, w, q, self.plane, x, κ, c, self.degree)
+        else:
+            u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
+            form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
         with self.clock("forms"), compiling(self.comm) as options:
             return fem.form(form, jit_params=options), κ, c
+
+    def _function_space(self, element: Any) -> fem.FunctionSpace:
+        with self.clock("forms"), compiling(self.comm) as options:
+            return fem.FunctionSpace(self.mesh, element, jit_params=options)
 
     def assemble(self, κ: float, c: float) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
@@ -166,10 +177,12 @@ class Space:
         outer = self.fetch(fields, self._outer_numbers[cells])
         _, E = self._condensed(κ, c, cells)
         u = np.empty((len(cells), self._kernel.nodes, 2, len(fields)))
-        u[:, self._kernel.outer] = outer
+        kernel = self._kernel
+        u[:, kernel.outer] = outer[:, : len(kernel.outer)]
         for values, extension, boundary in zip(u, E, outer):
             inner = extension @ boundary.reshape(-1, len(fields))
-            values[self._kernel.inner] = inner.reshape(-1, 2, len(fields))
+            displacement = inner[: 2 * len(kernel.inner)]
+            values[kernel.inner] = displacement.reshape(-1, 2, len(fields))
         return u
 
     @property
@@ -187,7 +200,9 @@ class Space:
     @cached_property
     def _kernel(self) -> CellMatrices:
         layout = self.V.dofmap.dof_layout
-        return CellMatrices(self._form[0], layout.num_dofs, np.array(layout.entity_dofs(2, 0)))
+        pressures = (self.degree - 1) ** 2 * self.mixed
+        inner = np.array(layout.entity_dofs(2, 0))
+        return CellMatrices(self._form[0], layout.num_dofs, inner, pressures)
 
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
@@ -198,8 +213,15 @@ class Space:
 
     @cached_property
     def _outer_numbers(self) -> NDArray[np.int32]:
-        """Global numbers of the nodes on the boundary of each cell this rank owns."""
-        return self.numbers[self._cell_nodes[:, self._kernel.outer]]
+        """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
+
+        The two pressures of a cell are numbered like the two unknowns of a node.
+        """
+        nodes = self.numbers[self._cell_nodes[:, self._kernel.outer]]
+        if not self.mixed:
+            return nodes
+        cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
+        return np.column_stack([nodes, cells])
 
     def _condensed(self, κ: float, c: float, cells: Any) -> tuple[NDArray, NDArray]:
         form, κ_, c_ = self._form
@@ -238,8 +260,9 @@ class Space:
 
     @cached_property
     def _range(self) -> tuple[int, int]:
-        """Numbers of the nodes that this rank owns: from the first to below the last."""
+        """Numbers that this rank owns, from the first to below the last: nodes, then pressures."""
         owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
+        owned += self.mesh.topology.index_map(2).size_local * self.mixed
         last = self.comm.scan(owned)
         return last - owned, last
 

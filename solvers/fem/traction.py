@@ -33,7 +33,7 @@ class LoadedHalfPlane:
         self.space = space
         A = space.assemble(κ, c)
         A.zeroRowsColumns(space.far_dofs, 1.0)
-        self.factor = Factor(A, space.clock)
+        self.factor = Factor(A, space.clock, definite=not space.mixed)
         #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
         self.fields: list[PETSc.Vec] = []
         #: ∫ σ_YY d(X/a) over N/(2a) of each load.

@@ -24,6 +24,9 @@ RECORD = (
     "largest_condition",
 )  # fmt: skip
 
+#: κ - 1 below which the pressure becomes an unknown of its own: ν > 0.49 in plane strain.
+MIXED = 0.04
+
 #: Floating-point numbers that the states of a chunk may have at once.
 CHUNK_NUMBERS = 2_000_000
 
@@ -53,6 +56,7 @@ class Plan:
         closed_form, fem, surface, interior: whether these are needed.
         grid: positions X/a of surface stresses, (n,).
         points: positions X/a, Y/a of stresses inside, (n, 2).
+        mixed: finite elements with an unknown pressure, for nearly and fully incompressible solids.
         refinement: of the one mesh all speeds share, None without finite elements.
         speeds: finite element work by speed.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
@@ -68,6 +72,7 @@ class Plan:
     interior: bool
     grid: NDArray[np.float64]
     points: NDArray[np.float64]
+    mixed: bool
     refinement: Refinement | None
     speeds: tuple[SpeedPlan, ...]
     shared_speeds: bool
@@ -99,15 +104,17 @@ def make_plan(scene: Scene) -> Plan:
     points = np.reshape(scene.output.points, (-1, 2))
     warnings = [*scene.warnings, *_speed_limits(scene, all_speeds, fem)]
     if len(points):
-        _check_points(scene, points, closed, fem)
+        _check_points(scene, points, fem)
     speed_plans: tuple[SpeedPlan, ...] = ()
     mesh = None
+    mixed = fem and solid_of(scene).κ - 1.0 < MIXED
     if fem:
         κ, tolerance, name = solid_of(scene).κ, scene.solve.tolerance, scene.solve.mesh
         mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s)
         rest = MovingFrame(κ, 0.0).r
         speed_plans = tuple(
-            SpeedPlan(c, degree(name, tolerance, MovingFrame(κ, c).r / rest)) for c in all_speeds
+            SpeedPlan(c, max(degree(name, tolerance, MovingFrame(κ, c).r / rest), 4 + mixed))
+            for c in all_speeds
         )
         if truncation(name, tolerance) > tolerance:
             warnings.append(
@@ -117,12 +124,12 @@ def make_plan(scene: Scene) -> Plan:
             )
     return Plan(
         count, closed, fem, contact and "surface" in asked, contact and "interior" in asked,
-        surface_grid(), points, mesh, speed_plans, _share_speeds(mesh, speed_plans),
+        surface_grid(), points, mixed, mesh, speed_plans, _share_speeds(mesh, speed_plans),
         tuple(_skipped(scene, contact, closed, mesh)), tuple(warnings),
     )  # fmt: skip
 
 
-def _check_points(scene: Scene, points: NDArray, closed: bool, fem: bool) -> None:
+def _check_points(scene: Scene, points: NDArray, fem: bool) -> None:
     far = np.abs(points).max()
     if fem and far > 0.6 * reach(scene.solve.mesh, scene.solve.tolerance):
         limit = 0.6 * reach(scene.solve.mesh, scene.solve.tolerance)
@@ -130,9 +137,10 @@ def _check_points(scene: Scene, points: NDArray, closed: bool, fem: bool) -> Non
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
             f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
         )
-    if closed and solid_of(scene).κ <= 1.0:
+    if fem and solid_of(scene).κ - 1.0 < MIXED:
         raise BadInput(
-            'output.points: the closed form inside needs ν < 1/2 in plane strain; use methods = ["fem"]'
+            f"output.points: found ν = {scene.solid.nu:g} in plane strain, expected ν <= 0.49 for "
+            'stresses inside from finite elements; use methods = ["closed_form"]'
         )
 
 
@@ -163,11 +171,6 @@ def _speed_limits(scene: Scene, all_speeds: tuple[float, ...], fem: bool) -> lis
             f"motion: c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
             f"c_R = {c_R:.6g} (over c_s): the finite element form is indefinite there and does not "
             'converge; take lower speeds, or methods = ["closed_form"]'
-        )
-    if fem and κ - 1.0 < 1e-3:
-        raise BadInput(
-            f"solid.nu = {scene.solid.nu:g} in plane strain: the displacement form loses its digits at "
-            'ν = 1/2, expected ν <= 0.4997 for finite elements; or methods = ["closed_form"]'
         )
     warnings = []
     if beyond:
@@ -223,10 +226,11 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
 
 def _fem_lines(scene: Scene, plan: Plan, mesh: QuadMesh) -> list[str]:
     result = [f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds"]
+    pressure = " and those of a pressure" * plan.mixed
     result += [
         f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
-        f"{unknowns(mesh, speed.degree)} unknowns; one factorisation serves all states, two of lower "
-        "degree measure its error"
+        f"{unknowns(mesh, speed.degree)} unknowns{pressure}; one factorisation serves all states, two of "
+        "lower degree measure its error"
         for speed in plan.speeds
     ]
     if ranks.size() > 1:

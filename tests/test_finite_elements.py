@@ -107,6 +107,14 @@ def test_high_speed():
     assert attributes["verdict"] == "PASS"
 
 
+@pytest.mark.parametrize("nu", [-0.9, 0.49, 0.4999, 0.5])
+def test_no_solid_locks(nu):
+    data, attributes = run_scene("tables4_5", ("nu = 0.25", f"nu = {nu}"))
+    found = disagreement(data)
+    assert attributes["verdict"] == "PASS"
+    assert found[compare.K_I] <= 1e-6 and found[compare.IN_PLANE] <= 1e-5
+
+
 def test_graded_mesh():
     data, attributes = run_scene("graded")
     found = disagreement(data)

@@ -75,6 +75,19 @@ def test_a_point_beyond_the_mesh_is_refused():
     punch.destroy()
 
 
+def test_incompressible_solids_have_stresses_inside_in_closed_form_only():
+    scene = ("tables4_5", with_points(np.array([[0.0, -1.0], [0.9, -0.1]])), ("nu = 0.25", "nu = 0.5"))
+    with pytest.raises(BadInput, match="expected ν <= 0.49"):
+        run_scene(*scene)
+    data, _ = run_scene(*scene, ('["closed_form", "fem"]', '["closed_form"]'))
+    near, _ = run_scene(
+        *scene[:2], ("nu = 0.25", "nu = 0.4999999"), ('["closed_form", "fem"]', '["closed_form"]')
+    )
+    for ij in ("XX", "YY", "XY"):
+        name = f"interior/closed_form/sigma_{ij}"
+        np.testing.assert_allclose(data[name], near[name], rtol=1e-5, atol=1e-7)
+
+
 def test_stresses_of_a_gradient_follow_from_hookes_law():
     κ, u_X, u_Y, v_X, v_Y = sp.symbols("κ u_X u_Y v_X v_Y")
     λ = (3 - κ) / (κ - 1)

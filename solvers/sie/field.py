@@ -43,11 +43,12 @@ def stresses(punch: FlatPunch, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64
         + β_s * g * ((2.0 * k - 1.0) * h_s - 2.0 * β_d**2 * h)
     ) / r
     σ_XY = g * (4.0 * β_s * β_d * s / r + s_s) - 2.0 * β_d * e * h / r
-    if κ > 1.0:
-        σ_XX = ((κ + 1.0) * u_X + (3.0 - κ) * v_Y) / (κ - 1.0)  # Eq 6
-        σ_YY = ((κ + 1.0) * v_Y + (3.0 - κ) * u_X) / (κ - 1.0)  # Eq 7
-    else:
-        raise ValueError("κ = 1 (ν = 1/2, plane strain): expected κ > 1 for the interior field")
+    # (u,X + v,Y)/(κ - 1), in which κ - 1 has cancelled: it stays what it is up to ν = 1/2.
+    S, c2 = 1.0 + β_s * β_d, frame.c**2
+    of_s_s = 2.0 * (1.0 - c2) / S - c2 + 2.0 * (β_d + β_s * c2 / S) / (β_d + β_s)
+    dilatation = (c2 * (e * s + 2.0 * g * β_s * h) + 2.0 * β_s * g * h_s + of_s_s * s_s) / ((κ + 1.0) * r)
+    σ_XX = u_X - v_Y + 2.0 * dilatation  # Eq 6
+    σ_YY = v_Y - u_X + 2.0 * dilatation  # Eq 7
     return np.array([σ_XX, σ_YY, σ_XY])
 
 

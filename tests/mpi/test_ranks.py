@@ -18,17 +18,17 @@ from solvers.sie.closed_form import FlatPunch
 REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 
 
-def on(comm, mesh):
+def on(comm, mesh, mixed=False):
     kind = MESHES[mesh]
-    return Space(*distribute(kind.build(REFINEMENT), comm), TAGS, kind.plane, 5)
+    return Space(*distribute(kind.build(REFINEMENT), comm), TAGS, kind.plane, 5, mixed)
 
 
-@pytest.mark.parametrize("mesh", ["confocal", "graded"])
-def test_a_shared_mesh_gives_what_one_rank_gives(mesh):
+@pytest.mark.parametrize("mesh, mixed", [("confocal", False), ("graded", False), ("confocal", True)])
+def test_a_shared_mesh_gives_what_one_rank_gives(mesh, mixed):
     states, traces, gradients = [], [], []
     points = np.array([[0.3, -0.2], [-1.5, -0.7], [1.0, -0.01], [4.0, -40.0], [0.0, -1.0]])
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        space = on(comm, mesh)
+        space = on(comm, mesh, mixed)
         punch = SlidingPunch(space, 2.0, 0.6)
         states.append(punch.states(-0.66))
         trace = surface.gather(space, punch.fields[:3])

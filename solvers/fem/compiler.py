@@ -43,7 +43,7 @@ def compiling(comm: MPI.Comm) -> Iterator[dict[str, Any]]:
 def _alone(folder: Path) -> Iterator[None]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        lock = (folder / "lock").open("w", encoding="utf-8")
+        lock = (folder / "lock").open("a", encoding="utf-8")
     except OSError as error:
         raise CompilerError(
             f"the cache of compiled forms {folder} cannot be written ({error.strerror}); "

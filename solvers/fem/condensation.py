@@ -95,11 +95,11 @@ def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
     Near the Rayleigh speed the body moves far before it deforms; those forces times that motion would
     be what limits the contact forces' digits.
     """
-    T = np.zeros((S.shape[1], 2))  # orthonormal
-    T[: 2 * nodes : 2, 0] = T[1 : 2 * nodes : 2, 1] = nodes**-0.5
-    force = S @ T
+    T = np.zeros((S.shape[1], 2))
+    T[: 2 * nodes : 2, 0] = T[1 : 2 * nodes : 2, 1] = 1.0
+    force = S @ T / nodes
     outer = force @ T.T
-    return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force) @ T.T
+    return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force / nodes) @ T.T
 
 
 def _kernel(ufcx_form: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The command line: run, plan, show, check, paper, plot."""
+"""The command line: run, plan, show, check, paper, stress, plot."""
 
 import json
 import os
@@ -147,6 +147,18 @@ def paper(folder: Path) -> int:
     from app.paper import reproduce
 
     return errors.GOOD if reproduce(folder) else errors.FAILED_VERDICT
+
+
+@cli.command()
+@click.option("-o", "folder", type=_ARCHIVE, default=Path("stress"), show_default=True)
+def stress(folder: Path) -> int:
+    """Try extremes of every parameter, and say whether the promises hold there.
+
+    Example: ./run.sh stress -o stress
+    """
+    from app.stress import matrix
+
+    return errors.GOOD if matrix.stress(folder) else errors.FAILED_VERDICT
 
 
 @cli.command()

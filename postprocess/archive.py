@@ -56,20 +56,32 @@ class Writer:
             self._file.close()
         self._temporary.unlink(missing_ok=True)
 
-    def put(self, name: str, value: Any) -> None:
-        """Write a whole dataset: numbers, texts or one text."""
+    def put(self, name: str, value: Any, about: tuple[str, str] | None = None) -> None:
+        """Write a whole dataset: numbers, texts or one text.
+
+        Args:
+            name: path of the dataset.
+            value: what it holds.
+            about: unit and long name; those of ``FIELDS`` if not given.
+        """
         with self._told():
             text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind == "U"
             if text:
                 data = value if isinstance(value, str) else list(value)
                 dataset = self._file.create_dataset(name, data=data, dtype=h5py.string_dtype())
-                self._describe(name, dataset)
+                self._describe(name, dataset, about)
             else:
                 value = np.asarray(value)
-                self.reserve(name, value.shape, value.dtype)
+                self.reserve(name, value.shape, value.dtype, about)
                 self.write(name, slice(0, len(value)), value)
 
-    def reserve(self, name: str, shape: tuple[int, ...], dtype: Any = float) -> None:
+    def reserve(
+        self,
+        name: str,
+        shape: tuple[int, ...],
+        dtype: Any = float,
+        about: tuple[str, str] | None = None,
+    ) -> None:
         """Make room for a dataset that is written by rows."""
         with self._told():
             rows = max(1, min(shape[0], 2**17 // max(1, int(np.prod(shape[1:])))))
@@ -77,7 +89,7 @@ class Writer:
             dataset = self._file.create_dataset(
                 name, shape, dtype, chunks=(rows, *shape[1:]), fletcher32=True
             )
-            self._describe(name, dataset)
+            self._describe(name, dataset, about)
             self._bytes += dataset.size * dataset.dtype.itemsize
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
@@ -98,8 +110,8 @@ class Writer:
             os.replace(self._temporary, self.path)
             _synchronise(self.path.parent)
 
-    def _describe(self, name: str, dataset: h5py.Dataset) -> None:
-        dataset.attrs["units"], dataset.attrs["long_name"] = FIELDS[name]
+    def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
+        dataset.attrs["units"], dataset.attrs["long_name"] = about or FIELDS[name]
 
     def _compare(self) -> None:
         """A full disk can leave a file that opens and lists its datasets: compare the content."""

@@ -32,6 +32,24 @@ class Curves:
     title: str
 
 
+def lines_figure(
+    x: NDArray, lines: dict[str, NDArray], x_label: str, y_label: str, title: str, log_x: bool
+) -> plt.Figure:
+    """Lines by label over x, the y axis logarithmic."""
+    figure, axis = plt.subplots(figsize=(5.5, 4.0))
+    for (label, y), colour, marker in zip(lines.items(), COLOURS * 2, MARKERS * 2):
+        axis.plot(x, y, color=colour, marker=marker, markersize=4, label=label)
+    axis.set_yscale("log")
+    if log_x:
+        axis.set_xscale("log")
+    axis.set_xlabel(x_label)
+    axis.set_ylabel(y_label)
+    axis.set_title(title, fontsize=9)
+    axis.legend(fontsize=7)
+    figure.tight_layout()
+    return figure
+
+
 def surface_figure(
     data: dict[str, Any], columns: Sequence[Curves], loops: dict[str, Any] | None = None
 ) -> plt.Figure:

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from app.displacement import Displacement
 from app.states import solid_of
-from meshes.refine import DEGREES, truncation
-from postprocess.estimate import differences, remaining_share
+from meshes.refine import DEGREES, grading, truncation
+from postprocess.estimate import differences, remaining
 from postprocess.pressure import ContactRecovery, JacobiPressure, contact_recovery, from_moments
 from solvers.fem.punch import ContactStates, SlidingPunch
 from solvers.materials import MovingFrame
@@ -121,14 +121,19 @@ class PunchAtSpeed:
 
     def _measure(self, g: NDArray) -> None:
         """Find how the error goes on beyond the last degree, and what rounding does to it."""
-        coarse, middle, fine = (self._quantities(level, g) for level in self.levels)
-        self._share = remaining_share(differences(coarse, middle), differences(middle, fine))
+        self._sample = self._differences(g)
         self._rounding = self._asymmetry(g)
+
+    def _differences(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        coarse, middle, fine = (self._quantities(level, g) for level in self.levels)
+        return differences(coarse, middle), differences(middle, fine)
 
     def _estimates(self, g: NDArray) -> NDArray[np.float64]:
         """Estimated relative error of K_I and of the pressure's moments, (states,)."""
-        middle, fine = (self._quantities(level, g) for level in self.levels[1:])
-        return self._share * differences(middle, fine) + self._cut(g) + self._rounding
+        left = remaining(*self._differences(g), self._sample)
+        solve, local = self.run.scene.solve, FlatPunch(self.frame, g)
+        rings = grading(solve.mesh, solve.tolerance, np.minimum(local.α, local.β))
+        return left + rings + self._cut(g) + self._rounding
 
     def _cut(self, g: NDArray) -> NDArray[np.float64]:
         """Estimated relative error from the finite outer radius, (states,)."""

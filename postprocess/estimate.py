@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 #: upper end convergence is too slow to be summed, and the estimate says that it is large.
 RATIO = (0.2, 0.9)
 
+#: Share of the largest first difference below which a state's own is not believed.
+TYPICAL = 0.25
+
 #: The ratio of successive differences is not quite constant; this covers it.
 SAFETY = 2.0
 
@@ -20,14 +23,22 @@ def differences(coarse: NDArray, fine: NDArray) -> NDArray[np.float64]:
     return np.abs(fine - coarse).max(axis=1)
 
 
-def remaining_share(first: NDArray, second: NDArray) -> float:
-    """What is left of an error over the last difference: ``SAFETY`` times the geometric ρ/(1 - ρ).
+def remaining(first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray]) -> NDArray[np.float64]:
+    """What is left of the errors after two successive differences, by a geometric series.
 
-    The ratio ρ of successive differences is that of their largest, because a single state's first
-    difference may happen to vanish.
+    d₁ ρ/(1 - ρ), with ``SAFETY``. A state's own ratio ρ = d₁/d₀ shows where its singularity is too strong
+    for the degree; but its first difference may happen to vanish, so that it is not taken for smaller
+    than a share ``TYPICAL`` of the sample's largest, nor ρ for smaller than the sample's.
 
     Args:
-        first, second: successive differences of several states, (states,).
+        first, second: successive differences of each state, (states,).
+        sample: the same of states that stand for all of them.
+
+    Returns:
+        Errors of the last degree, (states,).
     """
-    ρ = np.clip(second.max() / max(first.max(), np.finfo(float).tiny), *RATIO)
-    return float(SAFETY * ρ / (1.0 - ρ))
+    largest = max(sample[0].max(), np.finfo(float).tiny)
+    common = sample[1].max() / largest
+    own = second / np.maximum(first, TYPICAL * largest)
+    ρ = np.clip(np.maximum(common, own), *RATIO)
+    return SAFETY * second * ρ / (1.0 - ρ)

@@ -52,9 +52,8 @@ class PunchAtSpeed:
         probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
         self._measure(probes)
-        cut = self._cut(probes).max()
-        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
-        enough = max(tolerance, 1.1 * cut)
+        # What no degree mends need not be bettered by the degree.
+        enough = max(tolerance, 1.1 * self._fixed(probes).max())
         while self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
             self.degree += 1
             self._add_level(self.degree)
@@ -131,14 +130,14 @@ class PunchAtSpeed:
     def _estimates(self, g: NDArray) -> NDArray[np.float64]:
         """Estimated relative error of K_I and of the pressure's moments, (states,)."""
         left = remaining(*self._differences(g), self._sample)
-        solve, local = self.run.scene.solve, FlatPunch(self.frame, g)
-        rings = grading(solve.mesh, solve.tolerance, np.minimum(local.α, local.β))
-        return left + rings + self._cut(g) + self._rounding
+        return left + self._fixed(g) + self._rounding
 
-    def _cut(self, g: NDArray) -> NDArray[np.float64]:
-        """Estimated relative error from the finite outer radius, (states,)."""
+    def _fixed(self, g: NDArray) -> NDArray[np.float64]:
+        """Estimated relative error from the outer radius and the innermost ring, (states,)."""
         solve, at_rest = self.run.scene.solve, MovingFrame(self.frame.κ, 0.0)
-        return truncation(solve.mesh, solve.tolerance, self.frame.r / at_rest.r) * np.abs(g)
+        cut = truncation(solve.mesh, solve.tolerance, self.frame.r / at_rest.r) * np.abs(g)
+        local = FlatPunch(self.frame, g)
+        return cut + grading(self.run.plan.refinement, np.minimum(local.α, local.β))
 
     def _quantities(self, level: Level, g: NDArray) -> NDArray[np.float64]:
         """What the error is measured on, each about 1: (states, quantities)."""

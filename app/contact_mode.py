@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.displacement import Displacement
 from app.states import solid_of
-from meshes.refine import DEGREES, grading, truncation
+from meshes.refine import DEGREES, truncation
 from postprocess.estimate import differences, remaining
 from postprocess.pressure import ContactRecovery, JacobiPressure, contact_recovery, from_moments
 from solvers.fem.punch import ContactStates, SlidingPunch
@@ -52,8 +52,8 @@ class PunchAtSpeed:
         probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
         self._measure(probes)
-        # What no degree mends need not be bettered by the degree.
-        enough = max(tolerance, 1.1 * self._fixed(probes).max())
+        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
+        enough = max(tolerance, 1.1 * self._cut(probes).max())
         while self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
             self.degree += 1
             self._add_level(self.degree)
@@ -130,14 +130,12 @@ class PunchAtSpeed:
     def _estimates(self, g: NDArray) -> NDArray[np.float64]:
         """Estimated relative error of K_I and of the pressure's moments, (states,)."""
         left = remaining(*self._differences(g), self._sample)
-        return left + self._fixed(g) + self._rounding
+        return left + self._cut(g) + self._rounding
 
-    def _fixed(self, g: NDArray) -> NDArray[np.float64]:
-        """Estimated relative error from the outer radius and the innermost ring, (states,)."""
+    def _cut(self, g: NDArray) -> NDArray[np.float64]:
+        """Estimated relative error from the finite outer radius, (states,)."""
         solve, at_rest = self.run.scene.solve, MovingFrame(self.frame.κ, 0.0)
-        cut = truncation(solve.mesh, solve.tolerance, self.frame.r / at_rest.r) * np.abs(g)
-        local = FlatPunch(self.frame, g)
-        return cut + grading(self.run.plan.refinement, np.minimum(local.α, local.β))
+        return truncation(solve.mesh, solve.tolerance, self.frame.r / at_rest.r) * np.abs(g)
 
     def _quantities(self, level: Level, g: NDArray) -> NDArray[np.float64]:
         """What the error is measured on, each about 1: (states, quantities)."""

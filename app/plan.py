@@ -14,7 +14,6 @@ from meshes.halfplane import MESHES
 from meshes.refine import degree, reach, refinement, truncation
 from meshes.rings import QuadMesh, Refinement
 from solvers.materials import MovingFrame, rayleigh_speed
-from solvers.sie.closed_form import FlatPunch
 
 #: Components of the stress tensor that are archived inside.
 INSIDE = ("XX", "YY", "XY")
@@ -111,9 +110,7 @@ def make_plan(scene: Scene) -> Plan:
     mixed = fem and solid_of(scene).κ - 1.0 < MIXED
     if fem:
         κ, tolerance, name = solid_of(scene).κ, scene.solve.tolerance, scene.solve.mesh
-        frames = [MovingFrame(κ, c) for c in all_speeds]
-        strongest = min(float(FlatPunch(frame, max(friction.mu_c)).α) for frame in frames)
-        mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s, strongest)
+        mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s)
         rest = MovingFrame(κ, 0.0).r
         speed_plans = tuple(
             SpeedPlan(c, max(degree(name, tolerance, MovingFrame(κ, c).r / rest), 4 + mixed))

@@ -2,9 +2,6 @@
 
 from math import ceil, exp, log, log10, pi, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from meshes.halfplane import BOX_DEPTH
 from meshes.rings import Refinement
 
@@ -14,29 +11,22 @@ _RATIO = {"confocal": 0.35, "graded": 0.5, "box": 0.5}
 #: Largest width in ξ of a column outside the rings.
 _COLUMN = {"confocal": 3.0, "graded": 1.0, "box": 0.7}
 
-#: Size of the outermost ring in the (ξ, η) plane, half the rectangle's width.
-_HALF = pi / 2.0
-#: Error of K_I over s^(4 + 4α) for an innermost ring of size s, measured at degree 8.
-_RING = 3e-4
-
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
 
 
-def refinement(mesh: str, tolerance: float, β_s: float, α: float = -0.5) -> Refinement:
+def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
     """Refinement that reaches ``tolerance`` with :func:`degree`.
 
     Args:
         mesh: name of the mesh.
         tolerance: wanted relative accuracy of K_I and of the pressure's moments.
         β_s: √(1 - c²) at the highest speed; the field turns within an angle of that size.
-        α: the strongest exponent that friction may give the pressure, in (-1, -1/2].
     """
-    wanted = _of_cells(mesh, tolerance)
-    # The energy in a ring falls with its size squared; where friction is strong, more slowly.
-    innermost = min(sqrt(wanted / 3.0), (wanted / (3.0 * _RING)) ** (1.0 / (4.0 + 4.0 * α)))
-    levels = ceil(log(_HALF / innermost) / -log(_RATIO[mesh]))
-    reach = outer_ξ(mesh, tolerance) - _HALF
+    # The energy in a ring falls with its size squared.
+    innermost = (_of_cells(mesh, tolerance) / 3.0) ** 0.5
+    levels = ceil(log(pi / 2.0 / innermost) / -log(_RATIO[mesh]))
+    reach = outer_ξ(mesh, tolerance) - pi / 2.0
     # The column next to the rings is narrow: the field still turns there.
     first = min(_COLUMN[mesh], 1.0)
     count = ceil((reach - first) / _COLUMN[mesh])
@@ -80,19 +70,6 @@ def truncation(mesh: str, tolerance: float, rayleigh: float = 1.0) -> float:
     a/R at rest; it was seen to grow as the root of the Rayleigh function over its value at rest falls.
     """
     return 1.0 / (reach(mesh, tolerance) * sqrt(rayleigh))
-
-
-def grading(refinement: Refinement, α: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Estimated relative error of K_I from the innermost ring, which no degree resolves.
-
-    It goes as the energy there, s^(4 + 4α) for a ring of size s in the (ξ, η) plane.
-
-    Args:
-        refinement: of the mesh.
-        α: the stronger of the two edge exponents of each state, in (-1, -1/2], (states,).
-    """
-    innermost = _HALF * refinement.ratio**refinement.levels
-    return _RING * innermost ** (4.0 + 4.0 * α)
 
 
 def _of_cells(mesh: str, tolerance: float) -> float:

@@ -12,7 +12,7 @@ python=/usr/bin/python3
 packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
   python3-scipy python3-matplotlib python3-attr python3-pint python3-click python3-rich
   libopenblas0-serial openmpi-bin gcc libc6-dev)
-test_packages=(python3-pytest python3-sympy python3-mpmath)
+test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath)
 
 missing() { # the packages of the arguments that are not installed
   local installed package

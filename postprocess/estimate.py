@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 #: Range of the ratio of successive differences. Below it a lucky coincidence is not believed; at its
 #: upper end convergence is too slow to be summed, and the estimate says that it is large.
-RATIO = (0.3, 0.9)
+RATIO = (0.28, 0.9)
 
 #: Share of the largest first difference below which a state's own is not believed.
 TYPICAL = 0.25

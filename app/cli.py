@@ -133,7 +133,7 @@ def check(archive: Path) -> int:
     if ranks.is_root():
         for text in found:
             print(f"fault: {text}")
-        print(f"{archive}: {'is whole' if not found else f'{len(found)} faults'}")
+        print(f"{archive}: {'is whole' if not found else f'faults: {len(found)}'}")
     return errors.GOOD if not found else errors.FAILED_VERDICT
 
 

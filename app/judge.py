@@ -32,6 +32,7 @@ class Judge:
             self._limits[compare.SLOPE] = SLOPE_FACTOR * tolerance
         if not has_closed_form(scene):
             self._limits = {}
+        self._limits[compare.TENSION] = 0.0
         self._judged: dict[str, float] = {}
 
     def see(self, comparisons: list[compare.Comparison]) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 #: Names of the comparisons, as archives and tests refer to them.
-BALANCE, K_I, ESTIMATE, PRESSURE, IN_PLANE, INSIDE, EXPONENTS, SLOPE = (
+BALANCE, K_I, ESTIMATE, PRESSURE, IN_PLANE, INSIDE, EXPONENTS, SLOPE, TENSION = (
     "force balance",
     "K_I",
     "estimate",
@@ -16,6 +16,7 @@ BALANCE, K_I, ESTIMATE, PRESSURE, IN_PLANE, INSIDE, EXPONENTS, SLOPE = (
     "stresses inside",
     "exponents",
     "slope under the punch",
+    "tension",
 )
 
 
@@ -48,6 +49,10 @@ def comparisons(data: dict[str, Any], load: float) -> list[Comparison]:
     if "states/fem/alpha" in data:
         off = [data[f"states/fem/{name}"] - data[f"states/{name}"] for name in ("alpha", "beta")]
         found.append(Comparison(EXPONENTS, "fitted edge exponents, absolute", np.abs(off).max()))
+    if "surface/fem/sigma_YY" in data and np.nanmax(data["surface/fem/sigma_YY"], initial=0.0) > 0.0:
+        # A punch cannot pull; what was computed is not what would happen, and it is not clipped.
+        value = float(np.nanmax(data["surface/fem/sigma_YY"]))
+        found.append(Comparison(TENSION, "tension under the punch, over N/(2a)", value))
     if "surface/fem/sigma_XX" in data and "surface/closed_form/sigma_XX" in data:
         found += _on_surface(data)
     if "interior/fem/sigma_XX" in data and "interior/closed_form/sigma_XX" in data:

@@ -56,3 +56,9 @@ def test_what_disagrees_is_measured(path, value, name, wanted):
     found = archive(**{path: np.array(value)})
     assert found[name] == pytest.approx(wanted)
     assert sum(found.values()) == pytest.approx(wanted)
+
+
+def test_tension_is_flagged_and_nothing_else_is():
+    pulled = np.array([[np.nan, -1.0, 0.25, -1.0, np.nan]])
+    assert compare.TENSION not in archive()
+    assert archive(**{"surface/fem/sigma_YY": pulled})[compare.TENSION] == 0.25

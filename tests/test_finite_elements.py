@@ -256,3 +256,10 @@ def test_the_condition_is_recorded(tables_run):
     data, _ = tables_run
     assert (data["run/fem/largest_condition"] > 1e3).all()
     assert (data["run/fem/largest_condition"] < 1e7).all()
+
+
+def test_a_pressure_that_pulls_fails():
+    pulling = ('mode = "traction"', 'mode = "traction"\npressure = [[-1, -2], [0, 1], [1, -2]] #')
+    _, attributes = run_scene("traction", pulling)
+    assert attributes["verdict"] == "FAIL"
+    assert "tension under the punch, over N/(2a): 1.0e+00, at most 0" in attributes["verdict_reasons"]

@@ -29,9 +29,10 @@ STATES = 40 if THOROUGH else 8
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted((HOME / "scenes").glob("*.toml"))]
 
 #: What a value may become.
-VALUES = """0 -1 nan inf -inf 1e308 1e-308 -0.0 "" "ν" "193GPa" "25mm" [] {} [[]] true "1e999Pa" [1,2,3] ["fem"]
-["forward"] 0.5 1e-9 0.999 1979-05-27 "closed_form" [[-1,-1],[1,-1]] [[0,-1]] "box" "graded" "traction"
-["friction"] ["sif","interior"] "%s%n" "1lightyear" [0.3,"x"] 3 0.25 0.05 1e-3 1e-2"""
+_WORDS = """0 -1 nan inf -inf 1e308 1e-308 -0.0 "" "ν" "193GPa" "25mm" [] {} [[]] true "1e999Pa" [1,2,3]
+["fem"] ["forward"] 0.5 1e-9 0.999 1979-05-27 "closed_form" [[-1,-1],[1,-1]] [[0,-1]] "box" "graded"
+"traction" ["friction"] ["sif","interior"] "%s%n" "1lightyear" [0.3,"x"] 3 0.25 0.05 1e-3 1e-2"""
+VALUES = [*_WORDS.split(), "9" * 400]
 
 
 @st.composite
@@ -42,7 +43,7 @@ def mutated(draw):
         n = draw(st.integers(0, len(rows) - 1))
         kind = draw(st.sampled_from(["value", "value", "value", "lose", "repeat", "character", "key"]))
         if kind == "value" and "=" in rows[n]:
-            rows[n] = rows[n].split("=")[0] + "= " + draw(st.sampled_from(VALUES.split() + ["9" * 400]))
+            rows[n] = rows[n].split("=")[0] + "= " + draw(st.sampled_from(VALUES))
         elif kind == "lose" and len(rows) > 1:
             del rows[n]
         elif kind == "repeat":

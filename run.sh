@@ -16,7 +16,9 @@ test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath)
 
 missing() { # the packages of the arguments that are not installed
   local installed package
-  installed=$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null | sed -n 's/ install ok installed$//p')
+  # dpkg-query fails where it knows a package by no name.
+  installed=$({ dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true; } |
+    sed -n 's/ install ok installed$//p')
   for package in "$@"; do
     grep -qx "$package" <<<"$installed" || echo "$package"
   done

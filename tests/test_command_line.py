@@ -1,4 +1,5 @@
 import json
+import os
 import subprocess
 import sys
 import time
@@ -148,7 +149,8 @@ def test_a_failure_on_one_rank_ends_all(tmp_path):
     )
     done = subprocess.run(
         ["mpirun", "--oversubscribe", "-n", "2", sys.executable, "-c", script],
-        cwd=tmp_path, env=clean_environment() | {"PYTHONPATH": str(HOME)}, capture_output=True, text=True, timeout=60,
+        cwd=tmp_path, env=clean_environment() | {"PYTHONPATH": str(HOME)},
+        capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode == 3 and "provoked" in done.stderr
     raised = float(done.stdout.split("raised at ")[1].split()[0])
@@ -169,3 +171,16 @@ def test_the_study_is_reproduced(tmp_path):
     assert "verdict: PASS" in done.stdout and done.stdout.count(" yes ") == 12
     figures = {f"fig{n}.{kind}" for n in (2, 5, 6, 7, 8, 9, 10) for kind in ("pdf", "png")}
     assert figures | {"study.h5", "loops.h5", "tables.txt"} == {p.name for p in tmp_path.iterdir()}
+
+
+def test_without_rights_the_command_for_an_administrator_is_shown(tmp_path):
+    for name, text in (("dpkg-query", "exit 1"), ("id", "echo 1000")):
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+        (tmp_path / name).chmod(0o755)
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    done = subprocess.run(
+        [str(HOME / "run.sh"), "plan", str(SCENE)], env=clean_environment() | {"PATH": path},
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 3
+    assert "apt-get install --no-install-recommends python3-dolfinx" in done.stderr

@@ -223,13 +223,14 @@ def test_a_missing_boundary_part_is_named():
         Space(mesh, tags, TAGS | {"far": 17}, kind.plane, 2)
 
 
-def test_a_singular_matrix_is_not_taken_for_a_solution():
+@pytest.mark.parametrize("entry", [0.0, float("nan")])
+def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
     from petsc4py import PETSc
 
     A = PETSc.Mat().createAIJ((4, 4), comm=PETSc.COMM_SELF)
     A.setUp()
     for i in range(4):
-        A.setValue(i, i, 2.0 if i else 0.0)
+        A.setValue(i, i, 2.0 if i else entry)
     A.assemble()
     b = A.createVecLeft()
     b.set(1.0)

@@ -169,3 +169,18 @@ def test_all_scenes_of_the_project_are_good():
     assert len(scenes) >= 5
     for path in scenes:
         assert make_plan(read(path)).states > 0
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ([("c = [4.786e-7, 0.6]", "c = [0.918]")], "within 1 % of the Rayleigh speed c_R = 0.919402"),
+        (
+            [('mesh = "confocal"', 'mesh = "box"')],
+            "boundary of the box mesh alone costs about 0.01",
+        ),
+    ],
+)
+def test_what_will_cost_accuracy_is_warned_of(changes, message):
+    (warning,) = make_plan(parse(changed(*changes))).warnings
+    assert message in warning

@@ -3,7 +3,7 @@
 #   ./run.sh                           reproduce the study into results/
 #   ./run.sh test                      run all tests, those on two ranks included
 #   ./run.sh bench [-o DIR]            measure run time against error
-#   ./run.sh [-n RANKS] COMMAND ...    run, plan, show, paper, plot; COMMAND --help tells more
+#   ./run.sh [-n RANKS] COMMAND ...    run, plan, show, check, paper, stress, plot; --help tells more
 set -euo pipefail
 home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 python=/usr/bin/python3

@@ -78,10 +78,10 @@ class Collector:
         return frozenset(found)
 
     def take(self, part: Part) -> None:
-        """Take in a part that was just computed."""
+        """Take in a part that was just computed; a failure is tried again by a run that goes on."""
         if not ranks.is_root():
             return  # all ranks share one mesh and have the same results
-        if self._journal:
+        if self._journal and "failure" not in (part.record or {}):
             self._journal.keep(part)
         self._take(part)
 

@@ -59,8 +59,10 @@ class PunchAtSpeed:
             self._add_level(self.degree)
             self._measure(probes)
         punch, plan = self.levels[-1].punch, self.run.plan
-        for first in range(0, len(g), plan.chunk):  # the basis is complete before its traces are taken
-            punch.states(g[first : first + plan.chunk])
+        # Every basis is complete before traces are taken, and the same whatever states are still to do.
+        for first in range(0, len(g), plan.chunk):
+            for level in self.levels:
+                level.punch.states(g[first : first + plan.chunk])
         self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
 
     def results(self, g: NDArray) -> dict[str, NDArray]:

@@ -5,6 +5,7 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
+import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -46,6 +47,7 @@ class Writer:
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
+        sys.unraisablehook = _without_refused_closes
         with self._told():
             # No lock: MPI's helper process would inherit it and keep it when the file is closed.
             self._file = h5py.File(self._temporary, "w", libver=("earliest", "v110"), locking=False)
@@ -128,6 +130,15 @@ class Writer:
             yield
         except (OSError, RuntimeError) as error:
             raise refused(self.path, error, self._bytes) from error
+
+
+def _without_refused_closes(unraisable: Any) -> None:
+    """Python's hook for errors in destructors, but for those of HDF5 objects on a full disk.
+
+    That the disk is full has been said by then, and each of hundreds of objects would say it again.
+    """
+    if "decrement id ref count" not in str(unraisable.exc_value):
+        sys.__unraisablehook__(unraisable)
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:

@@ -47,7 +47,7 @@ class Writer:
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
-        sys.unraisablehook = _without_refused_closes
+        _mute_refused_closes()
         with self._told():
             # No lock: MPI's helper process would inherit it and keep it when the file is closed.
             self._file = h5py.File(self._temporary, "w", libver=("earliest", "v110"), locking=False)
@@ -132,13 +132,18 @@ class Writer:
             raise refused(self.path, error, self._bytes) from error
 
 
-def _without_refused_closes(unraisable: Any) -> None:
-    """Python's hook for errors in destructors, but for those of HDF5 objects on a full disk.
+def _mute_refused_closes() -> None:
+    """Have Python say nothing of HDF5 objects that cannot be closed because the disk is full.
 
-    That the disk is full has been said by then, and each of hundreds of objects would say it again.
+    That the disk is full is said by then; each of hundreds of objects would say it again from its
+    destructor, which nobody can catch, through both of Python's hooks.
     """
-    if "decrement id ref count" not in str(unraisable.exc_value):
-        sys.__unraisablehook__(unraisable)
+
+    def refused(error: Any) -> bool:
+        return "decrement id ref count" in str(error)
+
+    sys.excepthook = lambda kind, error, at: refused(error) or sys.__excepthook__(kind, error, at)
+    sys.unraisablehook = lambda found: refused(found.exc_value) or sys.__unraisablehook__(found)
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:

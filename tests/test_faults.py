@@ -249,7 +249,7 @@ def test_a_full_disk(sweep, tiny_disk):
     assert "No space left on device" in done.stderr and "MB are free" in done.stderr
     assert target.read_bytes() == b"an earlier archive"
     assert not list(tiny_disk.rglob("*.partial"))
-    subprocess.run(["mount", "-o", "remount,size=64m", str(tiny_disk)], check=True)
+    subprocess.run(["mount", "-o", "remount,size=1g", str(tiny_disk)], check=True)
     assert command("run", scene, "-o", target, "--overwrite", "--resume").returncode == 0
     same(contents(target), whole)
 

@@ -57,7 +57,10 @@ FIELDS: dict[str, tuple[str, str]] = {
     "run/fem/factorisations": ("1", "factorisations"),
     "run/fem/back_substitutions": ("1", "back-substitutions"),
     "run/fem/largest_residual": ("1", "largest |b - Ax|/|b| of a back-substitution"),
-    "run/fem/largest_condition": ("1", "largest condition number of a matrix, estimated by MUMPS"),
+    "run/fem/largest_condition": (
+        "1",
+        "largest condition number of a matrix, estimated by MUMPS; 0 if all were too large",
+    ),
     "run/failures": ("none", "speeds that could not be solved, and why"),
     "run/done": ("none", "steps done"),
     "run/skipped": ("none", "steps skipped, and why"),

@@ -15,6 +15,9 @@ PREFIX = "galinx_"
 #: meshes' condition numbers let a sound factor reach about 1e-12.
 RESIDUAL_LIMIT = 1e-8
 
+#: Unknowns up to which the condition number is estimated; it then costs next to nothing.
+ANALYSED = 200_000
+
 #: MUMPS's statuses for a workspace that it estimated too small, and for memory that it did not get.
 _TOO_SMALL = (-8, -9, -11, -14, -15, -17, -20)
 _MEMORY = (-5, -7, -13, -19, -22)
@@ -32,7 +35,8 @@ class Factor:
 
     Attributes:
         solves: back-substitutions done.
-        condition: MUMPS's estimate of the condition number, known after the first solve.
+        condition: MUMPS's estimate of the condition number, known after the first solve; 0 for a matrix
+            of more than ``ANALYSED`` unknowns.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
     """
 
@@ -48,7 +52,7 @@ class Factor:
                 self._factorise(percent)
                 if self._mumps.getMumpsInfog(1) not in _TOO_SMALL or percent == WORKSPACE[-1]:
                     break
-                self._ksp.destroy()
+                self._mumps.destroy(), self._ksp.destroy()
         self._check_factor()
 
     def _factorise(self, percent: int) -> None:
@@ -90,7 +94,7 @@ class Factor:
             SolveError: PETSc did not converge, or x is not finite, or it does not solve the system.
         """
         with self._clock("back-substitutions"):
-            if self.solves:
+            if self.solves or b.getSize() > ANALYSED:
                 return self._solve(b)
             self._mumps.setMumpsIcntl(11, 1)  # error analysis, worth a few back-substitutions
             x = self._solve(b)
@@ -121,7 +125,7 @@ class Factor:
 
     def destroy(self) -> None:
         """Free the factor's memory now; petsc4py would wait for a collective garbage collection."""
-        for held in (self._ksp, self._residual, self.A):
+        for held in (self._mumps, self._ksp, self._residual, self.A):
             held.destroy()
 
 

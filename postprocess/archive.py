@@ -242,7 +242,6 @@ def _datasets(file: h5py.File) -> list[tuple[str, h5py.Dataset]]:
 
 
 def _values(dataset: h5py.Dataset, rows: slice) -> Any:
-    if dataset.shape == ():
-        rows = ()
+    wanted = rows if dataset.shape else ()
     text = h5py.check_string_dtype(dataset.dtype) is not None
-    return dataset.asstr()[rows] if text else dataset[rows]
+    return dataset.asstr()[wanted] if text else dataset[wanted]

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import run_scene
@@ -251,6 +253,18 @@ def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
     monkeypatch.setattr(linear, "WORKSPACE", (-80, -80))
     with pytest.raises(SolveError, match=r"status -9.*it wanted [0-9]+ MB a rank"):
         small_punch()
+
+
+def test_factors_are_freed():
+    def resident():
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * 4096
+
+    sizes = []
+    for _ in range(40):
+        small_punch().destroy()
+        sizes.append(resident())
+    # Unfreed, each would leave two megabytes.
+    assert sizes[-1] - sizes[9] < 15e6
 
 
 def test_the_condition_is_recorded(tables_run):

@@ -20,7 +20,7 @@ def stress(folder: Path) -> bool:
     rows = []
     with Progress() as progress:
         for i, make in enumerate(ROWS):
-            progress.say((make.__doc__ or "").splitlines()[0])
+            progress.say((make.__doc__ or make.__name__).splitlines()[0])
             rows.append(make())
             progress.done(i + 1, len(ROWS))
     good = all(verdict.holds for row in rows for verdict in row.verdicts)

@@ -111,7 +111,7 @@ def solids() -> Row:
 
 
 def _slow_and_fast(ν: float, plane: str) -> list[float]:
-    """Rest, and 0.9 of the Rayleigh speed, which falls with ν."""
+    """Rest, and 0.9 of the Rayleigh speed, which changes with ν."""
     return [0.0, 0.9 * rayleigh_speed(Solid(193e9, ν, 7860.0, plane).κ)]
 
 

@@ -1,0 +1,44 @@
+import h5py
+import numpy as np
+import pytest
+
+from app.stress import friction_law, matrix, mechanics, resolution
+from app.stress.row import Row, Verdict, honest, reached, scene, solved
+
+
+def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(
+        matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
+    )
+    assert matrix.stress(tmp_path)
+    printed = capsys.readouterr().out
+    assert "verdict: PASS" in printed and "FAILS" not in printed
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"stress.h5", "dahl.pdf", "dahl.png", "runge_kutta.png", "degree.png"} <= names
+    with h5py.File(tmp_path / "stress.h5") as file:
+        assert file.attrs["verdict"] == "PASS" and len(file["degree/x"]) == 10
+        assert file["dahl/x"].attrs["units"] == "1"
+
+
+def test_a_broken_promise_fails(tmp_path, capsys, monkeypatch):
+    row = Row("x", "t", "x (1)", np.ones(2), "y (1)", {"a": np.ones(2)}, (Verdict("worse", False),))
+    monkeypatch.setattr(matrix, "ROWS", (lambda: row,))
+    assert not matrix.stress(tmp_path)
+    assert "FAILS  worse" in capsys.readouterr().out
+
+
+def test_verdicts_can_fail():
+    true, estimate = np.array([1e-8, 4e-8]), np.array([1e-8, 1e-8])
+    assert not honest(true, estimate).holds and honest(0.7 * true, estimate).holds
+    assert not reached(true, 3e-8, "here").holds and reached(true, 5e-8, "here").holds
+
+
+def test_beyond_the_rayleigh_speed_is_judged():
+    assert mechanics._beyond_rayleigh(0.9194016867619661).holds
+    assert not mechanics._beyond_rayleigh(0.5).holds
+
+
+def test_scenes_of_rows():
+    assert len(solved(c=[0.1, 0.2], methods='["closed_form"]')["states/f"]) == 4
+    with pytest.raises(KeyError, match="speed"):
+        scene(speed=1.0)

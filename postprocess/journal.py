@@ -109,7 +109,8 @@ class Journal:
         path = self.folder / f"{part.rows.start:010d}-{part.rows.stop:010d}.npz"
         temporary = self.folder / "part.npz"
         try:
-            np.savez(temporary, **part.data, told=np.array(json.dumps(told)))
+            arrays: dict[str, Any] = part.data | {"told": np.array(json.dumps(told))}
+            np.savez(temporary, **arrays)
             os.replace(temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error

@@ -55,7 +55,7 @@ def run(scene: Path, output: Path | None, overwrite: bool, resume: bool) -> int:
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from postprocess import archive
+    from postprocess.hdf5 import archive
     from postprocess.journal import Journal
 
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -108,7 +108,7 @@ def show(archive: Path, as_json: bool) -> int:
 
     Example: ./run.sh show tables.h5 --json
     """
-    from postprocess.archive import read
+    from postprocess.hdf5.archive import read
 
     data, attributes = read(archive, stresses=False)
     if ranks.is_root():
@@ -169,7 +169,7 @@ def plot(archive: Path, folder: Path) -> int:
 
     Example: ./run.sh plot tables.h5 -o figures
     """
-    from postprocess.archive import read
+    from postprocess.hdf5.archive import read
 
     data, _ = read(archive)
     if ranks.is_root():

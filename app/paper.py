@@ -83,7 +83,7 @@ def reproduce(folder: Path) -> bool:
     if not ranks.is_root():
         compute(study)
         return True  # the verdict is rank 0's
-    from postprocess import archive
+    from postprocess.hdf5 import archive
 
     folder.mkdir(parents=True, exist_ok=True)
     results = []

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from postprocess import archive, compare
+from postprocess import compare
+from postprocess.hdf5 import archive
 from postprocess.fields import FIELDS
 
 #: States looked at together.

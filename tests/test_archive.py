@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 
-from postprocess import archive
+from postprocess.hdf5 import archive
 from postprocess.errors import UnreadableArchive, UnwritableArchive
 
 DATA = {

@@ -8,7 +8,8 @@ from conftest import HOME, command
 from app.judge import BALANCE_LIMIT
 from app.run import compute
 from app.scene import parse
-from postprocess import archive, check
+from postprocess import check
+from postprocess.hdf5 import archive
 
 
 @pytest.fixture

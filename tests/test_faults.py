@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import HOME, clean_environment, command, run_scene
 
-from postprocess import archive
+from postprocess.hdf5 import archive
 from postprocess.errors import LeftOver
 from postprocess.journal import Journal, Part
 

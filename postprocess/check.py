@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from postprocess import compare
-from postprocess.hdf5 import archive
 from postprocess.fields import FIELDS
+from postprocess.hdf5 import archive
 
 #: States looked at together.
 _ROWS = 1000

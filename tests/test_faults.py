@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from conftest import HOME, clean_environment, command, run_scene
 
-from postprocess.hdf5 import archive
 from postprocess.errors import LeftOver
+from postprocess.hdf5 import archive
 from postprocess.journal import Journal, Part
 
 #: Moments at which a run is killed; GALINX_THOROUGH=1 asks for as many as a release does.

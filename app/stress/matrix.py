@@ -31,7 +31,7 @@ def stress(folder: Path) -> bool:
 
 def _write(folder: Path, rows: list[Row], good: bool) -> None:
     from postprocess import figures
-from postprocess.hdf5 import archive
+    from postprocess.hdf5 import archive
     from postprocess.tables import new_console
 
     folder.mkdir(parents=True, exist_ok=True)

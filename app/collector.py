@@ -114,3 +114,7 @@ class Collector:
         self.sink.put("run/failures", failures)
         for name in RECORD:
             self.sink.put(f"run/fem/{name}", np.array([record[name] for record in records]))
+        changes = [record.get("change_by_degree", []) for record in records]
+        if longest := max(map(len, changes)):
+            padded = [change + [0.0] * (longest - len(change)) for change in changes]
+            self.sink.put("run/fem/change_by_degree", np.array(padded))

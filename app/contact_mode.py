@@ -1,7 +1,7 @@
 """Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,7 @@ class PunchAtSpeed:
         self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
         self.levels: list[Level] = []
         self.solves, self.factorisations, self.residual, self.condition = 0, 0, 0.0, 0.0
+        self.change = np.zeros(DEGREES[1] + 1)
 
     def prepare(self, g: NDArray) -> None:
         """Raise the degree until the measured error of sample states is within tolerance.
@@ -86,7 +87,7 @@ class PunchAtSpeed:
             data |= self.displacement.on_surface(states.weights, pressure.σ_YY(run.plan.grid))
         return data | self.displacement.inside(states.weights)
 
-    def record(self) -> dict[str, float]:
+    def record(self) -> dict[str, Any]:
         for level in self.levels:
             self._count(level.punch)
         space = self.levels[-1].punch.space
@@ -98,6 +99,7 @@ class PunchAtSpeed:
             "back_substitutions": self.solves,
             "largest_residual": self.residual,
             "largest_condition": self.condition,
+            "change_by_degree": self.change.tolist(),
         }
 
     def destroy(self) -> None:
@@ -123,6 +125,8 @@ class PunchAtSpeed:
     def _measure(self, g: NDArray) -> None:
         """Find how the error goes on beyond the last degree, and what rounding does to it."""
         self._sample = self._differences(g)
+        for degree, found in zip((self.degree - 1, self.degree), self._sample):
+            self.change[degree] = found.max()
         self._rounding = self._asymmetry(g)
 
     def _differences(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

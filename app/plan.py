@@ -101,7 +101,7 @@ def make_plan(scene: Scene) -> Plan:
         len(speeds(scene)) * len(friction.mu_c) * len(friction.sigma0_over_load)
         * len(friction.delta) * len(scene.motion.strokes) * len(set(scene.motion.X_over_L))
     )  # fmt: skip
-    points = np.reshape(scene.output.points, (-1, 2))
+    points = np.reshape(scene.output.inside, (-1, 2))
     warnings = [*scene.warnings, *_speed_limits(scene, all_speeds, fem)]
     if len(points):
         _check_points(scene, points, fem)

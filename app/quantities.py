@@ -1,8 +1,14 @@
 """Numbers with units: strings such as "193 GPa" become SI numbers through pint."""
 
+import re
 from functools import lru_cache
 from math import isfinite
 from typing import Any
+
+#: A number, then a unit. pint alone would multiply what stands side by side: "0.5.5" is no 0.25.
+_FORM = re.compile(
+    r"\s*[-+]?(\d+\.?\d*|\.\d+|nan|inf)([eE][-+]?\d+)?\s*(1\s*/\s*)?([^\W\d]|%|$).*", re.DOTALL
+)
 
 
 @lru_cache(maxsize=1)
@@ -37,6 +43,9 @@ def to_si(value: Any, unit: str) -> float:
 
 
 def _parse(text: str, unit: str, wanted: str) -> float:
+    if not _FORM.fullmatch(text):
+        raise ValueError(f"found {text!r}, expected {wanted}")
+
     import tokenize
 
     import pint

@@ -16,6 +16,7 @@ from app.plan import INSIDE, Plan, lines, make_plan
 from app.progress import Progress
 from app.scene import Scene
 from app.states import States, enumerate_states, pieces, solid_of
+from app.versions import libraries, machine
 from postprocess import compare
 from postprocess.journal import Journal, Part
 from solvers.materials import MovingFrame
@@ -65,6 +66,8 @@ def compute(
     if plan.interior:
         for i, name in enumerate(("X_over_a", "Y_over_a")):
             sink.put(f"interior/{name}", plan.points[:, i])
+        if scene.output.map:
+            sink.put("interior/map", np.array([axis.count for axis in reversed(scene.output.map)]))
     seconds = {"friction": perf_counter() - started}
     if plan.fem or plan.closed_form:
         solve = _finite_elements if plan.fem else _closed_form_alone
@@ -79,6 +82,8 @@ def compute(
     verdict, reasons = judge.verdict()
     return {
         "version": __version__,
+        "versions": json.dumps(libraries()),
+        "machine": machine(),
         "scene_sha256": scene.sha256,
         "title": scene.title,
         "load": scene.punch.load,

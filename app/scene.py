@@ -3,64 +3,20 @@
 import difflib
 import hashlib
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import attrs
+import numpy as np
 from attrs import validators as is_
 
 from app.errors import BadInput
-from app.quantities import to_si
+from app.materials import LIBRARY
+from app.values import Map, Names, Number, Numbers, Points, Pressure, Range, Text
 
 METHODS = ("closed_form", "fem")
 QUANTITIES = ("friction", "sif", "surface", "interior")
-
-
-def _number(unit: str = "") -> Callable[[Any], float]:
-    return lambda value: to_si(value, unit)
-
-
-def _numbers(unit: str = "") -> Callable[[Any], tuple[float, ...]]:
-    """One number or a list of them."""
-    return lambda value: tuple(
-        to_si(entry, unit) for entry in (value if isinstance(value, list) else [value])
-    )
-
-
-def _names(value: Any) -> tuple[Any, ...]:
-    if not isinstance(value, list):
-        raise ValueError(f"found {value!r}, expected a list of names")
-    return tuple(value)
-
-
-def _text(value: Any) -> str:
-    if not isinstance(value, str):
-        raise ValueError(f"found {value!r}, expected a text")
-    return value
-
-
-def _pressure(value: Any) -> Any:
-    if value == "closed_form":
-        return value
-    if not isinstance(value, list) or len(value) < 2:
-        raise ValueError(f'found {value!r}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]')
-    if not all(isinstance(pair, list) and len(pair) == 2 for pair in value):
-        raise ValueError("expected a list of pairs [X/a, σ_YY/(N/2a)], dimensionless")
-    pairs = tuple((to_si(x, ""), to_si(σ, "")) for x, σ in value)
-    positions = [x for x, _ in pairs]
-    if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
-        raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
-    return pairs
-
-
-def _points(value: Any) -> tuple[tuple[float, float], ...]:
-    if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
-        raise ValueError(f"found {value!r}, expected a list of pairs [X/a, Y/a]")
-    points = tuple((to_si(X, ""), to_si(Y, "")) for X, Y in value)
-    if outside := [Y for _, Y in points if Y >= 0.0]:
-        raise ValueError(f"found Y/a = {outside[0]:g}, expected Y/a < 0: the solid lies below the punch")
-    return points
 
 
 def _each(*checks: Any) -> Any:
@@ -78,31 +34,34 @@ _positive = is_.gt(0.0)
 class Solid:
     """[solid]"""
 
-    E: float = _key(_number("Pa"), _positive, "Young's modulus")
-    nu: float = _key(_number(), is_.and_(is_.gt(-1.0), is_.le(0.5)), "Poisson's ratio")
-    rho: float = _key(_number("kg/m^3"), _positive, "density")
-    plane: str = _key(_text, is_.in_(("strain", "stress")), "plane strain or stress", "strain")
+    E: float = _key(Number("Pa"), _positive, "Young's modulus")
+    nu: float = _key(Number(), is_.and_(is_.gt(-1.0), is_.le(0.5)), "Poisson's ratio")
+    rho: float = _key(Number("kg/m^3"), _positive, "density")
+    plane: str = _key(Text(), is_.in_(("strain", "stress")), "plane strain or stress", "strain")
+    material: str | None = _key(
+        Text(), is_.optional(is_.in_(tuple(LIBRARY))), "name of a known solid, gives E, nu and rho", None
+    )
 
 
 @attrs.frozen
 class Punch:
     """[punch]"""
 
-    half_width: float = _key(_number("m"), _positive, "half-width a", 1e-3)
-    load: float = _key(_number("N/m"), _positive, "normal load N per depth", 55.3e3)
+    half_width: float = _key(Number("m"), _positive, "half-width a", 1e-3)
+    load: float = _key(Number("N/m"), _positive, "normal load N per depth", 55.3e3)
 
 
 @attrs.frozen
 class Friction:
     """[friction]"""
 
-    mu_c: tuple[float, ...] = _key(_numbers(), _each(_positive), "Coulomb's coefficient μ_C")
-    sigma0_over_load: tuple[float, ...] = _key(_numbers("1/m"), _each(_positive), "σ₀ l/N")
-    model: str = _key(_text, is_.in_(("dahl",)), "friction law", "dahl")
-    delta: tuple[float, ...] = _key(_numbers(), _each(_positive), "Dahl's exponent", (1.0,))
-    pre_sliding: float = _key(_number("m"), _positive, "pre-sliding displacement L", 1e-4)
-    integrator: str = _key(_text, is_.in_(("exact", "rk4")), "integrator", "exact")
-    sign: str = _key(_text, is_.in_(("physical", "eq25")), "sign of σ_XY", "physical")
+    mu_c: tuple[float, ...] = _key(Numbers(), _each(_positive), "Coulomb's coefficient μ_C")
+    sigma0_over_load: tuple[float, ...] = _key(Numbers("1/m"), _each(_positive), "σ₀ l/N")
+    model: str = _key(Text(), is_.in_(("dahl",)), "friction law", "dahl")
+    delta: tuple[float, ...] = _key(Numbers(), _each(_positive), "Dahl's exponent", (1.0,))
+    pre_sliding: float = _key(Number("m"), _positive, "pre-sliding displacement L", 1e-4)
+    integrator: str = _key(Text(), is_.in_(("exact", "rk4")), "integrator", "exact")
+    sign: str = _key(Text(), is_.in_(("physical", "eq25")), "sign of σ_XY", "physical")
 
 
 @attrs.frozen
@@ -110,19 +69,19 @@ class Motion:
     """[motion]"""
 
     c: tuple[float, ...] | None = _key(
-        _numbers(), is_.optional(_each(is_.ge(0.0), is_.lt(1.0))), "speed over c_s", None
+        Numbers(), is_.optional(_each(is_.ge(0.0), is_.lt(1.0))), "speed over c_s", None
     )
     speed: tuple[float, ...] | None = _key(
-        _numbers("m/s"), is_.optional(_each(is_.ge(0.0))), "speed V", None
+        Numbers("m/s"), is_.optional(_each(is_.ge(0.0))), "speed V", None
     )
     strokes: tuple[str, ...] = _key(
-        _names,
+        Names(),
         _each(is_.in_(("forward", "backward"))),
         "directions in order of time",
         ("forward", "backward", "forward"),
     )
     X_over_L: tuple[float, ...] = _key(
-        _numbers(), _each(is_.ge(0.0), is_.le(1.0)), "positions on the stroke", (0.2, 0.8)
+        Numbers(), _each(is_.ge(0.0), is_.le(1.0)), "positions on the stroke", (0.2, 0.8)
     )
 
 
@@ -131,17 +90,17 @@ class Solve:
     """[solve]"""
 
     methods: tuple[str, ...] = _key(
-        _names, is_.deep_iterable(is_.in_(METHODS)), "what solves the contact", METHODS
+        Names(), is_.deep_iterable(is_.in_(METHODS)), "what solves the contact", METHODS
     )
     tolerance: float = _key(
-        _number(),
+        Number(),
         is_.and_(is_.ge(1e-10), is_.le(0.1)),
         "wanted relative accuracy of K_I and pressure moments",
         1e-6,
     )
-    mesh: str = _key(_text, is_.in_(("confocal", "graded", "box")), "mesh", "confocal")
-    mode: str = _key(_text, is_.in_(("contact", "traction")), "pressure unknown or put in", "contact")
-    pressure: Any = _key(_pressure, None, "σ_YY of the traction mode", "closed_form")
+    mesh: str = _key(Text(), is_.in_(("confocal", "graded", "box")), "mesh", "confocal")
+    mode: str = _key(Text(), is_.in_(("contact", "traction")), "pressure unknown or put in", "contact")
+    pressure: Any = _key(Pressure(), None, "σ_YY of the traction mode", "closed_form")
 
 
 @attrs.frozen
@@ -149,12 +108,22 @@ class Output:
     """[output]"""
 
     quantities: tuple[str, ...] = _key(
-        _names, _each(is_.in_(QUANTITIES)), "what is asked for", QUANTITIES[:3]
+        Names(), _each(is_.in_(QUANTITIES)), "what is asked for", QUANTITIES[:3]
     )
-    points: tuple[tuple[float, float], ...] = _key(_points, None, "points inside, [X/a, Y/a]", ())
+    points: tuple[tuple[float, float], ...] = _key(Points(), None, "points inside, [X/a, Y/a]", ())
+    map: tuple[Range, Range] | None = _key(Map(), None, "points inside on a grid, over a", None)
+
+    @property
+    def inside(self) -> tuple[tuple[float, float], ...]:
+        """All points inside: first the map's, by rows of Y, then the single ones."""
+        if self.map is None:
+            return self.points
+        X, Y = (np.linspace(axis.first, axis.last, axis.count) for axis in self.map)
+        return (*((x, y) for y in Y.tolist() for x in X.tolist()), *self.points)
 
 
-_SECTIONS: dict[str, type] = {
+#: Sections of a scene, by name.
+SECTIONS: dict[str, type] = {
     "solid": Solid,
     "punch": Punch,
     "friction": Friction,
@@ -190,8 +159,12 @@ class Scene:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-def read(path: Path) -> Scene:
+def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
     """Read and check a scene file.
+
+    Args:
+        path: the file.
+        changes: new values by ``"section.key"``; they stand in the scene's text.
 
     Raises:
         BadInput: the file cannot be read, or the scene has faults; all are listed.
@@ -208,6 +181,10 @@ def read(path: Path) -> Scene:
         raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
     if not text.strip():
         raise BadInput(f"{path} is empty, expected a scene; scenes/ holds examples")
+    if changes:
+        from app.changes import changed  # an import that only changes pay for
+
+        text = changed(text, changes, str(path))
     return parse(text, str(path))
 
 
@@ -222,14 +199,15 @@ def parse(text: str, name: str = "scene") -> Scene:
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BadInput(f"{name} is not TOML: {error}") from None
     faults: list[str] = []
+    _fill_in_material(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):
         faults.append(f"title: found {title!r}, expected a text")
-    for key in tree.keys() - _SECTIONS.keys():
-        faults.append(f"[{key}]: no such section{_nearest(key, [*_SECTIONS, 'title'])}")
+    for key in tree.keys() - SECTIONS.keys():
+        faults.append(f"[{key}]: no such section{_nearest(key, [*SECTIONS, 'title'])}")
     sections = {
         section: _structure(section, kind, tree.get(section, {}), faults)
-        for section, kind in _SECTIONS.items()
+        for section, kind in SECTIONS.items()
     }
     if not faults:
         scene = Scene(title, text, **sections, warnings=())
@@ -238,6 +216,14 @@ def parse(text: str, name: str = "scene") -> Scene:
             return attrs.evolve(scene, warnings=tuple(_oddities(scene)))
     lines = "\n".join(f"  {fault}" for fault in faults)
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{lines}")
+
+
+def _fill_in_material(tree: dict[str, Any]) -> None:
+    """Values of a known solid; those that the scene gives itself stay."""
+    solid = tree.get("solid")
+    name = solid.get("material") if isinstance(solid, dict) else None
+    if isinstance(name, str) and name in LIBRARY:
+        tree["solid"] = LIBRARY[name].constants | solid
 
 
 def _nearest(key: str, valid: list[str]) -> str:
@@ -258,7 +244,8 @@ def _structure(section: str, kind: type, given: Any, faults: list[str]) -> Any:
     for key, field in fields.items():
         if key not in given:
             if field.default is attrs.NOTHING:
-                found.append(f"{section}.{key}: missing; expected the {field.metadata['doc']}")
+                known = ", or solid.material" if kind is Solid else ""
+                found.append(f"{section}.{key}: missing; expected the {field.metadata['doc']}{known}")
             continue
         try:
             values[key] = field.metadata["convert"](given[key])
@@ -282,10 +269,11 @@ def _contradictions(scene: Scene) -> list[str]:
             "solve.methods is empty, but output.quantities asks for "
             f"{', '.join(sorted(asked - {'friction'}))}; name closed_form, fem or both"
         )
-    if ("interior" in asked) != bool(scene.output.points):
+    if ("interior" in asked) != bool(scene.output.points or scene.output.map):
         faults.append(
-            'output: the quantity "interior" and output.points go together, as in '
-            "points = [[0.0, -0.5], [1.0, -0.5]] (X/a, Y/a); give both or none"
+            'output: the quantity "interior" and output.points or output.map go together, as in points = '
+            "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
+            "to, number)"
         )
     if solve.pressure != "closed_form" and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')

@@ -84,7 +84,7 @@ CASES = [
     Case("16 speeds x 1 002 states, 1e-9", "tables4_5", (*SIXTEEN, FINE)),
     Case("the same, 1e-9, 2 ranks", "tables4_5", (*SIXTEEN, FINE), ranks=2),
     Case("2 speeds x 50 001 states", "tables4_5", ((X, positions(16667)),)),
-    Case("friction alone", "loops"),
+    Case("friction alone", "fig6"),
     Case("closed form alone", "tables4_5", ((FEM_ALONE[0], 'methods = ["closed_form"]'),)),
 ]
 

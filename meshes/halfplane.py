@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshes.planes import Confocal, Physical
 from meshes.rings import QuadMesh, Refinement, rectangle
@@ -81,3 +82,12 @@ def check_cells(mesh: QuadMesh) -> None:
             f"cell {worst} at {corners[worst].mean(axis=0)} (over a) is degenerate; "
             "choose more sectors or a ratio nearer to 1"
         )
+
+
+def edges(kind: MeshKind, mesh: QuadMesh, points: int = 17) -> NDArray[np.float64]:
+    """Polylines along the cells' edges in the half-plane over a, each edge once, (edges, points, 2)."""
+    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
+    first, last = np.unique(np.sort(sides, axis=1), axis=0).T
+    t = np.linspace(0.0, 1.0, points)[:, None]
+    lines = (1.0 - t) * mesh.points[first][:, None] + t * mesh.points[last][:, None]
+    return kind.plane.to_physical(lines.reshape(-1, 2)).reshape(-1, points, 2)

@@ -41,6 +41,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "surface/fem/sigma_XX": ("N/(2a)", "in-plane stress on the surface"),
     "interior/X_over_a": ("1", "positions inside, along the surface, over the half-width"),
     "interior/Y_over_a": ("1", "positions inside, outwards, over the half-width; negative"),
+    "interior/map": ("1", "rows and columns of the grid that the first points inside form, by rows"),
     **{
         f"interior/{method}/sigma_{ij}": ("N/(2a)", f"{what} inside, {source}")
         for method, source in (("closed_form", "from the potentials"), ("fem", "from the displacement"))
@@ -54,6 +55,10 @@ FIELDS: dict[str, tuple[str, str]] = {
     "run/fem/cells": ("1", "cells of the mesh"),
     "run/fem/unknowns": ("1", "unknowns"),
     "run/fem/degree": ("1", "polynomial degree"),
+    "run/fem/change_by_degree": (
+        "1",
+        "largest relative change of K_I and moments from the degree before, by degree; 0: not computed",
+    ),
     "run/fem/factorisations": ("1", "factorisations"),
     "run/fem/back_substitutions": ("1", "back-substitutions"),
     "run/fem/largest_residual": ("1", "largest |b - Ax|/|b| of a back-substitution"),

@@ -39,3 +39,25 @@ def flatness(X: NDArray, v_X: NDArray) -> NDArray[np.float64]:
     """
     under, beside = (np.abs(v_X[:, part]).max(axis=1) for part in (np.abs(X) <= 0.9, np.abs(X) >= 1.1))
     return under / beside
+
+
+def σ_ZZ(ν: float, plane: str, σ_XX: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
+    """Normal stress out of the plane, in the unit of the others: ν(σ_XX + σ_YY), or 0 in plane stress.
+
+    Args:
+        ν: Poisson's ratio.
+        plane: ``"strain"`` or ``"stress"``.
+        σ_XX, σ_YY: normal stresses in the plane, of one shape.
+    """
+    return (ν if plane == "strain" else 0.0) * (σ_XX + σ_YY)
+
+
+def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) -> NDArray[np.float64]:
+    """√(½[(σ_XX - σ_YY)² + (σ_YY - σ_ZZ)² + (σ_ZZ - σ_XX)²] + 3σ_XY²), in the unit of the stresses."""
+    normal = (σ_XX - σ_YY) ** 2 + (σ_YY - σ_ZZ) ** 2 + (σ_ZZ - σ_XX) ** 2
+    return np.sqrt(normal / 2.0 + 3.0 * σ_XY**2)
+
+
+def maximum_shear(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """Largest shear stress in the plane, √(¼(σ_XX - σ_YY)² + σ_XY²), in the unit of the stresses."""
+    return np.hypot((σ_XX - σ_YY) / 2.0, σ_XY)

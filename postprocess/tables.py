@@ -1,61 +1,92 @@
-"""Tables on the terminal."""
+"""Tables, and how they look on a terminal."""
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
+#: States that a table shows at most.
+LIMIT = 24
 
-def new_table(title: str, *columns: str) -> Table:
-    """An empty table; columns are right-aligned, but for the first."""
-    # No colours: mpirun hands its ranks a terminal even where the output goes to a file.
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table as text: the first column is a label, the others are numbers.
+
+    Attributes:
+        title: of the table.
+        columns: their heads, with units.
+        rows: cells as text.
+        notes: lines below.
+    """
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    notes: Sequence[str] = ()
+
+
+#: Column of the states' table -> (dataset, form).
+_COLUMNS = {
+    "": ("states/motion", "{}"),
+    "X/L": ("states/X_over_L", "{:g}"),
+    "c": ("states/c", "{:.4g}"),
+    "f": ("states/f", "{:+.4f}"),
+    "K exact": ("states/closed_form/K_I", "{:.6f}"),
+    "K(-a)": ("states/fem/K_I_left", "{:.6f}"),
+    "K(a)": ("states/fem/K_I_right", "{:.6f}"),
+    "α": ("states/fem/alpha", "{:.4f}"),
+    "β": ("states/fem/beta", "{:.4f}"),
+}
+
+
+def states_sheet(data: dict[str, Any], title: str) -> Sheet:
+    """The first states of an archive."""
+    shown = {head: entry for head, entry in _COLUMNS.items() if entry[0] in data}
+    forms = [form for _, form in shown.values()]
+    series = [data[name][:LIMIT] for name, _ in shown.values()]
+    rows = [[form.format(value) for form, value in zip(forms, row)] for row in zip(*series)]
+    notes = ["all columns are dimensionless; K is K_I, c the speed over the shear wave speed"]
+    if "α" in shown:
+        notes.append("K(-a), K(a): finite elements; α (X = a) and β (X = -a): exponents fitted there")
+    hidden = len(data["states/f"]) - LIMIT
+    if hidden > 0:
+        notes.insert(0, f"and {hidden} more states; show --json lists all")
+    return Sheet(title or "States", list(shown), rows, notes)
+
+
+def new_console(file: Any = None, colours: bool = False) -> Console:
+    """A console that guesses nothing about what numbers are, and wraps no line."""
+    return Console(
+        file=file, highlight=False, markup=False, soft_wrap=True,
+        color_system="auto" if colours else None,
+    )  # fmt: skip
+
+
+def print_sheet(console: Console, sheet: Sheet) -> None:
+    """Print a table, labels to the left and numbers to the right."""
     table = Table(
-        title=title, box=box.SIMPLE_HEAD, title_justify="left", title_style="", header_style="",
+        title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="", header_style="bold",
         pad_edge=False, padding=(0, 1, 0, 0),
     )  # fmt: skip
-    for i, column in enumerate(columns):
+    for i, column in enumerate(sheet.columns):
         table.add_column(column, justify="left" if i == 0 else "right", no_wrap=True)
-    return table
-
-
-def new_console(file: Any = None) -> Console:
-    """A console without colours or guesses about what numbers are."""
-    return Console(file=file, highlight=False, markup=False, color_system=None, soft_wrap=True)
-
-
-def print_states(data: dict[str, Any], attributes: dict[str, Any], limit: int = 24) -> None:
-    """Print the states of an archive, at most ``limit`` of them, and the verdict."""
-    console = new_console()
-    columns = ["", "X/L", "c", "f"]
-    series = [data[f"states/{name}"] for name in ("motion", "X_over_L", "c", "f")]
-    formats = ["{}", "{:g}", "{:.4g}", "{:+.4f}"]
-    for name, label in (
-        ("states/closed_form/K_I", "K exact"),
-        ("states/fem/K_I_left", "K(-a)"),
-        ("states/fem/K_I_right", "K(a)"),
-    ):
-        if name in data:
-            columns.append(label)
-            series.append(data[name])
-            formats.append("{:.6f}")
-    if "states/fem/alpha" in data:
-        columns += ["α", "β"]
-        series += [data["states/fem/alpha"], data["states/fem/beta"]]
-        formats += ["{:.4f}", "{:.4f}"]
-    table = new_table(attributes["title"] or "States", *columns)
-    for row in list(zip(*series))[:limit]:
-        table.add_row(*(text.format(value) for text, value in zip(formats, row)))
+    for row in sheet.rows:
+        table.add_row(*row)
     console.print(table)
-    hidden = len(data["states/f"]) - limit
-    if hidden > 0:
-        console.print(f"and {hidden} more states; show --json lists all")
-    console.print("all columns are dimensionless; K is K_I, c the speed over the shear wave speed")
-    if "states/fem/alpha" in data:
-        console.print("K(-a), K(a): finite elements; α (X = a) and β (X = -a): exponents fitted there")
+    for note in sheet.notes:
+        console.print(note)
+
+
+def print_verdict(console: Console, attributes: dict[str, Any]) -> None:
+    """Print the comparisons and the verdict of an archive."""
     for text, value in json.loads(attributes["comparisons"]).items():
         console.print(f"  {text}: {value:.1e}")
-    console.print(f"verdict: {attributes['verdict']}")
+    styles = {"PASS": "bold green", "FAIL": "bold red"}
+    console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
     for reason in json.loads(attributes["verdict_reasons"]):
         console.print(f"  {reason}")

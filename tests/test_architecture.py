@@ -11,7 +11,10 @@ ONE_PLACE = {
     "gmsh": {"meshes/gmsh_model.py"},
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "meshes/distributed.py"},
-    "matplotlib": {"postprocess/figures.py"},
+    "matplotlib": {"postprocess/figures/", "app/drawings.py"},
+    "jinja2": {"postprocess/page.py"},
+    "xarray": {"postprocess/named.py", "app/result.py"},
+    "tomlkit": {"app/changes.py"},
     "pint": {"app/quantities.py"},
 }
 

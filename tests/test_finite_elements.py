@@ -26,7 +26,7 @@ def disagreement(data):
 
 
 def test_tables_4_and_5_to_every_printed_digit(tables_run):
-    from app.paper import intensity_rows
+    from app.published import intensity_rows
 
     data, _ = tables_run
     rows = [row for name in ("table4", "table5") for row in intensity_rows(name, data)]

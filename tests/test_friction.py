@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from app.paper import table1_rows
+from app.published import table1_rows
 from solvers.friction.dahl import RK4_STABILITY_LIMIT, Dahl, exact, runge_kutta
 from solvers.friction.strokes import friction_along
 

@@ -54,6 +54,8 @@ def test_defaults_leave_only_what_has_none():
         ('"55.3 N/mm"', '"-55.3 N/mm"', "load"),
         ("mu_c = 0.7", "mu_c = -0.7", "mu_c"),
         ("mu_c = 0.7", "mu_c = []", "mu_c"),
+        ("mu_c = 0.7", 'mu_c = "0.5.5"', "0.5.5"),
+        ('"193 GPa"', '"2 3 GPa"', "2 3 GPa"),
         ("delta = 1.0", "delta = 0", "delta"),
         ('pre_sliding = "0.1 mm"', 'pre_sliding = "nan mm"', "pre_sliding"),
         ('"dahl"', '"coulomb"', "dahl"),

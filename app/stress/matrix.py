@@ -30,7 +30,8 @@ def stress(folder: Path) -> bool:
 
 
 def _write(folder: Path, rows: list[Row], good: bool) -> None:
-    from postprocess import figures
+    from postprocess.figures.canvas import save
+    from postprocess.figures.lines import lines_figure
     from postprocess.hdf5 import archive
     from postprocess.tables import new_console
 
@@ -45,8 +46,8 @@ def _write(folder: Path, rows: list[Row], good: bool) -> None:
         writer.finish({"program": "galinx stress", "verdict": "PASS" if good else "FAIL"})
     console = new_console()
     for row in rows:
-        figure = figures.lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
-        figures.save(figure, folder, row.name)
+        figure = lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
+        save(figure, folder, row.name)
         console.print(f"{row.name}: {row.title}")
         for verdict in row.verdicts:
             console.print(f"  {'holds' if verdict.holds else 'FAILS'}  {verdict.text}")

@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from solvers.errors import MeshError
-from solvers.fem.lagrange import lagrange
+from solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
 from solvers.fem.space import Space
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
+
+#: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
+#: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
+_SETTLED = 1e-8
 
 
 class InteriorGradients:
@@ -44,18 +48,14 @@ class InteriorGradients:
         cells = np.unique(held.cell)
         values = space.cell_values(fields, κ, c, cells)
         gradients = np.zeros((len(points), 2, 2, len(fields)))
-        grid, nodes = _tensor_order(space.reference_nodes)
+        grid, nodes = tensor_order(space.reference_nodes)
         for cell, u in zip(cells, values[:, grid]):
             here = held.cell == cell
-            reference = _reference_gradients(nodes, held.t[here], u)
-            J = np.array([_jacobian(vertices[cell], t) for t in held.t[here]])
-            in_plane = np.einsum("nrcf,nrx->ncxf", reference, np.linalg.inv(J))
+            in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], u)
             np.add.at(gradients, held.point[here], in_plane)
         # On the border between cells the gradient jumps; it is their mean.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-        cos, sin = (value * np.ones(len(x)) for value in space.plane.rotation(x.T, np))
-        R = np.array([[cos, -sin], [sin, cos]]) / space.plane.stretch(x)
-        self._basis = np.einsum("ncxf,Xxn->ncXf", gradients, R)
+        self._basis = to_physical_axes(space.plane, x, gradients)
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
@@ -89,14 +89,6 @@ def _locate(vertices: NDArray, x: NDArray) -> _Held:
     return _Held(pairs[:, 0].astype(int), pairs[:, 1].astype(int), pairs[:, 2:])
 
 
-def _jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """∂x/∂t as [component of x, component of t]; vertices in dolfinx's order 00, 10, 01, 11."""
-    a, b = t
-    by_a = (1 - b) * (vertices[1] - vertices[0]) + b * (vertices[3] - vertices[2])
-    by_b = (1 - a) * (vertices[2] - vertices[0]) + a * (vertices[3] - vertices[1])
-    return np.column_stack([by_a, by_b])
-
-
 def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
     """Place in the unit square of a point, by Newton's method for the bilinear map.
 
@@ -104,25 +96,8 @@ def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
     """
     t = np.array([0.5, 0.5])
     for _ in range(25):
-        a, b = t
-        image = np.array([(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b]) @ vertices
-        step = np.linalg.solve(_jacobian(vertices, t), x - image)
+        step = np.linalg.solve(jacobian(vertices, t), x - image(vertices, t))
         t = t + step
-        if np.abs(step).max() < 1e-14 * max(1.0, np.abs(t).max()):
+        if np.abs(step).max() < _SETTLED * max(1.0, np.abs(t).max()):
             return t
     return np.full(2, np.nan)
-
-
-def _tensor_order(reference: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Local nodes as a grid [i, j] along the two directions of the unit square, and their places."""
-    n = round(np.sqrt(len(reference)))
-    grid = np.lexsort(np.round(reference, 9).T[::-1]).reshape(n, n)
-    return grid, reference[grid[:, 0], 0]
-
-
-def _reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """Derivatives along the unit square's directions at points t of nodal values u (p+1, p+1, ...)."""
-    (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
-    along_a = np.einsum("ni,nj,ij...->n...", slope_a, value_b, u, optimize=True)
-    along_b = np.einsum("ni,nj,ij...->n...", value_a, slope_b, u, optimize=True)
-    return np.stack([along_a, along_b], axis=1)

@@ -1,0 +1,75 @@
+"""Commands to begin with: init, materials, schema."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from app import errors, ranks
+from app.commands import options
+from app.errors import BadInput, MachineFailure
+
+
+@click.command()
+@click.argument("name", required=False)
+@click.option("-o", "output", type=options.FILE, help="Scene; default: NAME.toml.")
+def init(name: str | None, output: Path | None) -> int:
+    """Write a commented scene to begin with; without NAME, list them.
+
+    Example: ./run.sh init own_material -o mine.toml
+    """
+    from app.templates import templates
+
+    known = templates()
+    if not ranks.is_root():
+        return errors.GOOD
+    if name is None:
+        for template in known.values():
+            print(f"{template.name:<16} {template.about}")
+        return errors.GOOD
+    if name not in known:
+        raise BadInput(f"init {name}: no such scene; expected one of {', '.join(known)}")
+    target = output or Path(f"{name}.toml")
+    try:
+        with target.open("x", encoding="utf-8") as file:
+            file.write(known[name].text)
+    except FileExistsError:
+        raise BadInput(f"{target} exists; name another file with -o") from None
+    except OSError as error:
+        raise MachineFailure(f"cannot write {target}: {error.strerror}") from None
+    print(f"scene: {target}")
+    print(f"next: edit it, then ./run.sh plan {target}")
+    return errors.GOOD
+
+
+@click.command()
+def materials() -> int:
+    """List the solids that scenes know by name, with their sources.
+
+    Example: ./run.sh materials
+    """
+    from app.materials import LIBRARY
+
+    if ranks.is_root():
+        for name, material in LIBRARY.items():
+            print(f"{name}: {material.about}")
+            print(f"  E = {material.E}, ν = {material.nu:g} (dimensionless), ρ = {material.rho}")
+            print(f"  {material.source}")
+    return errors.GOOD
+
+
+@click.command()
+def schema() -> int:
+    """Print the JSON schema of scenes, for editors that complete and check TOML.
+
+    Example: ./run.sh schema > scene.schema.json
+    """
+    from app.schema import schema as made
+
+    if ranks.is_root():
+        print(json.dumps(made(), ensure_ascii=False, indent=1))
+    return errors.GOOD
+
+
+COMMANDS: tuple[Any, ...] = (init, materials, schema)

@@ -1,0 +1,123 @@
+"""Commands that compute: run, plan, paper, stress."""
+
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from app import __version__, errors, ranks
+from app import scene as scenes
+from app.changes import from_words
+from app.commands import options
+from app.errors import MachineFailure
+from app.progress import Progress
+
+
+@click.command()
+@options.scene
+@click.option("-o", "output", type=options.FILE, help="Archive; default: the scene's name with .h5.")
+@options.changes
+@click.option("--overwrite", is_flag=True, help="Replace an archive of that name.")
+@click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
+@options.talk
+def run(
+    scene: Path, output: Path | None, changes: tuple[str, ...], overwrite: bool, resume: bool,
+    progress: Progress, quiet: bool,
+) -> int:  # fmt: skip
+    """Compute SCENE and archive the results.
+
+    Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
+    """
+    from app import plan as planning
+    from app.run import check_output, compute
+
+    target = output or Path(scene.stem + ".h5")
+    checked = scenes.read(scene, from_words(changes))
+    if not ranks.is_root() and not planning.make_plan(checked).fem:
+        return errors.GOOD  # nothing to share
+    check_output(target, overwrite)
+    if not ranks.is_root():
+        compute(checked)
+        return errors.GOOD
+    from app.terminal import print_summary, print_times
+    from postprocess.hdf5 import archive
+    from postprocess.journal import Journal
+
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
+    try:
+        with journal, archive.Writer(target, journal.folder) as writer, progress:
+            progress.note(f"scene: {scene}")
+            attributes = compute(checked, writer, progress, journal)
+            progress.say("checking the archive")
+            writer.finish(attributes)
+            journal.complete()
+            progress.note(f"verdict: {attributes['verdict']}; archive: {target}")
+    except KeyboardInterrupt:
+        kept = journal.states
+        go_on = (
+            f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
+        )
+        raise MachineFailure(f"interrupted; {go_on}") from None
+    data, attributes = archive.read(target, stresses=False)
+    print_summary(data, attributes, quiet)
+    if not quiet:
+        print_times(data)
+        print(f"archive: {target}")
+        print(f"next: ./run.sh report {target}")
+    return errors.FAILED_VERDICT if attributes["verdict"] == "FAIL" else errors.GOOD
+
+
+@click.command()
+@options.scene
+@options.changes
+def plan(scene: Path, changes: tuple[str, ...]) -> int:
+    """Show what a run of SCENE would do, and what it would skip; nothing is computed.
+
+    Example: ./run.sh plan scenes/tables4_5.toml
+    """
+    from app import plan as planning
+
+    checked = scenes.read(scene, from_words(changes))
+    planned = planning.make_plan(checked)
+    if ranks.is_root():
+        for text in planning.lines(checked, planned):
+            print(f"do    {text}")
+        for text in planned.skipped:
+            print(f"skip  {text}")
+        print(f"cost  {planning.expense(checked, planned)}")
+        for text in planned.warnings:
+            print(f"warning: {text}", file=sys.stderr)
+    return errors.GOOD
+
+
+@click.command()
+@options.folder("results")
+@options.talk
+def paper(folder: Path, progress: Progress, quiet: bool) -> int:
+    """Reproduce the study: Tables 1, 3, 4, 5, Figs 2 and 5-10, a report, into a folder.
+
+    Example: ./run.sh paper -o results
+    """
+    from app.paper import reproduce
+
+    with progress:
+        good = reproduce(folder, progress, quiet)
+    return errors.GOOD if good else errors.FAILED_VERDICT
+
+
+@click.command()
+@options.folder("stress")
+def stress(folder: Path) -> int:
+    """Try extremes of every parameter, and say whether the promises hold there.
+
+    Example: ./run.sh stress -o stress
+    """
+    from app.stress import matrix
+
+    return errors.GOOD if matrix.stress(folder) else errors.FAILED_VERDICT
+
+
+COMMANDS: tuple[Any, ...] = (run, plan, paper, stress)

@@ -1,0 +1,136 @@
+"""Commands that look at archives: show, check, report, plot, fields."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from app import errors, ranks
+from app.commands import options
+
+
+@click.command()
+@options.archive
+@click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
+def show(archive: Path, as_json: bool) -> int:
+    """Show the states and the verdict of ARCHIVE.
+
+    Example: ./run.sh show tables.h5 --json
+    """
+    from app.terminal import print_summary
+    from postprocess.hdf5.archive import read
+
+    data, attributes = read(archive, stresses=False)
+    if ranks.is_root():
+        if as_json:
+            print(json.dumps(_as_json(data, attributes), ensure_ascii=False, indent=1))
+        else:
+            print_summary(data, attributes)
+    return errors.GOOD
+
+
+@click.command()
+@options.archive
+def check(archive: Path) -> int:
+    """Verify ARCHIVE: checksums, completeness, layout, finite values, balances, verdict.
+
+    Example: ./run.sh check tables.h5
+    """
+    from app.judge import BALANCE_LIMIT
+    from postprocess.check import faults
+
+    found = faults(archive, BALANCE_LIMIT)
+    if ranks.is_root():
+        for text in found:
+            print(f"fault: {text}")
+        print(f"{archive}: {'is whole' if not found else f'faults: {len(found)}'}")
+    return errors.GOOD if not found else errors.FAILED_VERDICT
+
+
+@click.command()
+@options.archive
+@click.option("-o", "output", type=options.FILE, help="Page; default: the archive's name with .html.")
+def report(archive: Path, output: Path | None) -> int:
+    """Write a page that shows all of ARCHIVE: one HTML file that needs no network.
+
+    Example: ./run.sh report tables.h5
+    """
+    from app.result import load
+
+    result = load(archive)
+    if ranks.is_root():
+        target = output or Path(archive.stem + ".html")
+        result.report(target)
+        print(f"report: {target}")
+        print(f"next: open it in a browser, or ./run.sh plot {archive} for PDF figures")
+    return errors.GOOD
+
+
+@click.command()
+@options.archive
+@options.folder(".")
+def plot(archive: Path, folder: Path) -> int:
+    """Draw what ARCHIVE holds, each figure as PDF and PNG.
+
+    Example: ./run.sh plot tables.h5 -o figures
+    """
+    from app.result import load
+
+    result = load(archive)
+    if ranks.is_root():
+        for path in result.plot(folder, archive.stem):
+            print(f"figure: {path}")
+    return errors.GOOD
+
+
+@click.command()
+@options.archive
+@click.option(
+    "--state", type=int, default=1, show_default=True, help="Which, from 1, as show lists them."
+)
+@click.option("--extent", type=float, default=10.0, show_default=True, help="How far, over a.")
+@click.option(
+    "-o", "output", type=options.FILE, help="File; default: the archive's name, the state, .hdf."
+)
+def fields(archive: Path, state: int, extent: float, output: Path | None) -> int:
+    """Write displacement and stresses of a state of ARCHIVE for ParaView (VTKHDF).
+
+    The state is computed once more by finite elements, at the degree that the archive used.
+
+    Example: ./run.sh fields tables.h5 --state 3
+    """
+    from app.result import load
+
+    result = load(archive, stresses=False)
+    target = output or Path(f"{archive.stem}_{state}.hdf")
+    result.fields(target, state, extent)
+    if ranks.is_root():
+        print(f"fields: {target}")
+        print("next: open it in ParaView (5.11 or newer), and colour by von_mises")
+    return errors.GOOD
+
+
+def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]:
+    """States as a list of objects nested like the archive's paths; NaN becomes null."""
+    states: list[dict[str, Any]] = [{} for _ in data["states/f"]]
+    for name, values in data.items():
+        section, *path, last = name.split("/")
+        if section != "states":
+            continue
+        for state, value in zip(states, values.tolist()):
+            for level in path:
+                state = state.setdefault(level, {})
+            state[last] = None if value != value else value
+    return {
+        "title": attributes["title"],
+        "version": attributes["version"],
+        "scene_sha256": attributes["scene_sha256"],
+        "verdict": attributes["verdict"],
+        "verdict_reasons": json.loads(attributes["verdict_reasons"]),
+        "warnings": json.loads(attributes["warnings"]),
+        "states": states,
+    }
+
+
+COMMANDS: tuple[Any, ...] = (show, check, report, plot, fields)

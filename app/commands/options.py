@@ -1,0 +1,42 @@
+"""Arguments and options that several commands have."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from app.progress import Progress
+
+FILE = click.Path(path_type=Path)
+
+scene = click.argument("scene", type=FILE)
+archive = click.argument("archive", type=FILE)
+changes = click.option(
+    "--set", "changes", multiple=True, metavar="KEY=VALUE",
+    help="Another value, as in --set friction.mu_c=0.5; may be repeated.",
+)  # fmt: skip
+
+
+def folder(default: str) -> Callable[[Any], Any]:
+    """``-o FOLDER``."""
+    return click.option("-o", "folder", type=FILE, default=Path(default), show_default=True)
+
+
+def talk(command: Any) -> Any:
+    """``--quiet``, ``--verbose`` and ``--log``; the command gets a ``progress``."""
+
+    def with_progress(quiet: bool, verbose: bool, log: Path | None, **others: Any) -> Any:
+        if quiet and verbose:
+            raise click.UsageError("--quiet and --verbose exclude each other; keep one")
+        return command(progress=Progress(quiet, verbose, log), quiet=quiet, **others)
+
+    with_progress.__name__, with_progress.__doc__ = command.__name__, command.__doc__
+    with_progress.__click_params__ = getattr(command, "__click_params__", [])  # type: ignore[attr-defined]
+    for option in (
+        click.option("--log", type=FILE, help="Add every step, with its time, to this file."),
+        click.option("-v", "--verbose", is_flag=True, help="Every step as a line on the error stream."),
+        click.option("-q", "--quiet", is_flag=True, help="Warnings and errors only."),
+    ):
+        with_progress = option(with_progress)
+    return with_progress

@@ -1,0 +1,235 @@
+"""The whole field of one state, for ParaView: displacement and stresses from finite elements."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import BadInput, MachineFailure
+from app.plan import INSIDE, Plan, has_closed_form, make_plan
+from app.scene import Output, Scene
+from app.states import enumerate_states, solid_of, speeds
+from meshes.halfplane import MESHES, check_cells
+from meshes.refine import DEGREES, reach
+from meshes.rings import TAGS
+from postprocess.stresses import maximum_shear, stresses_inside, von_mises, σ_ZZ
+from solvers.materials import MovingFrame
+from solvers.sie.closed_form import FlatPunch
+
+#: What a field may hold, by name: (unit, long name).
+ABOUT = {
+    "displacement": ("m", "displacement relative to the far boundary"),
+    "sigma_XX": ("Pa", "in-plane normal stress along X"),
+    "sigma_YY": ("Pa", "normal stress along Y"),
+    "sigma_XY": ("Pa", "shear stress"),
+    "sigma_ZZ": ("Pa", "normal stress out of the plane"),
+    "von_mises": ("Pa", "von Mises stress"),
+    "maximum_shear": ("Pa", "largest shear stress in the plane"),
+    "sigma_error": (
+        "Pa",
+        "largest difference of sigma_XX, sigma_YY, sigma_XY from the closed form, NaN on the surface",
+    ),
+}
+
+#: Depth over a above which a point counts as on the surface, where the potentials do not hold.
+_SURFACE = 1e-14
+
+
+@dataclass(frozen=True)
+class StateField:
+    """One state of a scene on small quadrilaterals, in SI.
+
+    Attributes:
+        points: positions [m], (n, 2).
+        quads: points of each quadrilateral counterclockwise, (m, 4).
+        data: quantities of ``ABOUT`` at the points, (n,), or (n, 3) for the displacement.
+    """
+
+    points: NDArray[np.float64]
+    quads: NDArray[np.int64]
+    data: dict[str, NDArray[np.float64]]
+
+
+def write_field(
+    scene: Scene, number: int, path: Path, extent: float = 10.0, degree: int | None = None
+) -> None:
+    """Compute one state of a scene and write it for ParaView; an earlier file of that name is replaced.
+
+    Collective over MPI's world; rank 0 writes. Arguments and failures are those of :func:`state_field`.
+
+    Raises:
+        UnwritableArchive: the file system refused.
+    """
+    field = state_field(scene, number, extent, degree)
+    if field:
+        from postprocess.hdf5 import vtkhdf
+
+        vtkhdf.write(path, field.points, field.quads, field.data, ABOUT)
+
+
+def state_field(
+    scene: Scene, number: int, extent: float = 10.0, degree: int | None = None
+) -> StateField | None:
+    """One state of a scene from one factorisation, on rank 0; None on the others. Collective.
+
+    Whatever the scene asks for and by whichever method, this is done with finite elements.
+
+    Args:
+        scene: the scene.
+        number: of the state, from 0, in the order of :func:`app.states.enumerate_states`.
+        extent: what is shown is |X|, |Y| <= extent, over a.
+        degree: polynomial degree; that which the scene's tolerance suggests if not given.
+
+    Raises:
+        BadInput: there is no such state, or finite elements have no answer for it.
+        SolveError: the equations could not be solved.
+    """
+    states = enumerate_states(scene)
+    if not 0 <= number < len(states):
+        raise BadInput(
+            f"state {number}: no such state; expected 0 to {len(states) - 1}, the scene has {len(states)}"
+        )
+    lowest, highest = DEGREES[0], DEGREES[1] + 1  # one more than a rule gives, for given tractions
+    if degree is not None and not lowest <= degree <= highest:
+        raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
+    c, g = float(states.c[number]), float(states.g[number])
+    asked = _for_finite_elements(scene, c)
+    plan = make_plan(asked)
+    _check(asked, plan, extent)
+    planned = next(speed.degree for speed in plan.speeds if speed.c == c)
+    if degree is None:
+        # Given tractions are solved one degree above the rule, as in a run.
+        degree = planned + (scene.solve.mode == "traction")
+    sampled = _sampled(asked, plan, c, g, extent, degree)
+    return None if sampled is None else _in_si(scene, c, g, sampled)
+
+
+def _for_finite_elements(scene: Scene, c: float) -> Scene:
+    """The scene with finite elements, at all its speeds that these can do, and at c in any case.
+
+    All speeds share one mesh; with the same speeds it is that of a run.
+    """
+    κ = solid_of(scene).κ
+    possible = tuple(speed for speed in speeds(scene) if speed == c or MovingFrame(κ, speed).r > 0.0)
+    return attrs.evolve(
+        scene,
+        motion=attrs.evolve(scene.motion, c=possible, speed=None),
+        solve=attrs.evolve(scene.solve, methods=("fem",)),
+        output=Output(quantities=("sif",)),
+    )
+
+
+def _check(scene: Scene, plan: Plan, extent: float) -> None:
+    if plan.mixed:
+        raise BadInput(
+            f"solid.nu: found ν = {scene.solid.nu:g} in plane strain, expected ν <= 0.49 for stresses "
+            "inside from finite elements"
+        )
+    limit = 0.6 * reach(scene.solve.mesh, scene.solve.tolerance)
+    if not 0.0 < extent <= limit:
+        raise BadInput(
+            f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
+
+
+@dataclass(frozen=True)
+class _Work:
+    """One solution's ingredients; the part of a run that a load at one speed asks for.
+
+    Attributes:
+        space: gives the space, whatever degree is named.
+    """
+
+    scene: Scene
+    plan: Plan
+    κ: float
+    space: Callable[[int], Any]
+
+
+def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree: int) -> Any:
+    """The state's sampled field over a, N/(2μ) and N/(2a), gathered on rank 0; None on the others."""
+    try:
+        from mpi4py import MPI
+
+        import app.finite_elements  # noqa: F401 first, as it silences the form compiler's tools
+        from meshes.distributed import distribute
+        from meshes.store import obtain
+        from solvers.fem.field import sample
+        from solvers.fem.space import Space
+    except ImportError as error:
+        raise MachineFailure(
+            f"finite elements need {error.name}, which is not installed; "
+            "run ./run.sh once, it installs what is missing"
+        ) from error
+    comm, κ, kind = MPI.COMM_WORLD, solid_of(scene).κ, MESHES[scene.solve.mesh]
+    cells = kind.build(plan.refinement)
+    check_cells(cells)
+    mesh = distribute(obtain(cells) if comm.rank == 0 else cells, comm)
+    space = Space(*mesh, TAGS, kind.plane, degree)
+    solve = _punch if scene.solve.mode == "contact" else _load
+    with solve(_Work(scene, plan, κ, lambda _: space), c, g) as (fields, weights):
+        return sample(space, κ, c, fields, weights, extent, degree).gathered(comm)
+
+
+@contextmanager
+def _punch(work: _Work, c: float, g: float) -> Iterator[tuple[Any, NDArray]]:
+    """Fields of the rigid punch, and the state's weights."""
+    from solvers.fem.punch import SlidingPunch
+
+    punch = SlidingPunch(work.space(0), work.κ, c)
+    try:
+        weights = punch.states(g).weights[0]  # the fields are complete after this
+        yield punch.fields, weights
+    finally:
+        punch.destroy()
+
+
+@contextmanager
+def _load(work: _Work, c: float, g: float) -> Iterator[tuple[Any, NDArray]]:
+    """Fields of the given tractions, and the state's weights."""
+    from app.traction_mode import LoadAtSpeed
+
+    speed = LoadAtSpeed(work, c, 0)
+    try:
+        speed.prepare(np.array([g]))
+        yield speed.loaded.fields, np.array([1.0, g])
+    finally:
+        speed.destroy()
+
+
+def _in_si(scene: Scene, c: float, g: float, sampled: Any) -> StateField:
+    """Lengths in m, stresses in Pa, for the scene's load per depth."""
+    solid, punch = solid_of(scene), scene.punch
+    unit = punch.load / (2.0 * punch.half_width)
+    found = stresses_inside(solid.κ, sampled.gradient)
+    σ = dict(zip(INSIDE, unit * found))
+    out_of_plane = σ_ZZ(solid.ν, solid.plane, σ["XX"], σ["YY"])
+    displacement = punch.load / (2.0 * solid.μ) * sampled.displacement
+    data = {
+        "displacement": np.column_stack([displacement, np.zeros(len(displacement))]),
+        **{f"sigma_{ij}": values for ij, values in σ.items()},
+        "sigma_ZZ": out_of_plane,
+        "von_mises": von_mises(σ["XX"], σ["YY"], σ["XY"], out_of_plane),
+        "maximum_shear": maximum_shear(σ["XX"], σ["YY"], σ["XY"]),
+    }
+    if "closed_form" in scene.solve.methods and has_closed_form(scene):
+        exact = FlatPunch(MovingFrame(solid.κ, c), g)
+        data["sigma_error"] = unit * _error(exact, sampled.points, found)
+    return StateField(punch.half_width * sampled.points, sampled.quads, data)
+
+
+def _error(exact: FlatPunch, points: NDArray, found: NDArray) -> NDArray[np.float64]:
+    """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
+    from solvers.sie.field import stresses  # SciPy's special functions, a slow import
+
+    X, Y = points.T
+    inside = -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
+    error = np.full(len(points), np.nan)
+    error[inside] = np.abs(found[:, inside] - stresses(exact, X[inside], Y[inside])).max(axis=0)
+    return error

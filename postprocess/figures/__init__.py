@@ -1,0 +1,1 @@
+"""Figures, the one room that meets matplotlib: pure functions from arrays to figures."""

@@ -1,0 +1,78 @@
+"""What one quadrilateral makes of its nodal values: places, derivatives, and those in the physical plane.
+
+A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.fem.lagrange import lagrange
+from solvers.fem.plane import Plane
+
+
+def image(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """Points of the mesh's plane at places t (..., 2) of the unit square: (..., 2)."""
+    a, b = t[..., 0], t[..., 1]
+    return np.stack([(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b], axis=-1) @ vertices
+
+
+def jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """∂x/∂t at places t (..., 2) as [..., component of x, component of t]."""
+    a, b = t[..., :1], t[..., 1:]
+    by_a = (1 - b) * (vertices[1] - vertices[0]) + b * (vertices[3] - vertices[2])
+    by_b = (1 - a) * (vertices[2] - vertices[0]) + a * (vertices[3] - vertices[1])
+    return np.stack([by_a, by_b], axis=-1)
+
+
+def tensor_order(reference: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Local nodes as a grid [i, j] along the two directions of the unit square, and their places."""
+    n = round(np.sqrt(len(reference)))
+    grid = np.lexsort(np.round(reference, 9).T[::-1]).reshape(n, n)
+    return grid, reference[grid[:, 0], 0]
+
+
+def reference_values(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """Values at places t (n, 2) of nodal values u (p+1, p+1, ...): (n, ...)."""
+    value_a, value_b = (lagrange(nodes, t[:, i])[0] for i in (0, 1))
+    return np.einsum("ni,nj,ij...->n...", value_a, value_b, u, optimize=True)
+
+
+def reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """Derivatives along the unit square's directions, at places t, of nodal values u (p+1, p+1, ...).
+
+    Returns:
+        Array (n, 2, ...).
+    """
+    (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
+    along_a = np.einsum("ni,nj,ij...->n...", slope_a, value_b, u, optimize=True)
+    along_b = np.einsum("ni,nj,ij...->n...", value_a, slope_b, u, optimize=True)
+    return np.stack([along_a, along_b], axis=1)
+
+
+def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
+    """Derivatives along the axes of the mesh's plane, at places t (n, 2), of displacements u.
+
+    Args:
+        vertices: of the cell, (4, 2).
+        nodes: places of its nodes along one direction, (p+1,).
+        t: places in the unit square.
+        u: nodal displacements, (p+1, p+1, 2, fields).
+
+    Returns:
+        Array (n, component, axis, fields).
+    """
+    inverse = np.linalg.inv(jacobian(vertices, t))
+    return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
+
+
+def to_physical_axes(plane: Plane, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
+    """Derivatives along X and Y from those along the axes of the mesh's plane, at its points x (n, 2).
+
+    Args:
+        plane: the mesh's plane.
+        x: where; not at a punch edge of a plane whose stretch vanishes there.
+        gradients: array (n, component, axis, fields).
+    """
+    cos, sin = (value * np.ones(len(x)) for value in plane.rotation(x.T, np))
+    R = np.array([[cos, -sin], [sin, cos]]) / plane.stretch(x)
+    return np.einsum("ncxf,Xxn->ncXf", gradients, R)

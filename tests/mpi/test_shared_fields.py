@@ -1,0 +1,47 @@
+"""Run on one rank with the other tests and again under mpirun on two."""
+
+import numpy as np
+import pytest
+from conftest import HOME
+from mpi4py import MPI
+
+from app.fields import write_field
+from app.scene import read
+from meshes.distributed import distribute
+from meshes.halfplane import MESHES
+from meshes.rings import TAGS, Refinement
+from solvers.fem.field import sample
+from solvers.fem.punch import SlidingPunch
+from solvers.fem.space import Space
+
+
+@pytest.mark.parametrize("mesh, extent", [("confocal", 5.0), ("graded", 5.0), ("confocal", 1e-3)])
+def test_ranks_sample_together_what_one_samples(mesh, extent):
+    kind, found = MESHES[mesh], []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        cells = kind.build(Refinement(5, 0.35, 2, (3.0,) * 4))
+        space = Space(*distribute(cells, comm), TAGS, kind.plane, 5)
+        punch = SlidingPunch(space, 2.0, 0.6)
+        weights = punch.states(-0.66).weights[0]
+        found.append(sample(space, 2.0, 0.6, punch.fields, weights, extent, 4).gathered(comm))
+        punch.destroy()
+    alone, shared = found
+    assert (shared is None) == (MPI.COMM_WORLD.rank > 0)
+    if shared is None:
+        return
+    assert shared.quads.shape == alone.quads.shape and shared.points.shape == alone.points.shape
+    # Each quadrilateral has a middle of its own, whatever the order of cells and points.
+    sorted_ = []
+    for field in found:
+        middle = field.points[field.quads].mean(axis=1)
+        order = np.lexsort(np.round(middle, 12).T)
+        means = (field.displacement, field.gradient)
+        sorted_.append((middle[order], *(part[field.quads].mean(axis=1)[order] for part in means)))
+    for one, other in zip(*sorted_):
+        np.testing.assert_allclose(other, one, rtol=1e-8, atol=1e-9 * np.abs(one).max())
+
+
+def test_rank_0_writes(tmp_path):
+    path = tmp_path / "state.hdf"
+    write_field(read(HOME / "scenes" / "tables4_5.toml"), 0, path, extent=2.0, degree=5)
+    assert path.exists() == (MPI.COMM_WORLD.rank == 0)

@@ -87,12 +87,12 @@ class Result:
             report.add(drawing)
         write_report(Path(path), report)
 
-    def fields(self, path: Path | str, state: int = 1, extent: float = 10.0) -> None:
+    def fields(self, path: Path | str, state: int = 0, extent: float = 10.0) -> None:
         """Write displacement and stresses of a state for ParaView (VTKHDF); collective under MPI.
 
         Args:
             path: the file, ``.hdf`` by ParaView's habit.
-            state: which, from 1.
+            state: which, from 0.
             extent: how far from the punch's centre, over a.
 
         Raises:
@@ -120,9 +120,9 @@ class Result:
     def _degree(self, state: int) -> int | None:
         """Degree that was used at a state's speed, None without finite elements."""
         c, used = self.data["states/c"], self.data.get("run/fem/degree")
-        if used is None or not 1 <= state <= len(c):
+        if used is None or not 0 <= state < len(c):
             return None
-        return int(used[self.data["run/fem/c"] == c[state - 1]][0]) or None
+        return int(used[self.data["run/fem/c"] == c[state]][0]) or None
 
 
 def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:

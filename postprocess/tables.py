@@ -32,7 +32,7 @@ class Sheet:
 
 #: Column of the states' table -> (dataset, form).
 _COLUMNS = {
-    "": ("states/motion", "{}"),
+    "state": ("states/motion", "{}"),
     "X/L": ("states/X_over_L", "{:g}"),
     "c": ("states/c", "{:.4g}"),
     "f": ("states/f", "{:+.4f}"),
@@ -50,6 +50,8 @@ def states_sheet(data: dict[str, Any], title: str) -> Sheet:
     forms = [form for _, form in shown.values()]
     series = [data[name][:LIMIT] for name, _ in shown.values()]
     rows = [[form.format(value) for form, value in zip(forms, row)] for row in zip(*series)]
+    for number, row in enumerate(rows):
+        row[0] = f"{number} {row[0]}"
     notes = ["all columns are dimensionless; K is K_I, c the speed over the shear wave speed"]
     if "α" in shown:
         notes.append("K(-a), K(a): finite elements; α (X = a) and β (X = -a): exponents fitted there")

@@ -8,6 +8,7 @@ import click
 
 from app import errors, ranks
 from app.commands import options
+from app.errors import BadInput
 
 
 @click.command()
@@ -58,9 +59,9 @@ def report(archive: Path, output: Path | None) -> int:
     """
     from app.result import load
 
+    target = _beside(archive, output, f"{archive.stem}.html")
     result = load(archive)
     if ranks.is_root():
-        target = output or Path(archive.stem + ".html")
         result.report(target)
         print(f"report: {target}")
         print(f"next: open it in a browser, or ./run.sh plot {archive} for PDF figures")
@@ -86,13 +87,9 @@ def plot(archive: Path, folder: Path) -> int:
 
 @click.command()
 @options.archive
-@click.option(
-    "--state", type=int, default=1, show_default=True, help="Which, from 1, as show lists them."
-)
+@click.option("--state", type=int, default=0, show_default=True, help="Number of the state, see show.")
 @click.option("--extent", type=float, default=10.0, show_default=True, help="How far, over a.")
-@click.option(
-    "-o", "output", type=options.FILE, help="File; default: the archive's name, the state, .hdf."
-)
+@click.option("-o", "output", type=options.FILE, help="File; default: ARCHIVE_STATE.hdf.")
 def fields(archive: Path, state: int, extent: float, output: Path | None) -> int:
     """Write displacement and stresses of a state of ARCHIVE for ParaView (VTKHDF).
 
@@ -102,13 +99,20 @@ def fields(archive: Path, state: int, extent: float, output: Path | None) -> int
     """
     from app.result import load
 
-    result = load(archive, stresses=False)
-    target = output or Path(f"{archive.stem}_{state}.hdf")
-    result.fields(target, state, extent)
+    target = _beside(archive, output, f"{archive.stem}_{state}.hdf")
+    load(archive, stresses=False).fields(target, state, extent)
     if ranks.is_root():
         print(f"fields: {target}")
         print("next: open it in ParaView (5.11 or newer), and colour by von_mises")
     return errors.GOOD
+
+
+def _beside(archive: Path, output: Path | None, default: str) -> Path:
+    """Where to write; what can be made again may be replaced, the archive may not."""
+    target = output or Path(default)
+    if target.resolve() == archive.resolve():
+        raise BadInput(f"{target} is the archive itself; name another file with -o")
+    return target
 
 
 def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]:

@@ -77,27 +77,34 @@ class _Held:
 
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
-    low, high = vertices.min(axis=1), vertices.max(axis=1)
-    slack = _SLACK * (high - low)
-    found = []
-    for n, point in enumerate(x):
-        for cell in np.flatnonzero(np.all((low - slack <= point) & (point <= high + slack), axis=1)):
-            t = _pull_back(vertices[cell], point)
-            if np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK)):
-                found.append((n, cell, *t))
-    pairs = np.reshape(np.array(found, dtype=float), (-1, 4))
+    found = [np.empty((0, 4))]
+    for cell, corners in enumerate(vertices):
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        slack = _SLACK * (high - low)
+        near = np.flatnonzero(np.all((low - slack <= x) & (x <= high + slack), axis=1))
+        t = _pull_back(corners, x[near])
+        inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
+        pairs = np.column_stack([near, np.full(len(near), cell), t])
+        found.append(pairs[inside])
+    pairs = np.concatenate(found)
     return _Held(pairs[:, 0].astype(int), pairs[:, 1].astype(int), pairs[:, 2:])
 
 
 def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
-    """Place in the unit square of a point, by Newton's method for the bilinear map.
+    """Places in the unit square of points x (n, 2), by Newton's method for the bilinear map.
 
     NaN where that does not converge: the point is then far outside the cell.
     """
-    t = np.array([0.5, 0.5])
+    t = np.full(x.shape, 0.5)
+    moving = np.arange(len(x))
     for _ in range(25):
-        step = np.linalg.solve(jacobian(vertices, t), x - image(vertices, t))
-        t = t + step
-        if np.abs(step).max() < _SETTLED * max(1.0, np.abs(t).max()):
-            return t
-    return np.full(2, np.nan)
+        if not len(moving):
+            break
+        at = t[moving]
+        rest = x[moving] - image(vertices, at)
+        step = np.linalg.solve(jacobian(vertices, at), rest[..., None])[..., 0]
+        t[moving] = at + step
+        size = np.maximum(1.0, np.abs(t[moving]).max(axis=1))
+        moving = moving[~(np.abs(step).max(axis=1) < _SETTLED * size)]
+    t[moving] = np.nan
+    return t

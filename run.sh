@@ -3,7 +3,8 @@
 #   ./run.sh                           reproduce the study into results/
 #   ./run.sh test                      run all tests, those on two ranks included
 #   ./run.sh bench [-o DIR]            measure run time against error
-#   ./run.sh [-n RANKS] COMMAND ...    run, plan, show, check, paper, stress, plot; --help tells more
+#   ./run.sh docs                      build the documentation into site/
+#   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
 home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 python=/usr/bin/python3
@@ -11,8 +12,11 @@ python=/usr/bin/python3
 # The programs, then what only the tests need.
 packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
   python3-scipy python3-matplotlib python3-attr python3-pint python3-click python3-rich
+  python3-jinja2 python3-tomlkit python3-xarray
   libopenblas0-serial openmpi-bin gcc libc6-dev)
-test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath)
+docs_packages=(mkdocs)
+test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
+  python3-vtk9 python3-nbclient python3-ipykernel "${docs_packages[@]}")
 
 missing() { # the packages of the arguments that are not installed
   local installed package
@@ -62,6 +66,13 @@ if [ "${1:-}" = bench ]; then
   shift
   set_up "${packages[@]}"
   exec "$python" "$home/benchmarks/measure.py" "$@"
+fi
+
+if [ "${1:-}" = docs ]; then
+  set_up "${packages[@]}" "${docs_packages[@]}"
+  cd "$home"
+  "$python" docs/make.py
+  exec mkdocs build --strict --quiet --site-dir site
 fi
 
 ranks=

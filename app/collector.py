@@ -28,10 +28,10 @@ class Sink(Protocol):
 
 
 class Memory(dict[str, Any]):
-    """A sink that keeps the datasets by path."""
+    """A sink that keeps the datasets by path, as an archive would give them back."""
 
     def put(self, name: str, value: Any) -> None:
-        self[name] = value
+        self[name] = np.array(value, dtype=object) if isinstance(value, list) else value
 
     def reserve(self, name: str, shape: tuple[int, ...]) -> None:
         self[name] = np.full(shape, np.nan)

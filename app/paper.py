@@ -12,7 +12,7 @@ from app.published import INTENSITIES, intensities, intensity_rows, table1, tabl
 from app.run import compute
 from app.scene import Scene
 from app.states import solid_of
-from app.terminal import colours
+from app.terminal import colours, say
 from postprocess.tables import Sheet
 
 #: Scenes that are part of the program.
@@ -47,8 +47,8 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
     write_report(folder / "report.html", report)
     _print(folder, sheets, attributes, quiet)
     if not quiet:
-        figures = "Figs 2, 5-10, inside, mesh as PDF and PNG"
-        print(f"written to {folder}: study.h5, inside.h5, tables.txt, {figures}")
+        figures = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
+        say(f"written to {folder}: study.h5, inside.h5, tables.txt, report.html, {figures}")
         print(f"verdict: {'PASS' if good else 'FAIL'}")
         print(f"next: open {folder / 'report.html'} in a browser, or ./run.sh init")
     return good

@@ -107,8 +107,8 @@ def table3(solid: Solid, pre_sliding: float) -> Sheet:
         ("", "c (1)", "V (m/s)", "time of a stroke (s)"),
         rows,
         (
-            "The study's text has V = 1880.4 m/s for c = 0.6, which Table 2 confirms; 1884 is a",
-            "misprint.",
+            "The text of the study has V = 1880.4 m/s for c = 0.6, which Table 2 confirms;",
+            "1884 is a misprint.",
         ),
     )
 

@@ -1,6 +1,7 @@
 """Numbers with units: strings such as "193 GPa" become SI numbers through pint."""
 
 import re
+import sys
 from functools import lru_cache
 from math import isfinite
 from typing import Any
@@ -13,9 +14,22 @@ _FORM = re.compile(
 
 @lru_cache(maxsize=1)
 def _registry() -> Any:
-    import pint  # only scenes with units pay for it
+    return _pint().UnitRegistry()
 
-    return pint.UnitRegistry()
+
+def _pint() -> Any:
+    """pint, which only scenes with units pay for, without array libraries that it looks for.
+
+    Those take longer to import than everything else that a friction loop needs.
+    """
+    hidden = [name for name in ("pandas", "xarray", "dask") if name not in sys.modules]
+    sys.modules.update(dict.fromkeys(hidden))  # None: Python takes the module for missing
+    try:
+        import pint
+    finally:
+        for name in hidden:
+            del sys.modules[name]
+    return pint
 
 
 def to_si(value: Any, unit: str) -> float:
@@ -48,8 +62,7 @@ def _parse(text: str, unit: str, wanted: str) -> float:
 
     import tokenize
 
-    import pint
-
+    pint = _pint()
     try:
         quantity = _registry().Quantity(text)
         if not unit and not quantity.unitless and quantity.dimensionless:

@@ -1,15 +1,24 @@
 """What commands print at their end."""
 
 import json
+import os
+import shutil
 import sys
+import textwrap
 from typing import Any
 
 from app import ranks
 
 
+def say(text: str, hang: int = 2) -> None:
+    """Print a line, folded at the terminal's width (80 columns where it is none)."""
+    width = shutil.get_terminal_size().columns
+    print(textwrap.fill(text, width, subsequent_indent=" " * hang, break_on_hyphens=False))
+
+
 def colours() -> bool:
-    """Only for a terminal: mpirun hands its ranks one even where the output goes to a file."""
-    return ranks.size() == 1 and sys.stdout.isatty()
+    """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
+    return ranks.size() == 1 and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
@@ -28,4 +37,4 @@ def print_times(data: dict[str, Any]) -> None:
     """Wall time of the steps that took some, longest first."""
     steps = sorted(zip(data["run/seconds"].tolist(), data["run/steps"].tolist()), reverse=True)
     told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
-    print(f"time: {sum(seconds for seconds, _ in steps):.2g} s{f' ({told})' if told else ''}")
+    say(f"time: {sum(seconds for seconds, _ in steps):.2g} s{f' ({told})' if told else ''}")

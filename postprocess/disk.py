@@ -16,7 +16,8 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
         error: what the file system or HDF5 raised.
         needed: bytes, where they are known.
     """
-    reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
+    number = getattr(error, "errno", None)
+    reason = os.strerror(number) if number else str(error)
     space = f"; it needs {needed / 1e6:.3g} MB" if needed else ""
     with suppress(OSError):
         space += f"; {shutil.disk_usage(target.parent).free / 1e6:.3g} MB are free"

@@ -9,6 +9,7 @@ import click
 from app import errors, ranks
 from app.commands import options
 from app.errors import BadInput, MachineFailure
+from app.terminal import say
 
 
 @click.command()
@@ -26,7 +27,7 @@ def init(name: str | None, output: Path | None) -> int:
         return errors.GOOD
     if name is None:
         for template in known.values():
-            print(f"{template.name:<16} {template.about}")
+            say(f"{template.name:<16} {template.about}", 17)
         return errors.GOOD
     if name not in known:
         raise BadInput(f"init {name}: no such scene; expected one of {', '.join(known)}")
@@ -53,9 +54,9 @@ def materials() -> int:
 
     if ranks.is_root():
         for name, material in LIBRARY.items():
-            print(f"{name}: {material.about}")
-            print(f"  E = {material.E}, ν = {material.nu:g} (dimensionless), ρ = {material.rho}")
-            print(f"  {material.source}")
+            say(f"{name}: {material.about}")
+            say(f"  E = {material.E}, ν = {material.nu:g} (dimensionless), ρ = {material.rho}")
+            say(f"  {material.source}", 4)
     return errors.GOOD
 
 

@@ -13,6 +13,7 @@ from app.changes import from_words
 from app.commands import options
 from app.errors import MachineFailure
 from app.progress import Progress
+from app.terminal import print_summary, print_times, say
 
 
 @click.command()
@@ -41,7 +42,6 @@ def run(
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from app.terminal import print_summary, print_times
     from postprocess.hdf5 import archive
     from postprocess.journal import Journal
 
@@ -84,10 +84,10 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
     planned = planning.make_plan(checked)
     if ranks.is_root():
         for text in planning.lines(checked, planned):
-            print(f"do    {text}")
+            say(f"do    {text}", 6)
         for text in planned.skipped:
-            print(f"skip  {text}")
-        print(f"cost  {planning.expense(checked, planned)}")
+            say(f"skip  {text}", 6)
+        say(f"cost  {planning.expense(checked, planned)}", 6)
         for text in planned.warnings:
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD

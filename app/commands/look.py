@@ -9,6 +9,7 @@ import click
 from app import errors, ranks
 from app.commands import options
 from app.errors import BadInput
+from app.terminal import print_summary
 
 
 @click.command()
@@ -19,7 +20,6 @@ def show(archive: Path, as_json: bool) -> int:
 
     Example: ./run.sh show tables.h5 --json
     """
-    from app.terminal import print_summary
     from postprocess.hdf5.archive import read
 
     data, attributes = read(archive, stresses=False)

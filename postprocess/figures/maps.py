@@ -33,6 +33,7 @@ class Row:
     difference: bool = False
 
 
+@plt.rc_context({"axes.grid": False})
 def maps_figure(X: NDArray, Y: NDArray, rows: Sequence[Row]) -> Figure:
     """Maps, a column for each quantity and a row for each solution.
 
@@ -53,7 +54,6 @@ def maps_figure(X: NDArray, Y: NDArray, rows: Sequence[Row]) -> Figure:
             bar.ax.tick_params(labelsize=6)
             axis.plot([-1.0, 1.0], [0.0, 0.0], color="black", linewidth=3.0, clip_on=False)
             axis.set_ylim(Y[0], 0.0)
-            axis.grid(False)
             axis.tick_params(labelsize=7)
             if row is rows[0]:
                 axis.set_title(name, fontsize=9)

@@ -67,7 +67,7 @@ class Writer:
             about: unit and long name; those of ``FIELDS`` if not given.
         """
         with self._told():
-            text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind == "U"
+            text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind in "UO"
             if text:
                 data = value if isinstance(value, str) else list(value)
                 dataset = self._file.create_dataset(name, data=data, dtype=h5py.string_dtype())
@@ -142,8 +142,15 @@ def _mute_refused_closes() -> None:
     def refused(error: Any) -> bool:
         return "decrement id ref count" in str(error)
 
-    sys.excepthook = lambda kind, error, at: refused(error) or sys.__excepthook__(kind, error, at)
-    sys.unraisablehook = lambda found: refused(found.exc_value) or sys.__unraisablehook__(found)
+    def uncaught(kind: Any, error: Any, at: Any) -> None:
+        if not refused(error):
+            sys.__excepthook__(kind, error, at)
+
+    def unraisable(found: Any) -> None:
+        if not refused(found.exc_value):
+            sys.__unraisablehook__(found)
+
+    sys.excepthook, sys.unraisablehook = uncaught, unraisable
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:

@@ -1,0 +1,123 @@
+"""What commands say: 80 columns, colours on terminals only, as much as was asked for."""
+
+import os
+import pty
+import re
+import subprocess
+
+import pytest
+from conftest import HOME, clean_environment, command
+
+from app.cli import cli
+
+SCENE = HOME / "scenes" / "tables4_5.toml"
+CLOSED = ("--set", 'solve.methods=["closed_form"]')
+
+
+def on_a_terminal(*arguments, cwd, **environment):
+    """Output of ``./run.sh ARGUMENTS`` on a terminal of 80 columns."""
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        [str(HOME / "run.sh"), *map(str, arguments)], cwd=cwd, stdout=theirs, stderr=theirs,
+        stdin=subprocess.DEVNULL,
+        env=clean_environment() | {"TERM": "xterm-256color", "COLUMNS": "80"} | environment,
+    )  # fmt: skip
+    os.close(theirs)
+    said = b""
+    while True:
+        try:
+            found = os.read(ours, 65536)
+        except OSError:  # Linux's way to say that nobody is at the other end
+            break
+        if not found:
+            break
+        said += found
+    os.close(ours)
+    assert process.wait(60) == 0, said
+    return said.decode()
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    path = tmp_path_factory.mktemp("terminal") / "a.h5"
+    done = command("run", SCENE, "-o", path)
+    assert done.returncode == 0, done.stderr
+    return path, done.stdout
+
+
+def widest(text):
+    return max(map(len, text.splitlines()))
+
+
+def test_a_run_ends_with_times_and_what_to_try_next(archive):
+    path, said = archive
+    assert re.search(r"^time: [\d.]+ s", said, re.MULTILINE)
+    assert said.splitlines()[-1] == f"next: ./run.sh report {path}"
+    assert "\x1b" not in said
+
+
+@pytest.mark.parametrize(
+    "arguments", [("show",), ("check",), ("plan", SCENE), ("init",), ("materials",)], ids=lambda a: a[0]
+)
+def test_output_fits_80_columns_without_colours(archive, arguments, tmp_path):
+    where = () if len(arguments) > 1 or arguments[0] in ("init", "materials") else ("a.h5",)
+    done = command(*arguments, *where, cwd=archive[0].parent)
+    assert done.returncode == 0 and widest(done.stdout) <= 80 and "\x1b" not in done.stdout
+
+
+def test_the_studys_tables_fit_80_columns():
+    from io import StringIO
+
+    from app.published import INTENSITIES, intensities, table1, table3
+    from postprocess.tables import new_console, print_sheet
+    from solvers.materials import Solid
+
+    text = StringIO()
+    sheets = [table1(), table3(Solid(193e9, 0.25, 7860.0), 1e-4)]
+    for sheet in [*sheets, *(intensities(name, []) for name in INTENSITIES)]:
+        print_sheet(new_console(text), sheet)
+    assert widest(text.getvalue()) <= 80
+
+
+@pytest.mark.parametrize("name", cli.commands)
+def test_help_fits_80_columns(name):
+    assert widest(command(name, "--help").stdout) <= 80
+
+
+def test_colours_on_a_terminal_unless_unwanted(archive, tmp_path):
+    path, _ = archive
+    assert "\x1b[1;32mverdict: PASS" in on_a_terminal("show", path, cwd=tmp_path)
+    assert "\x1b" not in on_a_terminal("show", path, cwd=tmp_path, NO_COLOR="1")
+    # mpirun's ranks see a terminal even where there is none.
+    assert "\x1b" not in command("-n", "2", "show", path).stdout
+
+
+def test_progress_is_drawn_on_a_terminal_unless_quiet(tmp_path):
+    said = on_a_terminal("run", SCENE, "-o", "a.h5", cwd=tmp_path)
+    assert "finite elements at c = 0.6 (2 of 2)" in said and "%" in said
+    assert on_a_terminal("run", SCENE, "-o", "b.h5", "--quiet", *CLOSED, cwd=tmp_path) == ""
+
+
+def test_quiet_says_warnings_only(tmp_path):
+    done = command("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = command("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
+    assert done.stdout == "" and "within 1 % of the Rayleigh speed" in done.stderr
+
+
+def test_verbose_and_log_tell_every_step(tmp_path):
+    done = command("-n", "2", "run", SCENE, "-o", "a.h5", "-v", "--log", "steps.txt", cwd=tmp_path)
+    steps = [line for line in done.stderr.splitlines() if line]
+    for expected in ("mesh: confocal", "12 of 12 states", "verdict: PASS; archive: a.h5"):
+        assert steps.count(expected) == 1
+    logged = (tmp_path / "steps.txt").read_text(encoding="utf-8").splitlines()
+    assert [line.split(" ", 2)[2] for line in logged] == steps
+    assert all(re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} ", line) for line in logged)
+
+
+def test_options_that_contradict_and_logs_that_cannot_be_written_are_refused(tmp_path):
+    both = command("run", SCENE, "-q", "-v", cwd=tmp_path)
+    assert both.returncode == 2 and "exclude each other" in both.stderr
+    nowhere = command("run", SCENE, "--log", tmp_path / "no" / "l.txt", "-o", "a.h5", cwd=tmp_path)
+    assert nowhere.returncode == 3 and "cannot write the log" in nowhere.stderr
+    assert "Traceback" not in nowhere.stderr and not (tmp_path / "a.h5").exists()

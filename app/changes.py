@@ -8,6 +8,8 @@ from tomlkit.exceptions import TOMLKitError
 
 from app.errors import BadInput
 
+_CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
+
 
 def from_words(words: Iterable[str]) -> dict[str, Any]:
     """Changes as the command line gives them: ``section.key=value``, the value as in TOML.
@@ -34,7 +36,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
     Args:
         text: TOML.
-        changes: new values by ``"section.key"``, or ``"title"``; None takes a key away.
+        changes: new values by ``"section.key"``, or ``"title"``; None takes a key away, and
+            ``"solid.material"`` takes away the constants that are not among the changes.
         name: stands in messages.
 
     Raises:
@@ -42,6 +45,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     """
     try:
         tree = tomlkit.parse(text)
+        if "solid.material" in changes:  # another solid: constants of the old one would override it
+            changes = dict.fromkeys(_CONSTANTS) | dict(changes)
         for path, value in changes.items():
             _change(tree, path, value)
         return tomlkit.dumps(tree)

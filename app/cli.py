@@ -19,6 +19,10 @@ _FAILURES = (
 )  # fmt: skip
 
 
+#: What shells say of a program whose reader went away: 128 + SIGPIPE.
+_CUT_OFF = 141
+
+
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="galinx")
 def cli() -> None:
@@ -40,6 +44,8 @@ def run_from_shell() -> None:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _complain(message)
         sys.exit(errors.BAD_INPUT)  # every rank reads the same input and comes here
+    except BrokenPipeError:
+        os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except click.exceptions.Abort:
         _complain("interrupted; nothing was written")
         _stop(errors.FAILURE)

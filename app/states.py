@@ -56,6 +56,7 @@ def speeds(scene: Scene) -> tuple[float, ...]:
         if speed >= c_s:
             raise BadInput(
                 f"motion.speed = {speed:g} m/s: expected less than the shear wave speed {c_s:.6g} m/s"
+                + "".join(f"; {text}" for text in scene.warnings)
             )
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 

@@ -69,6 +69,12 @@ def test_a_known_solid_gives_its_constants_and_the_scene_may_differ():
     assert (scene.solid.E, scene.solid.nu, scene.solid.rho) == (3.3e9, 0.33, 1190.0)
 
 
+def test_another_solid_replaces_the_constants_of_the_old_one():
+    text = changed(templates()["own_material"].text, {"solid.material": "steel", "solid.rho": 8000})
+    solid = parse(text).solid
+    assert (solid.E, solid.nu, solid.rho) == (210e9, 0.3, 8000.0)
+
+
 def test_without_constants_a_solid_may_be_named():
     with pytest.raises(BadInput, match=r"or solid\.material"):
         parse("[friction]\nmu_c = 0.5\nsigma0_over_load = 1e4\n[motion]\nc = 0.1\n")

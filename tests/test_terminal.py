@@ -115,6 +115,15 @@ def test_verbose_and_log_tell_every_step(tmp_path):
     assert all(re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} ", line) for line in logged)
 
 
+def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
+    # More output than a pipe holds, so that the program meets the closed end.
+    done = subprocess.run(
+        ["bash", "-c", f"{HOME / 'run.sh'} show {archive[0]} --json | head -c 10; echo ${{PIPESTATUS[0]}}"],
+        env=clean_environment(), capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.stderr == "" and done.stdout.split()[-1] in ("0", "141")
+
+
 def test_options_that_contradict_and_logs_that_cannot_be_written_are_refused(tmp_path):
     both = command("run", SCENE, "-q", "-v", cwd=tmp_path)
     assert both.returncode == 2 and "exclude each other" in both.stderr

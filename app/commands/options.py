@@ -20,7 +20,10 @@ changes = click.option(
 
 def folder(default: str) -> Callable[[Any], Any]:
     """``-o FOLDER``."""
-    return click.option("-o", "folder", type=FILE, default=Path(default), show_default=True)
+    return click.option(
+        "-o", "folder", type=FILE, default=Path(default), show_default=True,
+        help="Folder; it is made.",
+    )  # fmt: skip
 
 
 def talk(command: Any) -> Any:

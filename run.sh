@@ -7,7 +7,10 @@
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
 home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-python=/usr/bin/python3
+# Another Python, with dolfinx of its own, and the mpirun beside it; nothing is installed for that one.
+python=${GALINX_PYTHON:-/usr/bin/python3}
+mpirun=mpirun
+[ ! -x "$(dirname "$python")/mpirun" ] || mpirun=$(dirname "$python")/mpirun
 
 # The programs, then what only the tests need.
 packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
@@ -30,6 +33,7 @@ missing() { # the packages of the arguments that are not installed
 
 set_up() {
   local wanted
+  [ -z "${GALINX_PYTHON:-}" ] || return 0
   mapfile -t wanted < <(missing "$@")
   [ ${#wanted[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
@@ -49,17 +53,19 @@ export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
 # One BLAS thread a rank: more are slower at these sizes.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-mpirun_command=(mpirun --mca btl self,vader --oversubscribe)
+# More ranks than cores are allowed, as Open MPI 4 and 5 want to be told; MPICH allows them anyway.
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 # All ranks are on this machine: looking for fast networks, or starting a daemon for a single process,
 # would take a quarter of a second each time.
-export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_ess_singleton_isolated="${OMPI_MCA_ess_singleton_isolated:-1}"
+export OMPI_MCA_btl="${OMPI_MCA_btl:-self,vader}" OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}"
+export OMPI_MCA_ess_singleton_isolated="${OMPI_MCA_ess_singleton_isolated:-1}"
 
 if [ "${1:-}" = test ]; then
   shift
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
   "$python" -m pytest tests "$@"
-  exec "${mpirun_command[@]}" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
+  exec "$mpirun" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
 fi
 
 if [ "${1:-}" = bench ]; then
@@ -87,6 +93,6 @@ fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
 if [ -n "$ranks" ]; then
-  exec "${mpirun_command[@]}" -n "$ranks" "$python" -m app "$@"
+  exec "$mpirun" -n "$ranks" "$python" -m app "$@"
 fi
 exec "$python" -m app "$@"

@@ -158,8 +158,8 @@ def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree
         from mpi4py import MPI
 
         import app.finite_elements  # noqa: F401 first, as it silences the form compiler's tools
-        from meshes.distributed import distribute
         from meshes.store import obtain
+        from solvers.fem.distributed import distribute
         from solvers.fem.field import sample
         from solvers.fem.space import Space
     except ImportError as error:

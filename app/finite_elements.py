@@ -20,7 +20,6 @@ from app.progress import Progress  # noqa: E402
 from app.scene import Scene  # noqa: E402
 from app.states import States, pieces, solid_of  # noqa: E402
 from app.traction_mode import LoadAtSpeed  # noqa: E402
-from meshes.distributed import distribute  # noqa: E402
 from meshes.halfplane import MESHES, check_cells  # noqa: E402
 from meshes.rings import TAGS  # noqa: E402
 from meshes.store import obtain  # noqa: E402
@@ -28,6 +27,7 @@ from postprocess.compare import Comparison  # noqa: E402
 from postprocess.journal import Part  # noqa: E402
 from solvers.errors import SolveError  # noqa: E402
 from solvers.fem.clock import Clock  # noqa: E402
+from solvers.fem.distributed import distribute  # noqa: E402
 from solvers.fem.space import Space  # noqa: E402
 
 #: What works at one speed, by the scene's mode.

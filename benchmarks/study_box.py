@@ -14,12 +14,12 @@ from mpi4py import MPI
 from app.collector import Memory
 from app.run import compute
 from app.scene import parse
-from meshes.distributed import distribute
 from meshes.gmsh_model import through_gmsh
 from meshes.halfplane import MESHES, check_cells
 from meshes.refine import refinement
 from meshes.rings import TAGS, QuadMesh, Refinement
 from postprocess.pressure import contact_recovery, from_moments
+from solvers.fem.distributed import distribute
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
 from solvers.materials import MovingFrame

@@ -39,8 +39,8 @@ _COLUMNS = {
     "K exact": ("states/closed_form/K_I", "{:.6f}"),
     "K(-a)": ("states/fem/K_I_left", "{:.6f}"),
     "K(a)": ("states/fem/K_I_right", "{:.6f}"),
-    "α": ("states/fem/alpha", "{:.4f}"),
-    "β": ("states/fem/beta", "{:.4f}"),
+    "α": ("states/fem/alpha", "{:.3f}"),
+    "β": ("states/fem/beta", "{:.3f}"),
 }
 
 

@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -52,8 +53,21 @@ def command(*arguments, cwd=HOME):
     )  # fmt: skip
 
 
+def mpirun(ranks, *arguments):
+    """The command that starts this Python on some ranks."""
+    beside = Path(sys.executable).with_name("mpirun")
+    program = str(beside) if beside.exists() else "mpirun"
+    return [program, "-n", str(ranks), sys.executable, *map(str, arguments)]
+
+
 def clean_environment():
     """The environment without what MPI leaves there, which a second mpirun would trip over."""
-    mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "ORTE_")
+    mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "ORTE_", "HYDRA_", "HYDI_", "MPIR_")
     kept = {name: value for name, value in os.environ.items() if not name.startswith(mpi)}
-    return kept | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return kept | {
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+        "PYTHONPATH": str(HOME),
+    }

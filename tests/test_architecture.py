@@ -10,7 +10,7 @@ ROOMS = ("app", "meshes", "solvers", "postprocess")
 ONE_PLACE = {
     "gmsh": {"meshes/gmsh_model.py"},
     "h5py": {"postprocess/hdf5/"},
-    "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "meshes/distributed.py"},
+    "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "solvers/fem/adapter.py"},
     "matplotlib": {"postprocess/figures/", "app/drawings.py"},
     "jinja2": {"postprocess/page.py"},
     "xarray": {"postprocess/named.py", "app/result.py"},

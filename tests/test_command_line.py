@@ -7,7 +7,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from conftest import HOME, clean_environment, command
+from conftest import HOME, clean_environment, command, mpirun
 
 from app.cli import cli
 
@@ -150,8 +150,7 @@ def test_a_failure_on_one_rank_ends_all(tmp_path):
         "from app.cli import run_from_shell\nrun_from_shell()\n"
     )
     done = subprocess.run(
-        ["mpirun", "--oversubscribe", "-n", "2", sys.executable, "-c", script],
-        cwd=tmp_path, env=clean_environment() | {"PYTHONPATH": str(HOME)},
+        mpirun(2, "-c", script), cwd=tmp_path, env=clean_environment(),
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode == 3 and "provoked" in done.stderr

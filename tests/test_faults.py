@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import HOME, clean_environment, command, run_scene
+from conftest import HOME, clean_environment, command, mpirun, run_scene
 
 from postprocess.errors import LeftOver
 from postprocess.hdf5 import archive
@@ -264,7 +264,7 @@ def test_a_folder_that_cannot_be_written(sweep, tiny_disk):
 def test_more_ranks_than_cells():
     script = (
         "from mpi4py import MPI\n"
-        "from meshes.distributed import distribute\n"
+        "from solvers.fem.distributed import distribute\n"
         "from meshes.halfplane import MESHES\n"
         "from meshes.rings import TAGS, Refinement\n"
         "from solvers.fem.punch import SlidingPunch\n"
@@ -284,7 +284,7 @@ def test_more_ranks_than_cells():
         "np.testing.assert_allclose(v0[1], v0[0], rtol=1e-9)\n"
     )
     done = subprocess.run(
-        ["mpirun", "--oversubscribe", "-n", "6", sys.executable, "-m", "mpi4py", "-c", script],
-        env=clean_environment() | {"PYTHONPATH": str(HOME)}, capture_output=True, text=True, timeout=120,
+        mpirun(6, "-m", "mpi4py", "-c", script), env=clean_environment(),
+        capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

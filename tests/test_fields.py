@@ -13,12 +13,12 @@ from app.errors import BadInput
 from app.fields import ABOUT, state_field, write_field
 from app.scene import parse, read
 from app.states import enumerate_states
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess import stresses
 from postprocess.errors import UnwritableArchive
 from postprocess.hdf5 import vtkhdf
+from solvers.fem.distributed import distribute
 from solvers.fem.field import sample
 from solvers.fem.interior import InteriorGradients
 from solvers.fem.punch import SlidingPunch

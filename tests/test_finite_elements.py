@@ -6,13 +6,13 @@ from conftest import run_scene
 from mpi4py import MPI
 from scipy.special import eval_chebyt
 
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess import compare
 from solvers.errors import MeshError, SolveError
 from solvers.fem import linear
 from solvers.fem.clock import Clock
+from solvers.fem.distributed import distribute
 from solvers.fem.linear import Factor
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space

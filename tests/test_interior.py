@@ -5,11 +5,11 @@ from conftest import run_scene
 from mpi4py import MPI
 
 from app.errors import BadInput
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess.stresses import stresses_inside
 from solvers.errors import MeshError
+from solvers.fem.distributed import distribute
 from solvers.fem.interior import InteriorGradients
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space

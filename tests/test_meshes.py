@@ -3,11 +3,11 @@ import pytest
 from mpi4py import MPI
 
 from app.plan import unknowns
-from meshes.distributed import distribute
 from meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
 from meshes.planes import Confocal
 from meshes.refine import outer_ξ, refinement
 from meshes.rings import CONTACT, FAR, FREE, TAGS
+from solvers.fem.distributed import distribute
 from solvers.fem.space import Space
 
 TOLERANCES = [1e-2, 1e-6, 1e-9]

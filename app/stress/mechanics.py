@@ -7,9 +7,9 @@ from app.errors import BadInput
 from app.plan import make_plan
 from app.scene import parse
 from app.stress.row import Row, Verdict, honest, reached, scene, solved
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS
+from solvers.fem.distributed import distribute
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
 from solvers.fem.surface import SurfaceSlopes

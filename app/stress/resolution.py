@@ -6,10 +6,10 @@ import numpy as np
 from mpi4py import MPI
 
 from app.stress.row import Row, Verdict
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from postprocess.pressure import contact_recovery, from_moments
+from solvers.fem.distributed import distribute
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
 from solvers.materials import MovingFrame

@@ -12,11 +12,11 @@ import numpy as np
 from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
-from meshes.distributed import distribute
 from meshes.gmsh_model import through_gmsh
 from meshes.halfplane import MESHES, check_cells
 from meshes.rings import TAGS, Refinement
 from postprocess.pressure import contact_recovery
+from solvers.fem.distributed import distribute
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
 

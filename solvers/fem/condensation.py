@@ -6,10 +6,9 @@ the factorisation is what gains. Loads act on the boundary only, so nothing is l
 values are found again where someone asks for them.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
-import cffi
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,14 +21,14 @@ class CellMatrices:
     """The compiled kernel of a bilinear form, ready to be called cell by cell.
 
     Attributes:
-        form: dolfinx's compiled form with one cell integral and no coefficients.
+        kernel: writes a cell's matrix, from constants and vertices, into its first argument.
         nodes: nodes of a cell, two unknowns each.
         inner: which of them lie inside it.
         pressures: unknowns of a discontinuous pressure, which follow those of the nodes; 0 or at least 2.
             Two of them stay: without its mean the pressure inside a cell is not determined.
     """
 
-    form: Any
+    kernel: Callable[[NDArray, NDArray, NDArray], None]
     nodes: int
     inner: NDArray[np.int32]
     pressures: int = 0
@@ -52,19 +51,12 @@ class CellMatrices:
 
     def tabulate(self, constants: NDArray, corners: NDArray) -> NDArray[np.float64]:
         """Element matrices of cells with the given vertex coordinates (m, 4, 3): (m, 2n, 2n)."""
-        ffi = cffi.FFI()
-        kernel = _kernel(self.form.ufcx_form)
         size = 2 * self.nodes + self.pressures
         result = np.zeros((len(corners), size, size))
         corners = np.ascontiguousarray(corners)
         constants = np.ascontiguousarray(constants)
-
-        def pointer(array: NDArray) -> Any:
-            return ffi.cast("double *", array.ctypes.data)
-
-        nothing = ffi.NULL
         for K, x in zip(result, corners):
-            kernel(pointer(K), nothing, pointer(constants), pointer(x), nothing, nothing)
+            self.kernel(K, constants, x)
         return result
 
     def condense(
@@ -100,12 +92,6 @@ def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
     force = S @ T / nodes
     outer = force @ T.T
     return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force / nodes) @ T.T
-
-
-def _kernel(ufcx_form: Any) -> Any:
-    """The compiled function of the form's one cell integral."""
-    cell = 0  # ufcx_integral_type: cell integrals come first
-    return ufcx_form.integrals(cell)[0].tabulate_tensor_float64
 
 
 def _dofs(nodes: NDArray) -> NDArray[np.int64]:

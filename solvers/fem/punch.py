@@ -100,9 +100,9 @@ class SlidingPunch:
         while True:
             m = len(self.fields) - 1
             if m:
-                e1 = np.zeros((len(g), m))
+                e1 = np.zeros((1, m, 1))
                 e1[:, 0] = self._size
-                y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)
+                y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)[..., 0]
                 left = np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1)
                 worst = int(np.argmax(left))
                 if self._complete or left[worst] <= KRYLOV_TOLERANCE:

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import ufl
-from dolfinx import fem, la
-from dolfinx.cpp.fem import pack_constants
+from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from solvers.errors import MeshError
+from solvers.fem import adapter
 from solvers.fem.clock import Clock
 from solvers.fem.compiler import compiling
 from solvers.fem.condensation import CHUNK, CellMatrices
@@ -70,7 +70,8 @@ class Space:
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        self.V = self._function_space(ufl.VectorElement("Lagrange", mesh.ufl_cell(), degree))
+        with self.clock("forms"), compiling(self.comm) as options:
+            self.V = adapter.vector_space(mesh, degree, options)
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -116,19 +117,15 @@ class Space:
         κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
         if self.mixed:
             # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
-            pressure = ufl.FiniteElement("DQ", self.mesh.ufl_cell(), self.degree - 2)
-            W = self._function_space(ufl.MixedElement(self.V.ufl_element(), pressure))
+            with self.clock("forms"), compiling(self.comm) as options:
+                W = adapter.mixed_space(self.mesh, self.degree, self.degree - 2, options)
             (u, p), (w, q) = ufl.TrialFunctions(W), ufl.TestFunctions(W)
             form = mixed_stiffness(u, p, w, q, self.plane, x, κ, c, self.degree)
         else:
             u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
             form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
         with self.clock("forms"), compiling(self.comm) as options:
-            return fem.form(form, jit_params=options), κ, c
-
-    def _function_space(self, element: Any) -> fem.FunctionSpace:
-        with self.clock("forms"), compiling(self.comm) as options:
-            return fem.FunctionSpace(self.mesh, element, jit_params=options)
+            return adapter.compile_form(form, options), κ, c
 
     def assemble(self, κ: float, c: float) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
@@ -188,21 +185,19 @@ class Space:
     @property
     def reference_nodes(self) -> NDArray[np.float64]:
         """Positions of a cell's local nodes in the unit square, the same for every cell, (nodes, 2)."""
-        return self.V.element.interpolation_points()
+        return adapter.reference_nodes(self.V)
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:
         """Coordinates of the vertices of the cells this rank owns, (cells, 4, 3)."""
-        geometry = self.mesh.geometry
-        cells = range(self.mesh.topology.index_map(2).size_local)
-        return geometry.x[[geometry.dofmap.links(cell) for cell in cells]].reshape(-1, 4, 3)
+        return adapter.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
 
     @cached_property
     def _kernel(self) -> CellMatrices:
         layout = self.V.dofmap.dof_layout
         pressures = (self.degree - 1) ** 2 * self.mixed
         inner = np.array(layout.entity_dofs(2, 0))
-        return CellMatrices(self._form[0], layout.num_dofs, inner, pressures)
+        return CellMatrices(adapter.kernel(self._form[0]), layout.num_dofs, inner, pressures)
 
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
@@ -226,7 +221,7 @@ class Space:
     def _condensed(self, κ: float, c: float, cells: Any) -> tuple[NDArray, NDArray]:
         form, κ_, c_ = self._form
         κ_.value, c_.value = κ, c
-        return self._kernel.condense(pack_constants(form), self.vertices[cells])
+        return self._kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _empty_matrix(self, numbers: NDArray[np.int32]) -> PETSc.Mat:
         """A matrix with room for what cells with these node numbers will add."""
@@ -271,7 +266,7 @@ class Space:
         """Global number of each local node, ghosts included, without those inside cells (-1)."""
         index_map = self.V.dofmap.index_map
         outer = np.flatnonzero(~self._inner[: index_map.size_local])
-        shared = la.vector(index_map)  # in floating point, exact for any number of nodes
+        shared = adapter.shared_numbers(index_map)
         shared.array[:] = -1.0
         shared.array[outer] = self._range[0] + np.arange(len(outer))
         shared.scatter_forward()

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
 from solvers.fem import surface
+from solvers.fem.distributed import distribute
 from solvers.fem.interior import InteriorGradients
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space

@@ -7,9 +7,9 @@ from mpi4py import MPI
 
 from app.fields import write_field
 from app.scene import read
-from meshes.distributed import distribute
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
+from solvers.fem.distributed import distribute
 from solvers.fem.field import sample
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space

@@ -1,0 +1,119 @@
+"""dolfinx as its versions offer it: the one module that asks what the installed library can do.
+
+Nothing else in the program knows that there is more than one dolfinx.
+"""
+
+from typing import Any
+
+import cffi
+import dolfinx
+import numpy as np
+import ufl
+from dolfinx import fem, la
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+try:
+    import basix.ufl as elements
+except ImportError:  # elements were UFL's own
+    elements = None
+
+_CELL = "quadrilateral"
+_ffi = cffi.FFI()
+
+
+def _element(degree: int, vector: bool = True, discontinuous: bool = False) -> Any:
+    """Lagrange elements on quadrilaterals."""
+    if elements:
+        shape = {"shape": (2,)} if vector else {}
+        return elements.element("Lagrange", _CELL, degree, discontinuous=discontinuous, **shape)
+    kind = ufl.VectorElement if vector else ufl.FiniteElement
+    return kind("DQ" if discontinuous else "Lagrange", _CELL, degree)
+
+
+def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray) -> Any:
+    """A mesh shared out over the ranks; vertices in dolfinx's order, looked at where they are given."""
+    if elements:
+        return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=_element(1))
+    # FFCx names this variant in the element when it compiles, not when it finds the form in its cache;
+    # named here, the form has one key in both cases.
+    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, 1, variant="equispaced"))
+    return dolfinx.mesh.create_mesh(comm, cells, points, domain)
+
+
+def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:
+    """Tags of the facets between the given vertices (n, 2), numbered as when the mesh was made."""
+    mesh.topology.create_connectivity(1, 2)
+    mesh.topology.create_connectivity(1, 0)
+    own = getattr(mesh, "_mesh", mesh)
+    entities, values = dolfinx.io.distribute_entity_data(own, 1, edges, tags)
+    make = getattr(dolfinx.graph, "adjacencylist", None) or dolfinx.graph.create_adjacencylist
+    return dolfinx.mesh.meshtags_from_entities(mesh, 1, make(entities), values.astype(np.int32))
+
+
+def vector_space(mesh: Any, degree: int, options: dict[str, Any]) -> Any:
+    """Continuous vector Lagrange elements; ``options`` are the compiler's."""
+    return _space(mesh, _element(degree), options)
+
+
+def mixed_space(mesh: Any, degree: int, pressure: int, options: dict[str, Any]) -> Any:
+    """The same together with a discontinuous scalar of the degree ``pressure``."""
+    parts = [_element(degree), _element(pressure, vector=False, discontinuous=True)]
+    mixed = elements.mixed_element(parts) if elements else ufl.MixedElement(parts)
+    return _space(mesh, mixed, options)
+
+
+def _space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
+    if hasattr(fem, "functionspace"):
+        return fem.functionspace(mesh, element)
+    return fem.FunctionSpace(mesh, element, jit_params=options)
+
+
+def compile_form(form: Any, options: dict[str, Any]) -> Any:
+    """The compiled form; ``options`` are the compiler's."""
+    name = "jit_options" if hasattr(fem, "functionspace") else "jit_params"
+    return fem.form(form, **{name: options})
+
+
+def constants(form: Any) -> NDArray[np.float64]:
+    """Values of a compiled form's constants, as its kernel wants them."""
+    return dolfinx.cpp.fem.pack_constants(getattr(form, "_cpp_object", form))
+
+
+def kernel(form: Any) -> Any:
+    """The function of a compiled form's one cell integral: (matrix, constants, vertices), in place."""
+    ufcx = form.ufcx_form
+    # Cell integrals come first.
+    integral = ufcx.form_integrals[0] if hasattr(ufcx, "form_integrals") else ufcx.integrals(0)[0]
+    function = integral.tabulate_tensor_float64
+    # Entities, permutations and, in some versions, data of the user's: a cell integral needs none.
+    unused = [_ffi.NULL] * (len(_ffi.typeof(function).args) - 4)
+
+    def call(K: NDArray, values: NDArray, corners: NDArray) -> None:
+        function(_pointer(K), _ffi.NULL, _pointer(values), _pointer(corners), *unused)
+
+    return call
+
+
+def _pointer(array: NDArray) -> Any:
+    return _ffi.cast("double *", array.ctypes.data)
+
+
+def reference_nodes(V: Any) -> NDArray[np.float64]:
+    """Positions of a cell's nodes in the unit square, (nodes, 2)."""
+    points = V.element.interpolation_points
+    return points() if callable(points) else points
+
+
+def vertices(mesh: Any, cells: int) -> NDArray[np.float64]:
+    """Coordinates of the vertices of the first ``cells`` of this rank's cells, (cells, 4, 3)."""
+    geometry = mesh.geometry
+    of_cell = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+    if hasattr(of_cell, "links"):
+        of_cell = np.array([of_cell.links(cell) for cell in range(cells)]).reshape(-1, 4)
+    return geometry.x[of_cell[:cells]].reshape(-1, 4, 3)
+
+
+def shared_numbers(index_map: Any) -> Any:
+    """A number for each node this rank sees; ``scatter_forward`` brings the owners' to the others."""
+    return la.vector(index_map)  # in floating point, exact for any number of nodes

@@ -1,0 +1,40 @@
+"""Meshes shared out over ranks."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from solvers.fem.adapter import create_mesh, tag_facets
+
+#: dolfinx numbers a quadrilateral's vertices row by row, others go round it.
+_ORDER = [0, 1, 3, 2]
+
+
+class Quadrilaterals(Protocol):
+    """``points`` (n, 2), ``cells`` (m, 4) going round, and ``edges`` (k, 2) by their tag."""
+
+    points: NDArray
+    cells: NDArray
+    edges: dict[int, NDArray]
+
+
+def distribute(mesh: Quadrilaterals, comm: MPI.Comm) -> tuple[Any, Any]:
+    """Share a mesh out over the ranks of ``comm``.
+
+    Args:
+        mesh: the whole mesh; looked at on rank 0 only.
+        comm: communicator.
+
+    Returns:
+        The dolfinx mesh and its facet tags.
+    """
+    points, cells = np.empty((0, 2)), np.empty((0, 4), dtype=np.int64)
+    edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
+    if comm.rank == 0:
+        points, cells = mesh.points, mesh.cells[:, _ORDER]
+        edges = np.concatenate(list(mesh.edges.values()))
+        tags = np.repeat(np.array([*mesh.edges], np.int32), [len(part) for part in mesh.edges.values()])
+    result = create_mesh(comm, cells, points)
+    return result, tag_facets(result, edges, tags)

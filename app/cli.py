@@ -2,6 +2,7 @@
 
 import os
 import sys
+import time
 import traceback
 from typing import NoReturn
 
@@ -18,6 +19,9 @@ _FAILURES = (
     MachineFailure, UnwritableArchive, SolveError, MeshError, CompilerError, OSError, MemoryError,
 )  # fmt: skip
 
+
+#: Seconds that other ranks leave to rank 0: where all fail alike it says so once, and ends all.
+_PATIENCE = 1.0
 
 #: What shells say of a program whose reader went away: 128 + SIGPIPE.
 _CUT_OFF = 141
@@ -40,36 +44,37 @@ def run_from_shell() -> None:
     """Run the command line; every failure ends with one readable message and its status."""
     try:
         status = cli.main(standalone_mode=False, prog_name="run.sh") or errors.GOOD
+        sys.stdout.flush()
     except (click.ClickException, BadInput, UnreadableArchive) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        _complain(message)
+        if ranks.is_root():
+            _complain(message)
         sys.exit(errors.BAD_INPUT)  # every rank reads the same input and comes here
     except BrokenPipeError:
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except click.exceptions.Abort:
-        _complain("interrupted; nothing was written")
-        _stop(errors.FAILURE)
+        _stop("interrupted; nothing was written")
     except _FAILURES as error:
-        _complain(str(error) or "out of memory")
-        _stop(errors.FAILURE)
+        _stop(str(error) or "out of memory")
     except Exception as error:
         traceback.print_exc()
-        _complain(f"internal failure on rank {ranks.rank()}: {error}")
-        _stop(errors.FAILURE)
+        _stop(f"internal failure on rank {ranks.rank()}: {error}")
     sys.exit(status)
 
 
 def _complain(message: str) -> None:
-    if ranks.is_root():
-        print(f"error: {message}", file=sys.stderr, flush=True)
+    print(f"error: {message}", file=sys.stderr, flush=True)
 
 
-def _stop(status: int) -> NoReturn:
+def _stop(message: str) -> NoReturn:
     """End at once with a failure that other ranks may not share.
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
+    if not ranks.is_root():
+        time.sleep(_PATIENCE)
+    _complain(message)
     sys.stdout.flush(), sys.stderr.flush()
     if ranks.size() > 1:
-        ranks.abort(status)
-    os._exit(status)
+        ranks.abort(errors.FAILURE)
+    os._exit(errors.FAILURE)

@@ -5,7 +5,6 @@ import os
 import random
 import signal
 import subprocess
-import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -135,7 +134,8 @@ def rank_of(pid):
         environment = Path(f"/proc/{pid}/environ").read_text(encoding="utf-8").split("\0")
     except OSError:
         return None
-    return next((e.split("=")[1] for e in environment if e.startswith("OMPI_COMM_WORLD_RANK=")), None)
+    names = ("OMPI_COMM_WORLD_RANK=", "PMI_RANK=")
+    return next((e.split("=")[1] for e in environment if e.startswith(names)), None)
 
 
 def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):

@@ -11,6 +11,7 @@ from conftest import HOME, clean_environment, command
 from app.cli import cli
 
 SCENE = HOME / "scenes" / "tables4_5.toml"
+RUN = HOME / "run.sh"
 CLOSED = ("--set", 'solve.methods=["closed_form"]')
 
 
@@ -118,7 +119,7 @@ def test_verbose_and_log_tell_every_step(tmp_path):
 def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
     # More output than a pipe holds, so that the program meets the closed end.
     done = subprocess.run(
-        ["bash", "-c", f"{HOME / 'run.sh'} show {archive[0]} --json | head -c 10; echo ${{PIPESTATUS[0]}}"],
+        ["bash", "-c", f"{RUN} show {archive[0]} --json | head -c 10; echo ${{PIPESTATUS[0]}}"],
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stderr == "" and done.stdout.split()[-1] in ("0", "141")

@@ -105,6 +105,13 @@ class Space:
         return SurfaceNodes(np.sort(everyone), owned, self.numbers[blocks])
 
     @cached_property
+    def node_dofs(self) -> NDArray[np.int32]:
+        """Global numbers of the owned displacements, node by node, without those inside cells."""
+        first = 2 * self._range[0]
+        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
+        return np.arange(first, first + 2 * owned, dtype=np.int32)
+
+    @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
         blocks = self.numbers[self._owned_blocks("far")]

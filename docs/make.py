@@ -113,7 +113,8 @@ def commands_page() -> str:
         context = click.Context(command, info_name=f"./run.sh {name}", help_option_names=[])
         about, _, example = (command.help or "").partition("Example:")
         usage = " ".join([context.info_name or "", *command.collect_usage_pieces(context)])
-        rows = [record for p in command.get_params(context) if (record := p.get_help_record(context))]
+        options = (p for p in command.params if isinstance(p, click.Option))
+        rows = [record for p in options if (record := p.get_help_record(context))]
         parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\nUsage: `{usage}`\n")
         if example:
             parts.append(f"Example:\n\n    {' '.join(example.split())}\n")

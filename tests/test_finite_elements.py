@@ -60,7 +60,8 @@ def test_work_does_not_grow_with_the_number_of_states(tables_run):
     assert len(many["states/f"]) == 1200
     assert list(many["run/fem/factorisations"]) == list(few["run/fem/factorisations"])
     assert few["run/fem/factorisations"].max() <= 4
-    assert many["run/fem/back_substitutions"].max() < 100
+    # Some seventeen fields at each of three degrees, each solved for and refined.
+    assert many["run/fem/back_substitutions"].max() < 120
 
 
 @pytest.mark.parametrize("mode", ["contact", "traction"])

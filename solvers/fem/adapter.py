@@ -9,7 +9,7 @@ import cffi
 import dolfinx
 import numpy as np
 import ufl
-from dolfinx import fem, la
+from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
@@ -109,11 +109,13 @@ def vertices(mesh: Any, cells: int) -> NDArray[np.float64]:
     """Coordinates of the vertices of the first ``cells`` of this rank's cells, (cells, 4, 3)."""
     geometry = mesh.geometry
     of_cell = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
-    if hasattr(of_cell, "links"):
-        of_cell = np.array([of_cell.links(cell) for cell in range(cells)]).reshape(-1, 4)
-    return geometry.x[of_cell[:cells]].reshape(-1, 4, 3)
+    return geometry.x[_table(of_cell, 4)[:cells]]
 
 
-def shared_numbers(index_map: Any) -> Any:
-    """A number for each node this rank sees; ``scatter_forward`` brings the owners' to the others."""
-    return la.vector(index_map)  # in floating point, exact for any number of nodes
+def cell_nodes(V: Any) -> NDArray[np.int32]:
+    """Nodes of the cells this rank sees, its own first, (cells, nodes of a cell)."""
+    return _table(V.dofmap.list, V.dofmap.dof_layout.num_dofs)
+
+
+def _table(adjacency: Any, width: int) -> NDArray[np.int32]:
+    return np.reshape(getattr(adjacency, "array", adjacency), (-1, width))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, la
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -209,9 +209,7 @@ class Space:
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
         """Local nodes of the cells this rank owns, (cells, nodes of a cell)."""
-        cells = range(self.mesh.topology.index_map(2).size_local)
-        nodes = np.array([self.V.dofmap.cell_dofs(cell) for cell in cells], dtype=np.int32)
-        return nodes.reshape(-1, self._kernel.nodes)
+        return adapter.cell_nodes(self.V)[: self.mesh.topology.index_map(2).size_local]
 
     @cached_property
     def _outer_numbers(self) -> NDArray[np.int32]:
@@ -252,12 +250,9 @@ class Space:
     @cached_property
     def _inner(self) -> NDArray[np.bool_]:
         """Which of this rank's nodes, ghosts included, lie inside a cell."""
-        dofmap = self.V.dofmap
-        local = np.array(dofmap.dof_layout.entity_dofs(2, 0), dtype=np.int32)
+        local = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0), dtype=np.int32)
         result = np.zeros(len(self.coordinates), dtype=bool)
-        cells = self.mesh.topology.index_map(2)
-        for cell in range(cells.size_local + cells.num_ghosts):
-            result[dofmap.cell_dofs(cell)[local]] = True
+        result[adapter.cell_nodes(self.V)[:, local]] = True
         return result
 
     @cached_property
@@ -273,7 +268,7 @@ class Space:
         """Global number of each local node, ghosts included, without those inside cells (-1)."""
         index_map = self.V.dofmap.index_map
         outer = np.flatnonzero(~self._inner[: index_map.size_local])
-        shared = adapter.shared_numbers(index_map)
+        shared = la.vector(index_map)  # in floating point, exact for any number of nodes
         shared.array[:] = -1.0
         shared.array[outer] = self._range[0] + np.arange(len(outer))
         shared.scatter_forward()

@@ -64,7 +64,7 @@ class Journal:
         self.folder = target.with_name(f".{target.name}.work")
         self._resume, self._overwrite = resume, overwrite
         self._lock: IO[str] | None = None
-        self._complete = False
+        self._complete = self._stop = False
 
     def __enter__(self) -> "Journal":
         try:
@@ -104,6 +104,7 @@ class Journal:
 
         Raises:
             UnwritableArchive: the file system refused.
+            KeyboardInterrupt: the run was asked to stop; the part is kept.
         """
         told = {"comparisons": [asdict(found) for found in part.comparisons], "record": part.record}
         path = self.folder / f"{part.rows.start:010d}-{part.rows.stop:010d}.npz"
@@ -114,6 +115,17 @@ class Journal:
             os.replace(temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
+        if self._stop:
+            raise KeyboardInterrupt
+
+    def stop(self, *_: object) -> None:
+        """Ask the run to stop when it keeps its next part, as a signal's handler; at once if asked again.
+
+        An exception out of a handler would meet HDF5 or MPI at work, or a destructor that drops it.
+        """
+        if self._stop:
+            raise KeyboardInterrupt
+        self._stop = True
 
     def complete(self) -> None:
         """The archive holds everything; the parts are no longer needed."""

@@ -45,8 +45,9 @@ def run(
     from postprocess.hdf5 import archive
     from postprocess.journal import Journal
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, journal.stop)
     try:
         with journal, archive.Writer(target, journal.folder) as writer, progress:
             progress.note(f"scene: {scene}")

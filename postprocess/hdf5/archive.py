@@ -5,7 +5,6 @@ opened again and compared, synchronised with the disk and renamed.
 """
 
 import os
-import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from postprocess.disk import refused
 from postprocess.errors import UnreadableArchive, UnwritableArchive
 from postprocess.fields import FIELDS
+from postprocess.hdf5.patient import PatientFile
 
 #: Version of the layout; a reader refuses a newer one.
 SCHEMA_VERSION = 1
@@ -47,15 +47,14 @@ class Writer:
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
-        _mute_refused_closes()
         with self._told():
-            # No lock: MPI's helper process would inherit it and keep it when the file is closed.
-            self._file = h5py.File(self._temporary, "w", libver=("earliest", "v110"), locking=False)
+            self._disk = PatientFile(self._temporary)
+            self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"))
         return self
 
     def __exit__(self, *_: object) -> None:
-        with suppress(OSError, RuntimeError):  # a full disk refuses; the file is given up anyway
-            self._file.close()
+        with suppress(OSError):
+            self._close()
         self._temporary.unlink(missing_ok=True)
 
     def put(self, name: str, value: Any, about: tuple[str, str] | None = None) -> None:
@@ -106,7 +105,7 @@ class Writer:
             created = datetime.now(UTC).isoformat(timespec="seconds")
             common = {"program": "galinx", "schema_version": SCHEMA_VERSION, "created": created}
             self._file.attrs.update(common | attributes | {"complete": True})
-            self._file.close()
+            self._close()
             self._compare()
             _synchronise(self._temporary)
             os.replace(self._temporary, self.path)
@@ -130,27 +129,14 @@ class Writer:
             yield
         except (OSError, RuntimeError) as error:
             raise refused(self.path, error, self._bytes) from error
+        if self._disk.refusal:
+            raise refused(self.path, self._disk.refusal, self._bytes) from self._disk.refusal
 
-
-def _mute_refused_closes() -> None:
-    """Have Python say nothing of HDF5 objects that cannot be closed because the disk is full.
-
-    That the disk is full is said by then; each of hundreds of objects would say it again from its
-    destructor, which nobody can catch, through both of Python's hooks.
-    """
-
-    def refused(error: Any) -> bool:
-        return "decrement id ref count" in str(error)
-
-    def uncaught(kind: Any, error: Any, at: Any) -> None:
-        if not refused(error):
-            sys.__excepthook__(kind, error, at)
-
-    def unraisable(found: Any) -> None:
-        if not refused(found.exc_value):
-            sys.__unraisablehook__(found)
-
-    sys.excepthook, sys.unraisablehook = uncaught, unraisable
+    def _close(self) -> None:
+        self._file.close()
+        self._disk.close()
+        if self._disk.refusal:
+            raise self._disk.refusal
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:

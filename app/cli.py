@@ -50,7 +50,7 @@ def run_from_shell() -> None:
         if ranks.is_root():
             _complain(message)
         sys.exit(errors.BAD_INPUT)  # every rank reads the same input and comes here
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except click.exceptions.Abort:
         _stop("interrupted; nothing was written")

@@ -39,7 +39,8 @@ class PunchAtSpeed:
     def __init__(self, run: "FiniteElementRun", c: float, degree: int) -> None:
         self.run, self.frame, self.degree = run, MovingFrame(run.κ, c), degree
         self.levels: list[Level] = []
-        self.solves, self.factorisations, self.residual, self.condition = 0, 0, 0.0, 0.0
+        self.solves, self.factorisations, self.iterations = 0, 0, 0
+        self.residual, self.condition = 0.0, 0.0
         self.change = np.zeros(DEGREES[1] + 1)
 
     def prepare(self, g: NDArray) -> None:
@@ -48,18 +49,22 @@ class PunchAtSpeed:
         Args:
             g: the speed's values of σ_XY/σ_YY, sorted.
         """
-        for degree in range(self.degree - 2, self.degree + 1):
-            self._add_level(degree)
+        plan, fixed = self.run.plan, self.run.scene.solve.degree is not None
+        for step in (2, 1, 0):
+            if fixed:
+                self._add_level(self.degree, plan.cuts >> step)
+            else:
+                self._add_level(self.degree - step)
         probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
         self._measure(probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         enough = max(tolerance, 1.1 * self._cut(probes).max())
-        while self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
+        while not fixed and self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
             self.degree += 1
             self._add_level(self.degree)
             self._measure(probes)
-        punch, plan = self.levels[-1].punch, self.run.plan
+        punch = self.levels[-1].punch
         # Every basis is complete before traces are taken, and the same whatever states are still to do.
         for first in range(0, len(g), plan.chunk):
             for level in self.levels:
@@ -97,18 +102,19 @@ class PunchAtSpeed:
             "degree": space.degree,
             "factorisations": self.factorisations,
             "back_substitutions": self.solves,
+            "iterations": self.iterations,
             "largest_residual": self.residual,
             "largest_condition": self.condition,
-            "change_by_degree": self.change.tolist(),
+            "change_by_degree": self.change.tolist() if self.change.any() else [],
         }
 
     def destroy(self) -> None:
         for level in self.levels:
             level.punch.destroy()
 
-    def _add_level(self, degree: int) -> None:
-        space = self.run.space(degree)
-        punch = SlidingPunch(space, self.frame.κ, self.frame.c)
+    def _add_level(self, degree: int, cuts: int = 1) -> None:
+        space = self.run.space(degree, cuts)
+        punch = SlidingPunch(space, self.frame.κ, self.frame.c, self.run.plan.solver)
         recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.plan.grid)
         self.levels.append(Level(punch, recovery))
         if len(self.levels) > 3:
@@ -119,14 +125,16 @@ class PunchAtSpeed:
     def _count(self, punch: SlidingPunch) -> None:
         self.factorisations += 1
         self.solves += punch.factor.solves
+        self.iterations = max(self.iterations, punch.factor.iterations)
         self.residual = max(self.residual, punch.factor.largest_residual)
         self.condition = max(self.condition, punch.factor.condition)
 
     def _measure(self, g: NDArray) -> None:
         """Find how the error goes on beyond the last degree, and what rounding does to it."""
         self._sample = self._differences(g)
-        for degree, found in zip((self.degree - 1, self.degree), self._sample):
-            self.change[degree] = found.max()
+        if self.run.scene.solve.degree is None:
+            for degree, found in zip((self.degree - 1, self.degree), self._sample):
+                self.change[degree] = found.max()
         self._rounding = self._asymmetry(g)
 
     def _differences(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

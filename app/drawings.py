@@ -66,7 +66,7 @@ def of_archive(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
 def mesh(scene: Scene) -> Drawing:
     """The mesh that a scene's finite elements use; it is laid out again, nothing is solved."""
     kind = MESHES[scene.solve.mesh]
-    lines = edges(kind, kind.build(make_plan(scene).refinement))
+    lines = edges(kind, kind.build(make_plan(scene).finest))
     caption = (
         f"The {scene.solve.mesh} mesh under the punch (thick) and, nearer and nearer, its edge X = a."
     )

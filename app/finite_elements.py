@@ -68,6 +68,8 @@ class FiniteElementRun:
         self.comm = MPI.COMM_SELF if plan.shared_speeds else self.world
         self.κ = solid_of(scene).κ
         self.finished = self.world.bcast(finished)
+        self._meshes: dict[int, tuple[Any, Any]] = {}
+        self._spaces: dict[tuple[int, int], Space] = {}
         self.clock = Clock()
 
     def parts(self) -> Iterator[Part]:
@@ -81,12 +83,7 @@ class FiniteElementRun:
             return
         self.progress.say(f"mesh: {self.scene.solve.mesh}")
         with self.clock("mesh"):
-            kind = MESHES[self.scene.solve.mesh]
-            cells = kind.build(self.plan.refinement)
-            check_cells(cells)
-            mesh = distribute(obtain(cells) if self.comm.rank == 0 else cells, self.comm)
-        self._spaces: dict[int, Space] = {}
-        self._space_of = lambda p: Space(*mesh, TAGS, kind.plane, p, self.plan.mixed, self.clock)
+            self._mesh(self.plan.cuts)
         if self.plan.shared_speeds:
             yield from self._shared_out(todo)
         else:
@@ -134,11 +131,26 @@ class FiniteElementRun:
                 else:
                     yield message
 
-    def space(self, degree: int) -> Space:
-        """The space of a degree; speeds share it, its form and its numbering."""
-        if degree not in self._spaces:
-            self._spaces[degree] = self._space_of(degree)
-        return self._spaces[degree]
+    def _mesh(self, cuts: int) -> tuple[Any, Any]:
+        """The mesh with every cell cut; speeds and degrees share it."""
+        if cuts not in self._meshes:
+            cells = None
+            if self.comm.rank == 0:
+                assert self.plan.refinement
+                cells = MESHES[self.scene.solve.mesh].build(self.plan.refinement.cut(cuts))
+                check_cells(cells)
+                # gmsh's copy of a cut mesh would only be large: the pattern itself is what it holds.
+                cells = obtain(cells) if cuts == 1 else cells
+            self._meshes[cuts] = distribute(cells, self.comm)
+        return self._meshes[cuts]
+
+    def space(self, degree: int, cuts: int = 1) -> Space:
+        """The space of a degree on a mesh; speeds share it, its form and its numbering."""
+        if (degree, cuts) not in self._spaces:
+            plane = MESHES[self.scene.solve.mesh].plane
+            space = Space(*self._mesh(cuts), TAGS, plane, degree, self.plan.mixed, self.clock)
+            self._spaces[degree, cuts] = space
+        return self._spaces[degree, cuts]
 
     def _at(self, i: int) -> Iterator[Part]:
         c, degree = self.plan.speeds[i].c, self.plan.speeds[i].degree

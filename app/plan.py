@@ -20,8 +20,8 @@ INSIDE = ("XX", "YY", "XY")
 
 #: What is recorded of the finite element work at a speed.
 RECORD = (
-    "c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "largest_residual",
-    "largest_condition",
+    "c", "cells", "unknowns", "degree", "factorisations", "back_substitutions", "iterations",
+    "largest_residual", "largest_condition",
 )  # fmt: skip
 
 #: κ - 1 below which the pressure becomes an unknown of its own: ν > 0.49 in plane strain.
@@ -57,7 +57,9 @@ class Plan:
         grid: positions X/a of surface stresses, (n,).
         points: positions X/a, Y/a of stresses inside, (n, 2).
         mixed: finite elements with an unknown pressure, for nearly and fully incompressible solids.
-        refinement: of the one mesh all speeds share, None without finite elements.
+        refinement: of the one mesh all speeds share, before it is cut; None without finite elements.
+        cuts: of every cell's sides.
+        solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         speeds: finite element work by speed.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
@@ -74,6 +76,8 @@ class Plan:
     points: NDArray[np.float64]
     mixed: bool
     refinement: Refinement | None
+    cuts: int
+    solver: str
     speeds: tuple[SpeedPlan, ...]
     shared_speeds: bool
     skipped: tuple[str, ...]
@@ -84,6 +88,11 @@ class Plan:
         """States treated at once: what they hold in memory is bounded."""
         numbers = 5 * len(self.grid) * self.surface + 10 * len(self.points) * self.interior
         return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
+
+    @property
+    def finest(self) -> Refinement | None:
+        """Refinement of the mesh that results come from."""
+        return self.refinement.cut(self.cuts) if self.refinement else None
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -113,7 +122,10 @@ def make_plan(scene: Scene) -> Plan:
         mesh = refinement(name, tolerance, MovingFrame(κ, max(all_speeds)).β_s)
         rest = MovingFrame(κ, 0.0).r
         speed_plans = tuple(
-            SpeedPlan(c, max(degree(name, tolerance, MovingFrame(κ, c).r / rest), 4 + mixed))
+            SpeedPlan(
+                c,
+                scene.solve.degree or max(degree(name, tolerance, MovingFrame(κ, c).r / rest), 4 + mixed),
+            )
             for c in all_speeds
         )
         if truncation(name, tolerance) > tolerance:
@@ -124,7 +136,8 @@ def make_plan(scene: Scene) -> Plan:
             )
     return Plan(
         count, closed, fem, contact and "surface" in asked, contact and "interior" in asked,
-        surface_grid(), points, mixed, mesh, speed_plans, _share_speeds(mesh, speed_plans),
+        surface_grid(), points, mixed, mesh, scene.solve.cuts, _solver(scene, mesh, speed_plans, mixed),
+        speed_plans, _share_speeds(mesh and mesh.cut(scene.solve.cuts), speed_plans),
         tuple(_skipped(scene, contact, closed, mesh)), tuple(warnings),
     )  # fmt: skip
 
@@ -144,12 +157,37 @@ def _check_points(scene: Scene, points: NDArray, fem: bool) -> None:
         )
 
 
+def _solver(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...], mixed: bool) -> str:
+    """What was asked for, or else a factor where memory has room for it: in the plane it is the fastest.
+
+    Raises:
+        BadInput: multigrid is asked for where the matrix is indefinite, or the degree too low.
+    """
+    wanted = scene.solve.solver
+    if scene.solve.degree and mixed and scene.solve.degree < 3:
+        raise BadInput(
+            f"solve.degree: found {scene.solve.degree} with ν = {scene.solid.nu:g}, expected at least 3: "
+            "the pressure, an unknown of its own there, has two degrees less"
+        )
+    if mixed:
+        if wanted in ("boomeramg", "gamg"):
+            raise BadInput(
+                f"solve.solver: found {wanted} with ν = {scene.solid.nu:g}, expected direct or auto: "
+                "with an unknown pressure the matrix is indefinite"
+            )
+        return "direct"
+    if wanted != "auto" or mesh is None:
+        return "direct" if wanted == "auto" else wanted
+    highest = max(speed.degree for speed in speeds)
+    needed = cost.bytes_of_factors(unknowns_of(mesh.cut(scene.solve.cuts), highest)) / ranks.size()
+    return "direct" if needed < 0.8 * cost.free_memory() / ranks.size() else "multigrid"
+
+
 def _share_speeds(mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:
     """Small problems gain nothing from being cut in pieces; whole speeds are shared out instead."""
     if mesh is None or ranks.size() == 1 or len(speeds) < ranks.size():
         return False
-    cells = 2 * mesh.sectors * (2 * mesh.levels + len(mesh.columns))
-    return cells * 2 * max(speed.degree for speed in speeds) ** 2 < SMALL
+    return unknowns_of(mesh, max(speed.degree for speed in speeds)) < SMALL
 
 
 def has_closed_form(scene: Scene) -> bool:
@@ -195,7 +233,7 @@ def _skipped(scene: Scene, contact: bool, closed: bool, mesh: Refinement | None)
         skipped.append(f"closed form: {why}")
     if mesh is None:
         skipped.append("mesh and finite elements: fem is not in solve.methods")
-    elif store.is_kept(MESHES[scene.solve.mesh].build(mesh)):
+    elif scene.solve.cuts == 1 and store.is_kept(MESHES[scene.solve.mesh].build(mesh)):
         skipped.append("gmsh: an earlier run made the same mesh")
     for quantity, what in (("surface", "stresses on the surface"), ("interior", "stresses inside")):
         if quantity not in scene.output.quantities:
@@ -203,54 +241,16 @@ def _skipped(scene: Scene, contact: bool, closed: bool, mesh: Refinement | None)
     return skipped
 
 
+def unknowns_of(mesh: Refinement, p: int) -> int:
+    """About the same without building the mesh."""
+    return 2 * p**2 * 2 * mesh.sectors * (2 * mesh.levels + mesh.sectors + len(mesh.columns))
+
+
 def unknowns(mesh: QuadMesh, p: int) -> int:
     """Unknowns at degree ``p``: two a vertex, p - 1 an edge, (p - 1)² a cell, by Euler's formula."""
     cells, vertices = len(mesh.cells), len(mesh.points)
     edges = cells + vertices - 1
     return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
-
-
-def lines(scene: Scene, plan: Plan) -> list[str]:
-    """The plan in words, one step a line."""
-    result = [f"friction: {plan.states} states, Dahl's law, integrator {scene.friction.integrator}"]
-    if plan.closed_form:
-        result.append(f"closed form: {plan.states} states")
-    if plan.refinement:
-        result += _fem_lines(scene, plan, MESHES[scene.solve.mesh].build(plan.refinement))
-    if plan.surface:
-        result.append(f"stresses on the surface: {plan.states} x {len(plan.grid)} points")
-    if plan.interior:
-        result.append(f"stresses inside: {plan.states} x {len(plan.points)} points")
-    return result
-
-
-def _fem_lines(scene: Scene, plan: Plan, mesh: QuadMesh) -> list[str]:
-    result = [f"mesh: {scene.solve.mesh}, {len(mesh.cells)} quadrilaterals, shared by all speeds"]
-    pressure = " and those of a pressure" * plan.mixed
-    result += [
-        f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
-        f"{unknowns(mesh, speed.degree)} unknowns{pressure}; one factorisation serves all states, two of "
-        "lower degree measure its error"
-        for speed in plan.speeds
-    ]
-    if ranks.size() > 1:
-        how = "each takes whole speeds" if plan.shared_speeds else "together on one mesh"
-        result.append(f"ranks: {ranks.size()}, {how}")
-    return result
-
-
-def expense(scene: Scene, plan: Plan) -> str:
-    """Estimated time and memory of a plan."""
-    if not plan.refinement:
-        return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
-    mesh = MESHES[scene.solve.mesh].build(plan.refinement)
-    cells, highest = len(mesh.cells), max(speed.degree for speed in plan.speeds)
-    speeds = sum(cost.seconds_of_speed(cells, speed.degree) for speed in plan.speeds) / ranks.size()
-    states = cost.STATE * plan.states
-    memory = cost.bytes_of(cells, unknowns(mesh, highest), highest, CHUNK_NUMBERS)
-    parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
-    total = cost.START + speeds + states
-    return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"
 
 
 def surface_grid() -> np.ndarray:

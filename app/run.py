@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app import __version__, ranks
+from app.account import lines
 from app.collector import Collector, Nowhere, Sink
 from app.errors import BadInput, MachineFailure
 from app.judge import Judge
-from app.plan import INSIDE, Plan, lines, make_plan
+from app.plan import INSIDE, Plan, make_plan
 from app.progress import Progress
 from app.scene import Scene
 from app.states import States, enumerate_states, pieces, solid_of

@@ -13,7 +13,7 @@ from attrs import validators as is_
 
 from app.errors import BadInput
 from app.materials import LIBRARY
-from app.values import Map, Names, Number, Numbers, Points, Pressure, Range, Text
+from app.values import Map, Names, Number, Numbers, Points, Pressure, Range, Text, Whole
 
 METHODS = ("closed_form", "fem")
 QUANTITIES = ("friction", "sif", "surface", "interior")
@@ -98,8 +98,18 @@ class Solve:
         "wanted relative accuracy of K_I and pressure moments",
         1e-6,
     )
-    mesh: str = _key(Text(), is_.in_(("confocal", "graded", "box")), "mesh", "confocal")
+    mesh: str = _key(Text(), is_.in_(("confocal", "graded", "box", "uniform")), "mesh", "confocal")
     mode: str = _key(Text(), is_.in_(("contact", "traction")), "pressure unknown or put in", "contact")
+    degree: int | None = _key(
+        Whole(),
+        is_.optional(is_.and_(is_.ge(1), is_.le(12))),
+        "polynomial degree, if not found by tolerance",
+        None,
+    )
+    cuts: int = _key(Whole(), is_.and_(is_.ge(1), is_.le(256)), "cuts of every cell's sides", 1)
+    solver: str = _key(
+        Text(), is_.in_(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
+    )
     pressure: Any = _key(Pressure(), None, "σ_YY of the traction mode", "closed_form")
 
 
@@ -275,6 +285,14 @@ def _contradictions(scene: Scene) -> list[str]:
             "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
             "to, number)"
         )
+    fixed = solve.degree is not None
+    if (fixed and solve.cuts % 4) or (not fixed and solve.cuts != 1):
+        faults.append(
+            f"solve.degree and solve.cuts: found {solve.degree} and {solve.cuts}, expected neither, or a "
+            "degree and a multiple of 4: the error is measured with half and a quarter of the cuts"
+        )
+    if fixed and solve.mode == "traction":
+        faults.append('solve.degree needs solve.mode = "contact"')
     if solve.pressure != "closed_form" and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')
     return faults

@@ -57,6 +57,7 @@ class LoadAtSpeed:
             "degree": space.degree,
             "factorisations": 1,
             "back_substitutions": factor.solves,
+            "iterations": factor.iterations,
             "largest_residual": factor.largest_residual,
             "largest_condition": factor.condition,
         }

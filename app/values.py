@@ -22,6 +22,18 @@ class Number:
         return {"anyOf": [{"type": "number"} | limits, _TEXT]}
 
 
+class Whole:
+    """A whole number."""
+
+    def __call__(self, value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise ValueError(f"found {value!r}, expected a whole number")
+        return int(value)
+
+    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
+        return {"type": "integer"} | limits
+
+
 @dataclass(frozen=True)
 class Numbers:
     """One number or a list of them."""

@@ -60,6 +60,7 @@ def _box(refinement: Refinement) -> QuadMesh:
 #: Meshes by the name that scenes use.
 MESHES = {
     "confocal": MeshKind(Confocal(), _confocal),
+    "uniform": MeshKind(Confocal(), _confocal),
     "graded": MeshKind(Physical(), _graded),
     "box": MeshKind(Physical(), _box),
 }

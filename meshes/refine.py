@@ -7,9 +7,9 @@ from meshes.rings import Refinement
 
 #: Ratio of ring sizes in the (ξ, η) plane by mesh. Straight cells in the physical plane need gentler
 #: rings: a ratio t there is t² in distance.
-_RATIO = {"confocal": 0.35, "graded": 0.5, "box": 0.5}
+_RATIO = {"confocal": 0.35, "graded": 0.5, "box": 0.5, "uniform": 0.5}
 #: Largest width in ξ of a column outside the rings.
-_COLUMN = {"confocal": 3.0, "graded": 1.0, "box": 0.7}
+_COLUMN = {"confocal": 3.0, "graded": 1.0, "box": 0.7, "uniform": pi / 4.0}
 
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
@@ -34,6 +34,8 @@ def refinement(mesh: str, tolerance: float, β_s: float) -> Refinement:
     if mesh == "box":
         sectors = 2  # an even number puts a vertex into the block's corners
     columns = (first, *((reach - first) / count,) * count)
+    if mesh == "uniform":  # squares all over the rectangle; the degree or cuts do the rest
+        levels, columns = 0, (reach / (count + 1),) * (count + 1)
     return Refinement(levels, _RATIO[mesh], sectors, columns)
 
 

@@ -33,6 +33,11 @@ class Refinement:
     sectors: int
     columns: tuple[float, ...]
 
+    def cut(self, times: int) -> "Refinement":
+        """The refinement with every cell cut into ``times`` x ``times``, its grading kept."""
+        columns = tuple(width / times for width in self.columns for _ in range(times))
+        return Refinement(self.levels * times, self.ratio ** (1.0 / times), self.sectors * times, columns)
+
 
 @dataclass(frozen=True)
 class QuadMesh:

@@ -61,6 +61,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     ),
     "run/fem/factorisations": ("1", "factorisations"),
     "run/fem/back_substitutions": ("1", "back-substitutions"),
+    "run/fem/iterations": ("1", "most steps of conjugate gradients in a solve; 0: direct solver"),
     "run/fem/largest_residual": ("1", "largest |b - Ax|/|b| of a back-substitution"),
     "run/fem/largest_condition": (
         "1",

@@ -1,8 +1,9 @@
 import pytest
 from conftest import HOME
 
+from app.account import lines
 from app.errors import BadInput
-from app.plan import lines, make_plan
+from app.plan import make_plan
 from app.scene import parse, read
 from app.states import enumerate_states, speeds
 

@@ -79,16 +79,17 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from app import plan as planning
+    from app.account import expense, lines
+    from app.plan import make_plan
 
     checked = scenes.read(scene, from_words(changes))
-    planned = planning.make_plan(checked)
+    planned = make_plan(checked)
     if ranks.is_root():
-        for text in planning.lines(checked, planned):
+        for text in lines(checked, planned):
             say(f"do    {text}", 6)
         for text in planned.skipped:
             say(f"skip  {text}", 6)
-        say(f"cost  {planning.expense(checked, planned)}", 6)
+        say(f"cost  {expense(checked, planned)}", 6)
         for text in planned.warnings:
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD

@@ -35,6 +35,7 @@ class Factor:
 
     Attributes:
         solves: back-substitutions done.
+        iterations: 0, as of every direct solver.
         condition: MUMPS's estimate of the condition number, known after the first solve; 0 for a matrix
             of more than ``ANALYSED`` unknowns.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
@@ -43,7 +44,7 @@ class Factor:
     def __init__(self, A: PETSc.Mat, clock: Clock, definite: bool = True) -> None:
         A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         A.setOption(PETSc.Mat.Option.SPD, definite)
-        self.A, self.solves, self.largest_residual = A, 0, 0.0
+        self.A, self.solves, self.iterations, self.largest_residual = A, 0, 0, 0.0
         self._clock = clock
         self._residual = A.createVecLeft()
         self.condition = 0.0

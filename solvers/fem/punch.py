@@ -18,6 +18,7 @@ from petsc4py import PETSc
 
 from solvers.errors import SolveError
 from solvers.fem.linear import Factor
+from solvers.fem.multigrid import Multigrid
 from solvers.fem.space import Space
 
 #: Contact forces are found to this relative residual; the last digits are rounding.
@@ -51,9 +52,10 @@ class SlidingPunch:
         space: the finite element space.
         κ: Kolosov's constant.
         c: speed over shear wave speed, below the Rayleigh speed.
+        solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
     """
 
-    def __init__(self, space: Space, κ: float, c: float) -> None:
+    def __init__(self, space: Space, κ: float, c: float, solver: str = "direct") -> None:
         self.space, self.κ, self.c = space, κ, c
         nodes = space.contact
         A = space.assemble(κ, c)
@@ -69,7 +71,11 @@ class SlidingPunch:
         held.setValues(nodes.dofs(1), np.full(len(nodes.blocks), -1.0))
         held.assemble()
         A.zeroRowsColumns(self._held, 1.0, held, b)
-        self.factor = Factor(A, space.clock, definite=not space.mixed)
+        self.factor: Factor | Multigrid
+        if solver == "direct":
+            self.factor = Factor(A, space.clock, definite=not space.mixed)
+        else:
+            self.factor = Multigrid(A, space.clock, solver, space.rigid_motions)
         #: Displacements of the basis: first the frictionless punch, then the tangential loads.
         self.fields = [self._displacement(b, None, -1.0)]
         self._forces = [self._reactions(self.fields[0])]
@@ -152,6 +158,8 @@ class SlidingPunch:
             v: normal displacement of the contact.
         """
         u = self.factor.solve(b)
+        u.setValues(self._held, b.getValues(self._held))  # an iterative solver only comes near them
+        u.assemble()
         t = (self._contact_motion(u)[0], v)
         w = self._without(u, t)
         _set_zero(w, self._held)

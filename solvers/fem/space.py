@@ -111,6 +111,17 @@ class Space:
         owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
         return np.arange(first, first + 2 * owned, dtype=np.int32)
 
+    @property
+    def rigid_motions(self) -> NDArray[np.float64]:
+        """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
+        owned = len(self.node_dofs) // 2
+        mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
+        X, Y = self.plane.to_physical(self.coordinates[mine]).T  # in the order of their numbers
+        modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
+        modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
+        modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
+        return modes
+
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""

@@ -1,0 +1,66 @@
+"""A plan in words: its steps with their sizes, and what they will cost."""
+
+from app import cost, ranks
+from app.plan import CHUNK_NUMBERS, Plan, unknowns
+from app.scene import Scene
+from meshes.halfplane import MESHES
+
+
+def lines(scene: Scene, plan: Plan) -> list[str]:
+    """The plan in words, one step a line."""
+    result = [f"friction: {plan.states} states, Dahl's law, integrator {scene.friction.integrator}"]
+    if plan.closed_form:
+        result.append(f"closed form: {plan.states} states")
+    if plan.refinement:
+        result += _fem_lines(scene, plan)
+    if plan.surface:
+        result.append(f"stresses on the surface: {plan.states} x {len(plan.grid)} points")
+    if plan.interior:
+        result.append(f"stresses inside: {plan.states} x {len(plan.points)} points")
+    return result
+
+
+def _fem_lines(scene: Scene, plan: Plan) -> list[str]:
+    assert plan.refinement
+    cells = len(MESHES[scene.solve.mesh].build(plan.refinement).cells) * plan.cuts**2
+    result = [f"mesh: {scene.solve.mesh}, {cells} quadrilaterals, shared by all speeds"]
+    pressure = " and those of a pressure" * plan.mixed
+    lower = "half and a quarter of the cuts" if scene.solve.degree else "lower degree"
+    solver = "one factorisation" if plan.solver == "direct" else f"conjugate gradients with {plan.solver}"
+    result += [
+        f"finite elements at c = {speed.c:g} (over c_s): degree {speed.degree}, "
+        f"{_unknowns(scene, plan, speed.degree)} unknowns{pressure}; {solver} serves all states, two of "
+        f"{lower} measure its error"
+        for speed in plan.speeds
+    ]
+    if ranks.size() > 1:
+        how = "each takes whole speeds" if plan.shared_speeds else "together on one mesh"
+        result.append(f"ranks: {ranks.size()}, {how}")
+    return result
+
+
+def _unknowns(scene: Scene, plan: Plan, degree: int) -> int:
+    """Unknowns of the finest mesh: a cell of degree p cut k times has the nodes of one of degree k p."""
+    assert plan.refinement
+    return unknowns(MESHES[scene.solve.mesh].build(plan.refinement), plan.cuts * degree)
+
+
+def expense(scene: Scene, plan: Plan) -> str:
+    """Estimated time and memory of a plan."""
+    if not plan.refinement:
+        return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
+    cells = len(MESHES[scene.solve.mesh].build(plan.refinement).cells)
+    highest = max(speed.degree for speed in plan.speeds)
+    if scene.solve.degree:
+        levels = [(cells * (plan.cuts // k) ** 2, scene.solve.degree) for k in (4, 2, 1)] * len(
+            plan.speeds
+        )
+    else:
+        levels = [(cells, p) for s in plan.speeds for p in range(s.degree - 2, s.degree + 1)]
+    speeds = sum(cost.seconds_of_level(*level) for level in levels) / ranks.size()
+    states = cost.STATE * plan.states
+    unknowns = _unknowns(scene, plan, highest)
+    memory = cost.bytes_of(cells * plan.cuts**2, unknowns, highest, CHUNK_NUMBERS)
+    parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
+    total = cost.START + speeds + states
+    return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"

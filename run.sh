@@ -3,6 +3,7 @@
 #   ./run.sh                           reproduce the study into results/
 #   ./run.sh test                      run all tests, those on two ranks included
 #   ./run.sh bench [-o DIR]            measure run time against error
+#   ./run.sh bench big [UNKNOWNS]      linear solvers on meshes of up to so many unknowns
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
@@ -71,7 +72,12 @@ fi
 if [ "${1:-}" = bench ]; then
   shift
   set_up "${packages[@]}"
-  exec "$python" "$home/benchmarks/measure.py" "$@"
+  script=measure
+  if [ -f "$home/benchmarks/${1:-}.py" ]; then
+    script=$1
+    shift
+  fi
+  exec "$python" "$home/benchmarks/$script.py" "$@"
 fi
 
 if [ "${1:-}" = docs ]; then

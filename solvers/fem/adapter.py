@@ -1,7 +1,4 @@
-"""dolfinx as its versions offer it: the one module that asks what the installed library can do.
-
-Nothing else in the program knows that there is more than one dolfinx.
-"""
+"""dolfinx as its versions offer it: nothing else in the program knows that there is more than one."""
 
 from typing import Any
 

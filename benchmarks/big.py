@@ -1,0 +1,85 @@
+"""Linear solvers on big meshes: iterations, seconds and memory against unknowns, by speed and degree.
+
+./run.sh bench big [UNKNOWNS]                prints a Markdown table, up to so many unknowns
+"""
+
+import resource
+import sys
+import time
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from meshes.halfplane import MESHES
+from meshes.refine import refinement
+from meshes.rings import TAGS
+from solvers.fem.clock import Clock
+from solvers.fem.distributed import distribute
+from solvers.fem.linear import Factor
+from solvers.fem.multigrid import Multigrid, available
+from solvers.fem.space import Space
+
+#: Kolosov's constant of ν = 0.25 in plane strain.
+KAPPA = 2.0
+#: Meshes, degrees and cuts, small to large.
+CASES = [
+    ("uniform", 2, (12, 24, 48, 72)),
+    ("uniform", 4, (6, 12, 24)),
+    ("confocal", 2, (12, 24, 48, 64)),
+    ("confocal", 4, (6, 12, 24)),
+]
+HEAD = """\
+| mesh | degree | unknowns | c | solver | steps | set-up (s) | solve (s) | peak so far (MB) |
+|---|---|---|---|---|---|---|---|---|"""
+
+
+def punch_system(space: Space, c: float) -> tuple[Any, Any]:
+    """Matrix and right-hand side of the frictionless punch."""
+    A = space.assemble(KAPPA, c)
+    held, b = A.createVecRight(), A.createVecLeft()
+    dofs = space.contact.dofs(1)
+    held.setValues(dofs, np.full(len(dofs), -1.0))
+    held.assemble()
+    A.zeroRowsColumns(np.concatenate([dofs, space.far_dofs]), 1.0, held, b)
+    return A, b
+
+
+def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
+    """Steps of conjugate gradients (0: a factor), seconds of set-up and of a solve."""
+    A, b = punch_system(space, c)
+    start = time.perf_counter()
+    solver = Factor(A, Clock()) if kind == "mumps" else Multigrid(A, Clock(), kind, space.rigid_motions)
+    ready = time.perf_counter()
+    solver.solve(b).destroy()
+    done = time.perf_counter()
+    solver.destroy(), b.destroy()
+    return solver.iterations, ready - start, done - ready
+
+
+def main() -> None:
+    comm, most = MPI.COMM_WORLD, float(sys.argv[1]) if len(sys.argv) > 1 else 3.5e6
+    if comm.rank == 0:
+        print(HEAD)
+    for name, degree, all_cuts in CASES:
+        for cuts in all_cuts:
+            kind = MESHES[name]
+            pattern = refinement(name, 1e-6, 1.0).cut(cuts)
+            cells = kind.build(pattern) if comm.rank == 0 else None
+            space = Space(*distribute(cells, comm), TAGS, kind.plane, degree)
+            if space.size > most:
+                continue
+            for c in (0.0, 0.9):
+                for solver in ("mumps", *available()):
+                    steps, ready, solved = measure(space, c, solver)
+                    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+                    if comm.rank == 0:
+                        print(
+                            f"| {name} | {degree} | {space.size} | {c:g} | {solver} | {steps or '–'} | "
+                            f"{ready:.2f} | {solved:.2f} | {memory:.0f} |",
+                            flush=True,
+                        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+"""Meshes cut finely at a fixed degree, and multigrid where a factor is too large."""
+
+import numpy as np
+import pytest
+from conftest import run_scene
+
+from app import cost
+from app.account import lines
+from app.changes import changed
+from app.errors import BadInput
+from app.plan import make_plan
+from app.scene import parse
+from app.templates import templates
+from meshes.halfplane import MESHES
+from meshes.refine import refinement
+from solvers.fem.multigrid import LIMIT, available
+
+TEXT = templates()["tables4_5"].text
+
+
+def cut(degree, cuts, *changes):
+    """Archive of a scene with one state, at a fixed degree."""
+    mesh = ('mesh = "confocal"', f'mesh = "confocal"\ndegree = {degree}\ncuts = {cuts}')
+    one = ("X_over_L = [0.2, 0.8]", "X_over_L = [0.8]")
+    return run_scene("tables4_5", mesh, one, *changes)[0]
+
+
+def test_the_error_falls_at_twice_the_rate_of_the_energy_norm():
+    """K_I is a moment of the contact forces: h^(2p) at degree p = 2."""
+    at = ("c = [4.786e-7, 0.6]", "c = 0.6")
+    coarse, middle, fine = (cut(2, cuts, at)["states/fem/true_error"] for cuts in (8, 16, 32))
+    assert np.all(coarse / middle > 0.8 * 2**4) and np.all(middle / fine > 0.8 * 2**4)
+
+
+@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 8), (4, 8)])
+def test_the_estimate_covers_the_true_error(degree, cuts):
+    data = cut(degree, cuts, ("c = [4.786e-7, 0.6]", "c = [0.0, 0.9]"))
+    assert np.all(data["states/fem/true_error"] <= data["states/fem/estimate"])
+    assert list(data["run/fem/factorisations"]) == [3, 3]
+    assert "run/fem/change_by_degree" not in data
+
+
+@pytest.mark.parametrize("solver", available())
+def test_multigrid_gives_what_a_factor_gives(solver):
+    at = ("c = [4.786e-7, 0.6]", "c = [0.0, 0.9]")
+    direct, iterative = (
+        cut(2, 4, at, ("tolerance", f'solver = "{name}"\ntolerance')) for name in ("direct", solver)
+    )
+    for side in ("left", "right"):
+        name = f"states/fem/K_I_{side}"
+        np.testing.assert_allclose(iterative[name], direct[name], rtol=1e-9)
+    assert not direct["run/fem/iterations"].any()
+    assert np.all(np.isin(iterative["run/fem/iterations"], np.arange(1, LIMIT)))
+
+
+def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
+    scene = parse(changed(TEXT, {"solve.degree": 2, "solve.cuts": 64}))
+    monkeypatch.setattr(cost, "free_memory", lambda: 64e9)
+    assert make_plan(scene).solver == "direct"
+    monkeypatch.setattr(cost, "free_memory", lambda: 1e9)
+    plan = make_plan(scene)
+    assert plan.solver == "multigrid"
+    assert any(
+        "conjugate gradients" in line and "half and a quarter" in line for line in lines(scene, plan)
+    )
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"solve.degree": 2}, "multiple of 4"),
+        ({"solve.cuts": 4}, "multiple of 4"),
+        ({"solve.degree": 2, "solve.cuts": 6}, "multiple of 4"),
+        ({"solve.degree": 2.5, "solve.cuts": 4}, "whole number"),
+        ({"solve.degree": 13, "solve.cuts": 4}, "13"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solve.mode": "traction"}, "contact"),
+        ({"solve.solver": "jacobi"}, "jacobi"),
+        ({"solve.solver": "gamg", "solid.nu": 0.5}, "indefinite"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solid.nu": 0.5}, "two degrees less"),
+    ],
+)
+def test_what_cannot_be_is_refused(changes, message):
+    with pytest.raises(BadInput, match=message):
+        make_plan(parse(changed(TEXT, changes)))
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
+    coarse = refinement(mesh, 1e-3, 1.0)
+    whole, fine = (MESHES[mesh].build(r) for r in (coarse, coarse.cut(3)))
+    if mesh in ("confocal", "uniform"):
+        assert len(fine.cells) == 9 * len(whole.cells)
+        near = np.abs(fine.points[:, None] - whole.points).max(axis=2).min(axis=0)
+        assert near.max() < 1e-12

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# All tests with the dolfinx of PyPI (0.11, MPICH of its own), in a virtual environment.
+#   tests/with_wheel.sh [FOLDER]       default: a folder in the user's cache
+# Says that it is skipped, and ends well, where no Python of 3.12 or newer is found.
+set -euo pipefail
+home=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+folder=${1:-${XDG_CACHE_HOME:-$HOME/.cache}/galinx/wheel}
+
+newest() { # the newest Python that the wheel is made for and that can make environments
+  local candidate
+  for candidate in python3.14 python3.13 python3.12 "$HOME"/.pyenv/versions/3.1[2-4]*/bin/python python3; do
+    if "$candidate" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 12))' 2>/dev/null; then
+      command -v "$candidate"
+      return
+    fi
+  done
+  return 1
+}
+
+if [ ! -x "$folder/bin/mpirun" ]; then
+  if ! found=$(newest); then
+    echo "skipped: the wheel of dolfinx needs Python 3.12 or newer, none was found"
+    exit 0
+  fi
+  "$found" -m venv "$folder"
+  "$folder/bin/pip" install --quiet "dolfinx-solver-real==0.11.*" mpi4py gmsh "$home[test,docs]"
+  "$folder/bin/pip" uninstall --quiet --yes galinx
+fi
+export GALINX_PYTHON="$folder/bin/python"
+echo "with $("$folder/bin/pip" list 2>/dev/null | grep -i '^dolfinx' | tr -s ' ')"
+"$home/run.sh" test "${@:2}"

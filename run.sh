@@ -54,19 +54,28 @@ export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
 # One BLAS thread a rank: more are slower at these sizes.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-# More ranks than cores are allowed, as Open MPI 4 and 5 want to be told; MPICH allows them anyway.
-export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 # All ranks are on this machine: looking for fast networks, or starting a daemon for a single process,
 # would take a quarter of a second each time.
 export OMPI_MCA_btl="${OMPI_MCA_btl:-self,vader}" OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}"
 export OMPI_MCA_ess_singleton_isolated="${OMPI_MCA_ess_singleton_isolated:-1}"
+
+on_ranks() { # start the arguments on so many ranks
+  local ranks=$1
+  shift
+  if [ "$ranks" -gt "$(nproc)" ]; then
+    # As Open MPI 4 and 5 want to be told; MPICH allows it anyway. Ranks that wait then give way, so it
+    # would cost time where each rank has a core.
+    export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+  fi
+  exec "$mpirun" -n "$ranks" "$@"
+}
 
 if [ "${1:-}" = test ]; then
   shift
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
   "$python" -m pytest tests "$@"
-  exec "$mpirun" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
+  on_ranks 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
 fi
 
 if [ "${1:-}" = bench ]; then
@@ -99,6 +108,6 @@ fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
 if [ -n "$ranks" ]; then
-  exec "$mpirun" -n "$ranks" "$python" -m app "$@"
+  on_ranks "$ranks" "$python" -m app "$@"
 fi
 exec "$python" -m app "$@"

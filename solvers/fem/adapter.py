@@ -78,22 +78,20 @@ def constants(form: Any) -> NDArray[np.float64]:
 
 
 def kernel(form: Any) -> Any:
-    """The function of a compiled form's one cell integral: (matrix, constants, vertices), in place."""
+    """The function of a form's one cell integral: adds cells' matrices to its first argument."""
     ufcx = form.ufcx_form
     # Cell integrals come first.
     integral = ufcx.form_integrals[0] if hasattr(ufcx, "form_integrals") else ufcx.integrals(0)[0]
-    function = integral.tabulate_tensor_float64
+    function, null = integral.tabulate_tensor_float64, _ffi.NULL
     # Entities, permutations and, in some versions, data of the user's: a cell integral needs none.
-    unused = [_ffi.NULL] * (len(_ffi.typeof(function).args) - 4)
+    unused = [null] * (len(_ffi.typeof(function).args) - 4)
 
     def call(K: NDArray, values: NDArray, corners: NDArray) -> None:
-        function(_pointer(K), _ffi.NULL, _pointer(values), _pointer(corners), *unused)
+        matrix, constant, vertex = (_ffi.cast("double *", x.ctypes.data) for x in (K, values, corners))
+        for cell in range(len(K)):
+            function(matrix + cell * K[0].size, null, constant, vertex + 12 * cell, *unused)
 
     return call
-
-
-def _pointer(array: NDArray) -> Any:
-    return _ffi.cast("double *", array.ctypes.data)
 
 
 def reference_nodes(V: Any) -> NDArray[np.float64]:

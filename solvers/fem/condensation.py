@@ -8,6 +8,7 @@ values are found again where someone asks for them.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ class CellMatrices:
     """The compiled kernel of a bilinear form, ready to be called cell by cell.
 
     Attributes:
-        kernel: writes a cell's matrix, from constants and vertices, into its first argument.
+        kernel: adds cells' matrices, from constants and vertices, to its first argument.
         nodes: nodes of a cell, two unknowns each.
         inner: which of them lie inside it.
         pressures: unknowns of a discontinuous pressure, which follow those of the nodes; 0 or at least 2.
@@ -33,18 +34,18 @@ class CellMatrices:
     inner: NDArray[np.int32]
     pressures: int = 0
 
-    @property
+    @cached_property
     def outer(self) -> NDArray[np.int64]:
         """Local nodes on a cell's boundary."""
         return np.setdiff1d(np.arange(self.nodes), self.inner)
 
-    @property
+    @cached_property
     def outer_dofs(self) -> NDArray[np.int64]:
         """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
         kept = 2 * self.nodes + np.arange(min(self.pressures, 2))
         return np.concatenate([_dofs(self.outer), kept])
 
-    @property
+    @cached_property
     def inner_dofs(self) -> NDArray[np.int64]:
         """Local unknowns that are eliminated."""
         return np.concatenate([_dofs(self.inner), 2 * self.nodes + np.arange(2, self.pressures)])
@@ -55,8 +56,7 @@ class CellMatrices:
         result = np.zeros((len(corners), size, size))
         corners = np.ascontiguousarray(corners)
         constants = np.ascontiguousarray(constants)
-        for K, x in zip(result, corners):
-            self.kernel(K, constants, x)
+        self.kernel(result, constants, corners)
         return result
 
     def condense(

@@ -245,11 +245,17 @@ class Space:
         A = PETSc.Mat().create(self.comm)
         A.setSizes(((2 * (last - first), None), (2 * (last - first), None)), bsize=2)
         A.setType(PETSc.Mat.Type.AIJ)
-        mine = numbers[(first <= numbers) & (numbers < last)] - first
-        cells_of_node = np.bincount(mine, minlength=last - first)
-        room = np.repeat(np.maximum(2 * numbers.shape[1] * cells_of_node, 1), 2).astype(np.int32)
-        alone = self.comm.size == 1
-        A.setPreallocationNNZ((np.minimum(room, 2 * (last - first)), 0 if alone else room))
+        here = (first <= numbers) & (numbers < last)
+
+        def room(cells: NDArray[np.bool_]) -> NDArray[np.int32]:
+            """Entries of each row that these cells can bring."""
+            nodes = numbers[cells][here[cells]] - first
+            count = np.bincount(nodes, minlength=last - first)
+            return np.repeat(2 * numbers.shape[1] * count, 2).astype(np.int32)
+
+        inside = np.maximum(room(np.ones(len(numbers), dtype=bool)), 1)  # a diagonal entry at least
+        across = room(~here.all(axis=1))
+        A.setPreallocationNNZ((np.minimum(inside, 2 * (last - first)), across))
         # Cells of other ranks add to nodes on the border between ranks.
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         return A

@@ -15,6 +15,11 @@ def size() -> int:
     return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
 
 
+def by_mpirun() -> bool:
+    """Was this process started by mpirun, though perhaps alone?"""
+    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") is not None
+
+
 def rank() -> int:
     """Number of this rank, 0 without mpirun."""
     return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0

@@ -18,7 +18,7 @@ def say(text: str, hang: int = 2) -> None:
 
 def colours() -> bool:
     """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
-    return ranks.size() == 1 and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:

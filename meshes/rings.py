@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 CONTACT, FREE, FAR = 1, 2, 3
+#: Coordinates that differ by less are equal; the smallest cells are far above.
+_ROUNDING = 1e-12
 #: Boundary parts by name, as gmsh's physical groups carry them.
 TAGS = {"contact": CONTACT, "free surface": FREE, "far": FAR}
 
@@ -72,11 +74,24 @@ def rectangle(refinement: Refinement, fan: bool = False) -> QuadMesh:
         [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
     quads = np.concatenate([*corners, np.reshape(columns, (-1, 4, 2))])
-    # Coordinates near a corner are multiples of its smallest cell, far above this rounding.
-    keys = np.round(quads.reshape(-1, 2), 13) + 0.0
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    points, cells = quads.reshape(-1, 2)[first], inverse.reshape(-1, 4)
+    corners_of_all = quads.reshape(-1, 2)
+    ξ_label, η_label = (_labels(values) for values in corners_of_all.T)
+    keys = ξ_label * (η_label.max() + 1) + η_label
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    points, cells = corners_of_all[first], inverse.reshape(-1, 4)
     return QuadMesh(points, cells, _tagged_edges(points, cells, ξ[-1]))
+
+
+def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Whole numbers that are equal where values are, but for rounding.
+
+    Rounded values would not do: two that differ in the last digit can lie on the two sides of a step.
+    """
+    order = np.argsort(values)
+    steps = np.diff(values[order]) > _ROUNDING
+    labels = np.empty(len(values), dtype=np.int64)
+    labels[order] = np.concatenate([[0], np.cumsum(steps)])
+    return labels
 
 
 def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float64]:

@@ -33,6 +33,17 @@ def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, β_s):
     assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
 
 
+@pytest.mark.parametrize("times", [2, 9, 18, 36])
+@pytest.mark.parametrize("mesh", MESHES)
+def test_cut_meshes_have_no_cracks(mesh, times):
+    """Every inner edge is shared by two cells: no vertex is there twice but for its last digit."""
+    cells = MESHES[mesh].build(refinement(mesh, 1e-5, 1.0).cut(times))
+    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
+    _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
+    assert count.max() == 2
+    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+
+
 @pytest.mark.parametrize("mesh", MESHES)
 def test_boundary_parts_lie_where_they_should(mesh):
     kind = MESHES[mesh]

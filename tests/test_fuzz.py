@@ -15,9 +15,10 @@ from conftest import HOME
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from app.account import expense, lines
 from app.collector import Memory
 from app.errors import BadInput
-from app.plan import expense, lines, make_plan
+from app.plan import make_plan
 from app.run import compute
 from app.scene import parse
 from solvers.materials import Solid, rayleigh_speed

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import BadInput, MachineFailure
+from app.errors import BadInput, finite_elements_installed
 from app.plan import INSIDE, Plan, has_closed_form, make_plan
 from app.scene import Output, Scene
 from app.states import enumerate_states, solid_of, speeds
@@ -154,7 +154,7 @@ class _Work:
 
 def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree: int) -> Any:
     """The state's sampled field over a, N/(2μ) and N/(2a), gathered on rank 0; None on the others."""
-    try:
+    with finite_elements_installed():
         from mpi4py import MPI
 
         import app.finite_elements  # noqa: F401 first, as it silences the form compiler's tools
@@ -162,15 +162,10 @@ def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree
         from solvers.fem.distributed import distribute
         from solvers.fem.field import sample
         from solvers.fem.space import Space
-    except ImportError as error:
-        raise MachineFailure(
-            f"finite elements need {error.name}, which is not installed; "
-            "run ./run.sh once, it installs what is missing"
-        ) from error
     comm, κ, kind = MPI.COMM_WORLD, solid_of(scene).κ, MESHES[scene.solve.mesh]
-    cells = kind.build(plan.refinement)
+    cells = kind.build(plan.finest)
     check_cells(cells)
-    mesh = distribute(obtain(cells) if comm.rank == 0 else cells, comm)
+    mesh = distribute(obtain(cells) if comm.rank == 0 and plan.cuts == 1 else cells, comm)
     space = Space(*mesh, TAGS, kind.plane, degree)
     solve = _punch if scene.solve.mode == "contact" else _load
     with solve(_Work(scene, plan, κ, lambda _: space), c, g) as (fields, weights):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from app import __version__, ranks
 from app.account import lines
 from app.collector import Collector, Nowhere, Sink
-from app.errors import BadInput, MachineFailure
+from app.errors import BadInput, finite_elements_installed
 from app.judge import Judge
 from app.plan import INSIDE, Plan, make_plan
 from app.progress import Progress
@@ -142,13 +142,8 @@ def _closed_form_alone(
 def _finite_elements(scene: Scene, plan: Plan, states: States, collector: Collector) -> dict[str, float]:
     """Walk through the speeds, the closed form beside the finite elements; the wall times."""
     started = perf_counter()
-    try:
+    with finite_elements_installed():
         from app import finite_elements
-    except ImportError as error:
-        raise MachineFailure(
-            f"finite elements need {error.name}, which is not installed; "
-            "run ./run.sh once, it installs what is missing"
-        ) from error
     imports = perf_counter() - started
     for name, shape in finite_elements.datasets(plan, scene.solve.mode).items():
         collector.sink.reserve(name, (len(states), *shape))

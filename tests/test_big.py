@@ -28,15 +28,15 @@ def cut(degree, cuts, *changes):
 def test_the_error_falls_at_twice_the_rate_of_the_energy_norm():
     """K_I is a moment of the contact forces: h^(2p) at degree p = 2."""
     at = ("c = [4.786e-7, 0.6]", "c = 0.6")
-    coarse, middle, fine = (cut(2, cuts, at)["states/fem/true_error"] for cuts in (8, 16, 32))
-    assert np.all(coarse / middle > 0.8 * 2**4) and np.all(middle / fine > 0.8 * 2**4)
+    coarse, fine = (cut(2, cuts, at)["states/fem/true_error"] for cuts in (8, 16))
+    assert np.all(coarse / fine > 0.8 * 2**4)
 
 
-@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 8), (4, 8)])
+@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 4), (4, 4)])
 def test_the_estimate_covers_the_true_error(degree, cuts):
-    data = cut(degree, cuts, ("c = [4.786e-7, 0.6]", "c = [0.0, 0.9]"))
+    data = cut(degree, cuts, ("c = [4.786e-7, 0.6]", "c = 0.9"))
     assert np.all(data["states/fem/true_error"] <= data["states/fem/estimate"])
-    assert list(data["run/fem/factorisations"]) == [3, 3]
+    assert list(data["run/fem/factorisations"]) == [3]
     assert "run/fem/change_by_degree" not in data
 
 

@@ -206,10 +206,10 @@ def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(monkeypatch, tmp_p
 
     true = contact_mode.SlidingPunch
 
-    def punch(space, κ, c):
+    def punch(space, κ, c, solver):
         if c == 0.6:
             raise SolveError("provoked")
-        return true(space, κ, c)
+        return true(space, κ, c, solver)
 
     whole, _ = run_scene("tables4_5")
     monkeypatch.setattr(contact_mode, "SlidingPunch", punch)
@@ -223,7 +223,7 @@ def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(monkeypatch, tmp_p
     assert np.isnan(data["states/fem/v0"][6:]).all()
     np.testing.assert_array_equal(data["states/closed_form/K_I"], whole["states/closed_form/K_I"])
     assert command("check", tmp_path / "out.h5").returncode == 0
-    monkeypatch.setattr(contact_mode, "SlidingPunch", lambda *_: punch(*_[:2], 0.6))
+    monkeypatch.setattr(contact_mode, "SlidingPunch", lambda *_: punch(*_[:2], 0.6, "direct"))
     with pytest.raises(SolveError, match=r"c = 4.786e-07: provoked"):
         compute(scene)
 

@@ -20,7 +20,8 @@ _FAILURES = (
 )  # fmt: skip
 
 
-#: Seconds that other ranks leave to rank 0: where all fail alike it says so once, and ends all.
+#: Seconds that other ranks leave to rank 0: where all fail alike it says so once. Some mpiruns end all
+#: ranks when the first ends with a failure.
 _PATIENCE = 1.0
 
 #: What shells say of a program whose reader went away: 128 + SIGPIPE.
@@ -47,9 +48,11 @@ def run_from_shell() -> None:
         sys.stdout.flush()
     except (click.ClickException, BadInput, UnreadableArchive) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        if ranks.is_root():
+        if ranks.is_root():  # every rank reads the same input and comes here
             _complain(message)
-        sys.exit(errors.BAD_INPUT)  # every rank reads the same input and comes here
+        else:
+            time.sleep(_PATIENCE)
+        sys.exit(errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except click.exceptions.Abort:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from app.plan import INSIDE, make_plan
+from app.published import REFERENCE
 from app.scene import Scene
 from meshes.halfplane import MESHES, edges
 from postprocess.figures.canvas import COLOURS
@@ -189,8 +190,7 @@ def _degrees(data: dict[str, Any]) -> Drawing:
     return Drawing("degrees", "How the numbers settle as the polynomial degree rises.", figure)
 
 
-#: The parameters of the study's tables, and its two speeds.
-REFERENCE = {"mu_c": 0.7, "sigma0_over_load": 25000.0, "delta": 1.0}
+#: The study's two speeds.
 SLOW, FAST = 4.786e-7, 0.6
 
 

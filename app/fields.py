@@ -14,7 +14,7 @@ from app.errors import BadInput, finite_elements_installed
 from app.plan import INSIDE, Plan, has_closed_form, make_plan
 from app.scene import Output, Scene
 from app.states import enumerate_states, solid_of, speeds
-from meshes.halfplane import MESHES, check_cells
+from meshes.halfplane import MESHES
 from meshes.refine import DEGREES, reach
 from meshes.rings import TAGS
 from postprocess.stresses import maximum_shear, stresses_inside, von_mises, σ_ZZ
@@ -94,7 +94,8 @@ def state_field(
         raise BadInput(
             f"state {number}: no such state; expected 0 to {len(states) - 1}, the scene has {len(states)}"
         )
-    lowest, highest = DEGREES[0], DEGREES[1] + 1  # one more than a rule gives, for given tractions
+    # What the scene fixes, or what its rule gives, which is one more for given tractions.
+    lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
     if degree is not None and not lowest <= degree <= highest:
         raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
     c, g = float(states.c[number]), float(states.g[number])
@@ -157,16 +158,11 @@ def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree
     with finite_elements_installed():
         from mpi4py import MPI
 
-        import app.finite_elements  # noqa: F401 first, as it silences the form compiler's tools
-        from meshes.store import obtain
-        from solvers.fem.distributed import distribute
+        from app.finite_elements import shared_mesh  # first: it silences the form compiler's tools
         from solvers.fem.field import sample
         from solvers.fem.space import Space
     comm, κ, kind = MPI.COMM_WORLD, solid_of(scene).κ, MESHES[scene.solve.mesh]
-    cells = kind.build(plan.finest)
-    check_cells(cells)
-    mesh = distribute(obtain(cells) if comm.rank == 0 and plan.cuts == 1 else cells, comm)
-    space = Space(*mesh, TAGS, kind.plane, degree)
+    space = Space(*shared_mesh(scene, plan, plan.cuts, comm), TAGS, kind.plane, degree)
     solve = _punch if scene.solve.mode == "contact" else _load
     with solve(_Work(scene, plan, κ, lambda _: space), c, g) as (fields, weights):
         return sample(space, κ, c, fields, weights, extent, degree).gathered(comm)
@@ -177,7 +173,7 @@ def _punch(work: _Work, c: float, g: float) -> Iterator[tuple[Any, NDArray]]:
     """Fields of the rigid punch, and the state's weights."""
     from solvers.fem.punch import SlidingPunch
 
-    punch = SlidingPunch(work.space(0), work.κ, c)
+    punch = SlidingPunch(work.space(0), work.κ, c, work.plan.solver)
     try:
         weights = punch.states(g).weights[0]  # the fields are complete after this
         yield punch.fields, weights

@@ -134,14 +134,7 @@ class FiniteElementRun:
     def _mesh(self, cuts: int) -> tuple[Any, Any]:
         """The mesh with every cell cut; speeds and degrees share it."""
         if cuts not in self._meshes:
-            cells = None
-            if self.comm.rank == 0:
-                assert self.plan.refinement
-                cells = MESHES[self.scene.solve.mesh].build(self.plan.refinement.cut(cuts))
-                check_cells(cells)
-                # gmsh's copy of a cut mesh would only be large: the pattern itself is what it holds.
-                cells = obtain(cells) if cuts == 1 else cells
-            self._meshes[cuts] = distribute(cells, self.comm)
+            self._meshes[cuts] = shared_mesh(self.scene, self.plan, cuts, self.comm)
         return self._meshes[cuts]
 
     def space(self, degree: int, cuts: int = 1) -> Space:
@@ -186,6 +179,18 @@ class FiniteElementRun:
             self.complete(rows, data)
             record = {"speed": i, **dict.fromkeys(RECORD, 0.0), "c": c, "failure": why}
             yield Part(rows, data, [], record)
+
+
+def shared_mesh(scene: Scene, plan: Plan, cuts: int, comm: MPI.Comm) -> tuple[Any, Any]:
+    """The scene's mesh with every cell cut, shared out over ranks, and its facet tags."""
+    cells = None
+    if comm.rank == 0:
+        assert plan.refinement
+        cells = MESHES[scene.solve.mesh].build(plan.refinement.cut(cuts))
+        check_cells(cells)
+        # gmsh's copy of a cut mesh would only be large: the pattern itself is what it holds.
+        cells = obtain(cells) if cuts == 1 else cells
+    return distribute(cells, comm)
 
 
 def datasets(plan: Plan, mode: str) -> dict[str, tuple[int, ...]]:

@@ -12,11 +12,9 @@ from app.published import INTENSITIES, intensities, intensity_rows, table1, tabl
 from app.run import compute
 from app.scene import Scene
 from app.states import solid_of
+from app.templates import SCENES
 from app.terminal import colours, say
 from postprocess.tables import Sheet
-
-#: Scenes that are part of the program.
-SCENES = Path(__file__).parent.parent / "scenes"
 
 
 def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:

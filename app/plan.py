@@ -176,11 +176,13 @@ def _solver(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]
                 "with an unknown pressure the matrix is indefinite"
             )
         return "direct"
-    if wanted != "auto" or mesh is None:
-        return "direct" if wanted == "auto" else wanted
+    if wanted != "auto":
+        return wanted
+    if mesh is None:
+        return "direct"
     highest = max(speed.degree for speed in speeds)
-    needed = cost.bytes_of_factors(unknowns_of(mesh.cut(scene.solve.cuts), highest)) / ranks.size()
-    return "direct" if needed < 0.8 * cost.free_memory() / ranks.size() else "multigrid"
+    needed = cost.bytes_of_factors(unknowns_of(mesh.cut(scene.solve.cuts), highest))
+    return "direct" if needed < 0.8 * cost.free_memory() else "multigrid"
 
 
 def _share_speeds(mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-_SCENES = Path(__file__).parent.parent / "scenes"
+#: Scenes that are part of the program.
+SCENES = Path(__file__).parent.parent / "scenes"
 
 #: What editors look for; a scene that is copied elsewhere leaves the schema behind.
 _SCHEMA = "#:schema scene.schema.json\n"
@@ -21,7 +22,7 @@ class Template:
 def templates() -> dict[str, Template]:
     """All of them by name."""
     found = {}
-    for path in sorted(_SCENES.glob("*.toml")):
+    for path in sorted(SCENES.glob("*.toml")):
         text = path.read_text(encoding="utf-8").removeprefix(_SCHEMA)
         about = text.splitlines()[0].removeprefix("# ")
         found[path.stem] = Template(path.stem, about, text)

@@ -8,6 +8,7 @@ from app import cost
 from app.account import lines
 from app.changes import changed
 from app.errors import BadInput
+from app.fields import state_field
 from app.plan import make_plan
 from app.scene import parse
 from app.templates import templates
@@ -92,3 +93,13 @@ def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
         assert len(fine.cells) == 9 * len(whole.cells)
         near = np.abs(fine.points[:, None] - whole.points).max(axis=2).min(axis=0)
         assert near.max() < 1e-12
+
+
+def test_fields_of_a_cut_mesh_come_from_it():
+    changes = {"solve.degree": 2, "solve.cuts": 8, "motion.c": 0.6}
+    field = state_field(parse(changed(TEXT, changes)), 0, extent=3.0, degree=2)
+    coarse = state_field(parse(changed(TEXT, changes | {"solve.cuts": 4})), 0, extent=3.0, degree=2)
+    assert len(field.quads) > 3 * len(coarse.quads)
+    deep = field.points[:, 1] < -0.5e-3  # half a punch's half-width
+    unit = np.abs(field.data["sigma_YY"][deep]).max()
+    assert np.nanmax(field.data["sigma_error"][deep]) < 0.02 * unit

@@ -1,6 +1,7 @@
 """Conjugate gradients with algebraic multigrid: for matrices whose factor does not fit into memory."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +9,7 @@ from petsc4py import PETSc
 
 from solvers.errors import SolveError
 from solvers.fem.clock import Clock
-
-#: Prefix of the options database, the direct solver's too.
-PREFIX = "galinx_"
+from solvers.fem.linear import PREFIX
 
 #: |b - Ax|/|b| that is asked for. Contact forces need more; refinement gives it.
 TOLERANCE = 1e-10
@@ -65,7 +64,7 @@ class Multigrid:
             raise SolveError(
                 f"this PETSc has no {chosen}, only {', '.join(available())}; name another solver"
             )
-        with clock("multigrid set-up"), _options(OPTIONS[chosen]):
+        with clock("multigrid set-up"), _defaults(OPTIONS[chosen]):
             self._ksp = PETSc.KSP().create(A.comm)
             self._ksp.setOptionsPrefix(PREFIX)
             self._ksp.setOperators(A)
@@ -113,19 +112,15 @@ def _orthonormal(A: PETSc.Mat, modes: Sequence[NDArray]) -> PETSc.NullSpace:
     return PETSc.NullSpace().create(vectors=basis, comm=A.comm)
 
 
-class _options:
+@contextmanager
+def _defaults(options: dict[str, object]) -> Iterator[None]:
     """Puts options that the user has not given into PETSc's database, for as long as they are needed."""
-
-    def __init__(self, options: dict[str, object]) -> None:
-        self._options = options
-
-    def __enter__(self) -> None:
-        database = PETSc.Options(PREFIX)
-        self._pushed = [name for name in self._options if not database.hasName(name)]
-        for name in self._pushed:
-            database[name] = self._options[name]
-
-    def __exit__(self, *_: object) -> None:
-        database = PETSc.Options(PREFIX)
-        for name in self._pushed:
+    database = PETSc.Options(PREFIX)
+    pushed = [name for name in options if not database.hasName(name)]
+    for name in pushed:
+        database[name] = options[name]
+    try:
+        yield
+    finally:
+        for name in pushed:
             database.delValue(name)

@@ -40,7 +40,7 @@ def _fem_lines(scene: Scene, plan: Plan) -> list[str]:
 
 
 def _unknowns(scene: Scene, plan: Plan, degree: int) -> int:
-    """Unknowns of the finest mesh: a cell of degree p cut k times has the nodes of one of degree k p."""
+    """Unknowns of the finest mesh, exactly."""
     assert plan.refinement
     return unknowns(MESHES[scene.solve.mesh].build(plan.refinement), plan.cuts * degree)
 

@@ -15,6 +15,10 @@ from solvers.fem.punch import ContactStates, SlidingPunch
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
 
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
+#: most keeps results on any number of ranks equal to 1e-9.
+NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
+
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
 
@@ -114,7 +118,8 @@ class PunchAtSpeed:
 
     def _add_level(self, degree: int, cuts: int = 1) -> None:
         space = self.run.space(degree, cuts)
-        punch = SlidingPunch(space, self.frame.κ, self.frame.c, self.run.plan.solver)
+        negligible = min(NEGLIGIBLE * self.run.scene.solve.tolerance, NEGLIGIBLE_MOST)
+        punch = SlidingPunch(space, self.frame.κ, self.frame.c, self.run.plan.solver, negligible)
         recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.plan.grid)
         self.levels.append(Level(punch, recovery))
         if len(self.levels) > 3:

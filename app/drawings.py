@@ -67,7 +67,9 @@ def of_archive(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
 def mesh(scene: Scene) -> Drawing:
     """The mesh that a scene's finite elements use; it is laid out again, nothing is solved."""
     kind = MESHES[scene.solve.mesh]
-    lines = edges(kind, kind.build(make_plan(scene).finest))
+    plan = make_plan(scene)
+    assert plan.refinement
+    lines = edges(kind, kind.build(plan.refinement, plan.cuts))
     caption = (
         f"The {scene.solve.mesh} mesh under the punch (thick) and, nearer and nearer, its edge X = a."
     )

@@ -183,14 +183,13 @@ class FiniteElementRun:
 
 def shared_mesh(scene: Scene, plan: Plan, cuts: int, comm: MPI.Comm) -> tuple[Any, Any]:
     """The scene's mesh with every cell cut, shared out over ranks, and its facet tags."""
-    cells = None
-    if comm.rank == 0:
-        assert plan.refinement
-        cells = MESHES[scene.solve.mesh].build(plan.refinement.cut(cuts))
-        check_cells(cells)
-        # gmsh's copy of a cut mesh would only be large: the pattern itself is what it holds.
-        cells = obtain(cells) if cuts == 1 else cells
-    return distribute(cells, comm)
+    assert plan.refinement
+    kind = MESHES[scene.solve.mesh]
+    pattern = kind.build(plan.refinement)
+    check_cells(pattern)
+    if cuts > 1:  # gmsh's copy of a cut mesh would only be large
+        return distribute(kind.build(plan.refinement, cuts, comm.rank, comm.size), comm)
+    return distribute(obtain(pattern) if comm.rank == 0 else None, comm)
 
 
 def datasets(plan: Plan, mode: str) -> dict[str, tuple[int, ...]]:

@@ -89,11 +89,6 @@ class Plan:
         numbers = 5 * len(self.grid) * self.surface + 10 * len(self.points) * self.interior
         return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
 
-    @property
-    def finest(self) -> Refinement | None:
-        """Refinement of the mesh that results come from."""
-        return self.refinement.cut(self.cuts) if self.refinement else None
-
 
 def make_plan(scene: Scene) -> Plan:
     """Plan the work; looks at the scene only, does none of it.
@@ -137,7 +132,7 @@ def make_plan(scene: Scene) -> Plan:
     return Plan(
         count, closed, fem, contact and "surface" in asked, contact and "interior" in asked,
         surface_grid(), points, mixed, mesh, scene.solve.cuts, _solver(scene, mesh, speed_plans, mixed),
-        speed_plans, _share_speeds(mesh and mesh.cut(scene.solve.cuts), speed_plans),
+        speed_plans, _share_speeds(scene, mesh, speed_plans),
         tuple(_skipped(scene, contact, closed, mesh)), tuple(warnings),
     )  # fmt: skip
 
@@ -181,15 +176,15 @@ def _solver(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]
     if mesh is None:
         return "direct"
     highest = max(speed.degree for speed in speeds)
-    needed = cost.bytes_of_factors(unknowns_of(mesh.cut(scene.solve.cuts), highest))
+    needed = cost.bytes_of_factors(unknowns_of(mesh, scene.solve.cuts * highest))
     return "direct" if needed < 0.8 * cost.free_memory() else "multigrid"
 
 
-def _share_speeds(mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:
+def _share_speeds(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:
     """Small problems gain nothing from being cut in pieces; whole speeds are shared out instead."""
     if mesh is None or ranks.size() == 1 or len(speeds) < ranks.size():
         return False
-    return unknowns_of(mesh, max(speed.degree for speed in speeds)) < SMALL
+    return unknowns_of(mesh, scene.solve.cuts * max(speed.degree for speed in speeds)) < SMALL
 
 
 def has_closed_form(scene: Scene) -> bool:
@@ -244,7 +239,10 @@ def _skipped(scene: Scene, contact: bool, closed: bool, mesh: Refinement | None)
 
 
 def unknowns_of(mesh: Refinement, p: int) -> int:
-    """About the same without building the mesh."""
+    """About the same without building the mesh.
+
+    A cell of degree p cut k times has the nodes of one of degree k p.
+    """
     return 2 * p**2 * 2 * mesh.sectors * (2 * mesh.levels + mesh.sectors + len(mesh.columns))
 
 

@@ -6,9 +6,7 @@
 import resource
 import sys
 import time
-from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
 from meshes.halfplane import MESHES
@@ -18,6 +16,7 @@ from solvers.fem.clock import Clock
 from solvers.fem.distributed import distribute
 from solvers.fem.linear import Factor
 from solvers.fem.multigrid import Multigrid, available
+from solvers.fem.punch import hold
 from solvers.fem.space import Space
 
 #: Kolosov's constant of ν = 0.25 in plane strain.
@@ -34,20 +33,10 @@ HEAD = """\
 |---|---|---|---|---|---|---|---|---|"""
 
 
-def punch_system(space: Space, c: float) -> tuple[Any, Any]:
-    """Matrix and right-hand side of the frictionless punch."""
-    A = space.assemble(KAPPA, c)
-    held, b = A.createVecRight(), A.createVecLeft()
-    dofs = space.contact.dofs(1)
-    held.setValues(dofs, np.full(len(dofs), -1.0))
-    held.assemble()
-    A.zeroRowsColumns(np.concatenate([dofs, space.far_dofs]), 1.0, held, b)
-    return A, b
-
-
 def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
     """Steps of conjugate gradients (0: a factor), seconds of set-up and of a solve."""
-    A, b = punch_system(space, c)
+    A = space.assemble(KAPPA, c)
+    b = hold(A, space)  # the frictionless punch
     start = time.perf_counter()
     solver = Factor(A, Clock()) if kind == "mumps" else Multigrid(A, Clock(), kind, space.rigid_motions)
     ready = time.perf_counter()
@@ -64,8 +53,7 @@ def main() -> None:
     for name, degree, all_cuts in CASES:
         for cuts in all_cuts:
             kind = MESHES[name]
-            pattern = refinement(name, 1e-6, 1.0).cut(cuts)
-            cells = kind.build(pattern) if comm.rank == 0 else None
+            cells = kind.build(refinement(name, 1e-6, 1.0), cuts, comm.rank, comm.size)
             space = Space(*distribute(cells, comm), TAGS, kind.plane, degree)
             if space.size > most:
                 continue

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.pieces import cut
 from meshes.planes import Confocal, Physical
 from meshes.rings import QuadMesh, Refinement, rectangle
 
@@ -22,47 +23,58 @@ class MeshKind:
 
     Attributes:
         plane: where the mesh lives.
-        build: makes the cells from a refinement.
+        place: puts points (n, 2) of the pattern with a refinement into that plane.
+        fan: what fills the innermost squares of the pattern, see :func:`meshes.rings.rectangle`.
     """
 
     plane: Confocal | Physical
-    build: Callable[[Refinement], QuadMesh]
+    place: Callable[[NDArray, Refinement], NDArray]
+    fan: bool
+
+    def build(self, refinement: Refinement, cuts: int = 1, part: int = 0, parts: int = 1) -> QuadMesh:
+        """The mesh, or a piece of it.
+
+        Args:
+            refinement: of the pattern.
+            cuts: every cell of it is cut into so many along each side.
+            part, parts: which of how many pieces.
+        """
+        piece = cut(rectangle(refinement, self.fan), cuts, part, parts)
+        return QuadMesh(self.place(piece.points, refinement), piece.cells, piece.edges)
 
 
-def _confocal(refinement: Refinement) -> QuadMesh:
-    return rectangle(refinement)
+def _as_drawn(points: NDArray, _: Refinement) -> NDArray[np.float64]:
+    return points
 
 
-def _graded(refinement: Refinement) -> QuadMesh:
-    """Straight-sided cells whose vertices are the images of the ring pattern's."""
-    pattern = rectangle(refinement, fan=True)
-    return QuadMesh(Confocal().to_physical(pattern.points), pattern.cells, pattern.edges)
+def _image(points: NDArray, _: Refinement) -> NDArray[np.float64]:
+    """Vertices of straight-sided cells."""
+    return Confocal().to_physical(points)
 
 
-def _box(refinement: Refinement) -> QuadMesh:
+def _box(points: NDArray, refinement: Refinement) -> NDArray[np.float64]:
     """The graded mesh, drawn out from ellipses to the study's block in its last columns."""
-    pattern = rectangle(refinement, fan=True)
-    points = Confocal().to_physical(pattern.points)
-    ξ = pattern.points[:, 0]
-    outer = ξ.max()
-    inner = np.unique(ξ)[-4]  # three columns change shape, so that none is distorted much
+    ξ, η = points.T
+    of_columns = np.pi / 2.0 + np.concatenate([[0.0], np.cumsum(refinement.columns)])
+    # Three columns change shape, so that none is distorted much.
+    inner, outer = of_columns[-4], of_columns[-1]
     share = np.clip((ξ - inner) / (outer - inner), 0.0, 1.0)[:, None]
-    η = pattern.points[:, 1]
     ray = np.column_stack([np.cos(η), np.sin(η)])
     sides = np.array([BOX_WIDTH / 2.0, BOX_DEPTH])
     wall = ray / np.max(np.abs(ray) / sides, axis=1, keepdims=True)
     scaled = wall * (np.cosh(ξ) / np.cosh(outer))[:, None]
-    points = np.where(share > 0.0, (1.0 - share) * points + share * scaled, points)
-    points[np.abs(points[:, 1]) < 1e-12, 1] = 0.0
-    return QuadMesh(points, pattern.cells, pattern.edges)
+    X = _image(points, refinement)
+    X = np.where(share > 0.0, (1.0 - share) * X + share * scaled, X)
+    X[np.abs(X[:, 1]) < 1e-12, 1] = 0.0
+    return X
 
 
 #: Meshes by the name that scenes use.
 MESHES = {
-    "confocal": MeshKind(Confocal(), _confocal),
-    "uniform": MeshKind(Confocal(), _confocal),
-    "graded": MeshKind(Physical(), _graded),
-    "box": MeshKind(Physical(), _box),
+    "confocal": MeshKind(Confocal(), _as_drawn, fan=False),
+    "uniform": MeshKind(Confocal(), _as_drawn, fan=False),
+    "graded": MeshKind(Physical(), _image, fan=True),
+    "box": MeshKind(Physical(), _box, fan=True),
 }
 
 

@@ -35,11 +35,6 @@ class Refinement:
     sectors: int
     columns: tuple[float, ...]
 
-    def cut(self, times: int) -> "Refinement":
-        """The refinement with every cell cut into ``times`` x ``times``, its grading kept."""
-        columns = tuple(width / times for width in self.columns for _ in range(times))
-        return Refinement(self.levels * times, self.ratio ** (1.0 / times), self.sectors * times, columns)
-
 
 @dataclass(frozen=True)
 class QuadMesh:
@@ -49,6 +44,8 @@ class QuadMesh:
         points: vertex coordinates, (n, 2).
         cells: vertices of each cell counterclockwise, (m, 4).
         edges: vertices of the boundary edges by tag, each (k, 2).
+
+    A piece of a larger mesh has the whole's numbers in ``cells`` and ``edges``, its share in ``points``.
     """
 
     points: NDArray[np.float64]

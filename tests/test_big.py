@@ -88,11 +88,24 @@ def test_what_cannot_be_is_refused(changes, message):
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
     coarse = refinement(mesh, 1e-3, 1.0)
-    whole, fine = (MESHES[mesh].build(r) for r in (coarse, coarse.cut(3)))
-    if mesh in ("confocal", "uniform"):
-        assert len(fine.cells) == 9 * len(whole.cells)
-        near = np.abs(fine.points[:, None] - whole.points).max(axis=2).min(axis=0)
-        assert near.max() < 1e-12
+    whole, fine = (MESHES[mesh].build(coarse, cuts) for cuts in (1, 3))
+    assert len(fine.cells) == 9 * len(whole.cells)
+    np.testing.assert_array_equal(fine.points[: len(whole.points)], whole.points)
+    # The first of the nine at a cell's first vertex, the last at the one across.
+    first, last = fine.cells.reshape(-1, 9, 4)[:, [0, -1]].transpose(1, 0, 2)
+    np.testing.assert_array_equal(np.column_stack([first[:, 0], last[:, 2]]), whole.cells[:, [0, 2]])
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_pieces_of_a_mesh_make_the_whole(mesh):
+    kind, pattern = MESHES[mesh], refinement(mesh, 1e-3, 1.0)
+    whole, pieces = kind.build(pattern, 4), [kind.build(pattern, 4, i, 3) for i in range(3)]
+    for name in ("points", "cells"):
+        np.testing.assert_array_equal(
+            np.concatenate([getattr(p, name) for p in pieces]), getattr(whole, name)
+        )
+    for tag, edges in whole.edges.items():
+        np.testing.assert_array_equal(np.concatenate([p.edges[tag] for p in pieces]), edges)
 
 
 def test_fields_of_a_cut_mesh_come_from_it():

@@ -206,10 +206,10 @@ def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(monkeypatch, tmp_p
 
     true = contact_mode.SlidingPunch
 
-    def punch(space, κ, c, solver):
+    def punch(space, κ, c, *rest):
         if c == 0.6:
             raise SolveError("provoked")
-        return true(space, κ, c, solver)
+        return true(space, κ, c, *rest)
 
     whole, _ = run_scene("tables4_5")
     monkeypatch.setattr(contact_mode, "SlidingPunch", punch)
@@ -273,7 +273,8 @@ def test_more_ranks_than_cells():
         "from solvers.fem.interior import InteriorGradients\n"
         "kind, v0 = MESHES['confocal'], []\n"
         "for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):\n"
-        "    mesh = distribute(kind.build(Refinement(0, 0.3, 1, (2.0,))), comm)\n"
+        "    piece = kind.build(Refinement(0, 0.3, 1, (2.0,)), 1, comm.rank, comm.size)\n"
+        "    mesh = distribute(piece, comm)\n"
         "    space = Space(*mesh, TAGS, kind.plane, 4)\n"
         "    punch = SlidingPunch(space, 2.0, 0.5)\n"
         "    state = punch.states(0.5)\n"

@@ -241,10 +241,22 @@ def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
         Factor(A, Clock()).solve(b)
 
 
-def small_punch():
+def small_punch(c=0.6, **options):
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(6, 0.35, 2, (3.0,) * 3))
-    return SlidingPunch(Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 7), 2.0, 0.6)
+    return SlidingPunch(Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 7), 2.0, c, **options)
+
+
+@pytest.mark.parametrize("c, refines", [(0.0, False), (0.6, False), (0.9192, True)])
+def test_solutions_are_refined_where_that_changes_forces(c, refines):
+    """Near the Rayleigh speed, 0.9194 c_s, rounding grows."""
+    always, where_needed = (small_punch(c, negligible=share) for share in (0.0, 1e-10))
+    wanted, found = (punch.states([-0.5, 0.5]) for punch in (always, where_needed))
+    fields = len(where_needed.fields)
+    assert always.factor.solves == 2 * len(always.fields)
+    assert where_needed.factor.solves == (2 * fields if refines else fields + 1)
+    scale = np.linalg.norm(wanted.normal)
+    assert np.linalg.norm(found.normal - wanted.normal) <= 2e-10 * scale
 
 
 def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):

@@ -20,11 +20,12 @@ class Quadrilaterals(Protocol):
     edges: dict[int, NDArray]
 
 
-def distribute(mesh: Quadrilaterals, comm: MPI.Comm) -> tuple[Any, Any]:
+def distribute(mesh: Quadrilaterals | None, comm: MPI.Comm) -> tuple[Any, Any]:
     """Share a mesh out over the ranks of ``comm``.
 
     Args:
-        mesh: the whole mesh; looked at on rank 0 only.
+        mesh: what this rank has of it, None for nothing. Vertices are numbered over all ranks; ``points``
+            are those of the next numbers after the ranks before.
         comm: communicator.
 
     Returns:
@@ -32,7 +33,7 @@ def distribute(mesh: Quadrilaterals, comm: MPI.Comm) -> tuple[Any, Any]:
     """
     points, cells = np.empty((0, 2)), np.empty((0, 4), dtype=np.int64)
     edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
-    if comm.rank == 0:
+    if mesh:
         points, cells = mesh.points, mesh.cells[:, _ORDER]
         edges = np.concatenate(list(mesh.edges.values()))
         tags = np.repeat(np.array([*mesh.edges], np.int32), [len(part) for part in mesh.edges.values()])

@@ -1,5 +1,7 @@
 """PETSc's direct solver with the checks that PETSc leaves to its caller."""
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,9 @@ from solvers.fem.clock import Clock
 
 #: Prefix of the options database, so that ``-galinx_ksp_view`` and the like work.
 PREFIX = "galinx_"
+
+#: PETSc's options for MUMPS: in the plane the last front is too small to be spread over all ranks.
+OPTIONS = {"mat_mumps_icntl_13": 1}
 
 #: A direct solve that leaves more than this of its right-hand side has met a singular matrix: the
 #: meshes' condition numbers let a sound factor reach about 1e-12.
@@ -48,7 +53,7 @@ class Factor:
         self._clock = clock
         self._residual = A.createVecLeft()
         self.condition = 0.0
-        with clock("factorisation"):
+        with clock("factorisation"), defaults(OPTIONS):
             for percent in WORKSPACE:
                 self._factorise(percent)
                 if self._mumps.getMumpsInfog(1) not in _TOO_SMALL or percent == WORKSPACE[-1]:
@@ -138,3 +143,17 @@ def largest(x: PETSc.Vec) -> float:
 def array(x: PETSc.Vec) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Entries owned by this rank, a view."""
     return x.getArray(readonly=True)
+
+
+@contextmanager
+def defaults(options: Mapping[str, object]) -> Iterator[None]:
+    """Puts options that the user has not given into PETSc's database, for as long as they are needed."""
+    database = PETSc.Options(PREFIX)
+    pushed = [name for name in options if not database.hasName(name)]
+    for name in pushed:
+        database[name] = options[name]
+    try:
+        yield
+    finally:
+        for name in pushed:
+            database.delValue(name)

@@ -1,7 +1,6 @@
 """Conjugate gradients with algebraic multigrid: for matrices whose factor does not fit into memory."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ from petsc4py import PETSc
 
 from solvers.errors import SolveError
 from solvers.fem.clock import Clock
-from solvers.fem.linear import PREFIX
+from solvers.fem.linear import PREFIX, defaults
 
 #: |b - Ax|/|b| that is asked for. Contact forces need more; refinement gives it.
 TOLERANCE = 1e-10
@@ -64,7 +63,7 @@ class Multigrid:
             raise SolveError(
                 f"this PETSc has no {chosen}, only {', '.join(available())}; name another solver"
             )
-        with clock("multigrid set-up"), _defaults(OPTIONS[chosen]):
+        with clock("multigrid set-up"), defaults(OPTIONS[chosen]):
             self._ksp = PETSc.KSP().create(A.comm)
             self._ksp.setOptionsPrefix(PREFIX)
             self._ksp.setOperators(A)
@@ -110,17 +109,3 @@ def _orthonormal(A: PETSc.Mat, modes: Sequence[NDArray]) -> PETSc.NullSpace:
         x.normalize()
         basis.append(x)
     return PETSc.NullSpace().create(vectors=basis, comm=A.comm)
-
-
-@contextmanager
-def _defaults(options: dict[str, object]) -> Iterator[None]:
-    """Puts options that the user has not given into PETSc's database, for as long as they are needed."""
-    database = PETSc.Options(PREFIX)
-    pushed = [name for name in options if not database.hasName(name)]
-    for name in pushed:
-        database[name] = options[name]
-    try:
-        yield
-    finally:
-        for name in pushed:
-            database.delValue(name)

@@ -53,9 +53,13 @@ class SlidingPunch:
         κ: Kolosov's constant.
         c: speed over shear wave speed, below the Rayleigh speed.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
+        negligible: relative change of the contact forces that needs no refinement of a solution. The
+            first solution is refined in any case and tells what that does to the others.
     """
 
-    def __init__(self, space: Space, κ: float, c: float, solver: str = "direct") -> None:
+    def __init__(
+        self, space: Space, κ: float, c: float, solver: str = "direct", negligible: float = 0.0
+    ) -> None:
         self.space, self.κ, self.c = space, κ, c
         nodes = space.contact
         A = space.assemble(κ, c)
@@ -66,25 +70,25 @@ class SlidingPunch:
         self._motions = [_ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
         self._far = [_product(A, _ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
-        self._held = np.concatenate([nodes.dofs(1), space.far_dofs])
-        held, b = A.createVecRight(), A.createVecLeft()
-        held.setValues(nodes.dofs(1), np.full(len(nodes.blocks), -1.0))
-        held.assemble()
-        A.zeroRowsColumns(self._held, 1.0, held, b)
+        b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
             self.factor = Factor(A, space.clock, definite=not space.mixed)
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions)
         #: Displacements of the basis: first the frictionless punch, then the tangential loads.
-        self.fields = [self._displacement(b, None, -1.0)]
+        self.fields = [self._displacement(b)]
+        rough = self._reactions(self.fields[0])
+        self._refine(self.fields[0], None, -1.0)
         self._forces = [self._reactions(self.fields[0])]
+        change = np.linalg.norm(self._forces[0] - rough) / np.linalg.norm(rough)
+        self._refines = change > negligible
         R0 = self._forces[0][1]
         self._size = np.linalg.norm(R0)
         self._V = [R0 / self._size]
         self._H = np.zeros((KRYLOV_LIMIT + 1, KRYLOV_LIMIT))
         self._complete = False
-        b.destroy(), held.destroy()
+        b.destroy()
 
     def states(self, g: ArrayLike) -> ContactStates:
         """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N."""
@@ -125,13 +129,15 @@ class SlidingPunch:
             self._extend()
 
     def _extend(self) -> None:
-        """One Arnoldi step: one back-substitution."""
+        """One Arnoldi step."""
         j = len(self.fields) - 1
         nodes = self.space.contact
         b = self.factor.A.createVecLeft()
         b.setValues(nodes.dofs(0), self._V[j][nodes.owned])
         b.assemble()
-        self.fields.append(self._displacement(b, b, 0.0))
+        self.fields.append(self._displacement(b))
+        if self._refines:
+            self._refine(self.fields[-1], b, 0.0)
         b.destroy()
         self._forces.append(self._reactions(self.fields[-1]))
         w = self._forces[-1][1]
@@ -145,36 +151,41 @@ class SlidingPunch:
         if not self._complete:
             self._V.append(w / self._H[j + 1, j])
 
-    def _displacement(self, b: PETSc.Vec, load: PETSc.Vec | None, v: float) -> PETSc.Vec:
-        """The displacement for a right-hand side b, refined once.
+    def _displacement(self, b: PETSc.Vec) -> PETSc.Vec:
+        """The displacement for nodal forces b, with what the held displacements cause."""
+        u = self.factor.solve(b)
+        held = self.space.held_dofs
+        u.setValues(held, b.getValues(held))  # an iterative solver only comes near them
+        u.assemble()
+        return u
+
+    def _refine(self, u: PETSc.Vec, load: PETSc.Vec | None, v: float) -> None:
+        """Solve once more for what a displacement leaves of its forces.
 
         The contact moves far before the body deforms, the farther the nearer the Rayleigh speed, and what
         forces that motion seems to need is rounding. The residual is taken without it: what is left of
         the displacement is zero under the punch, and the far boundary moves instead.
 
         Args:
-            b: with what the held displacements cause.
+            u: the displacement, in place.
             load: nodal forces.
             v: normal displacement of the contact.
         """
-        u = self.factor.solve(b)
-        u.setValues(self._held, b.getValues(self._held))  # an iterative solver only comes near them
-        u.assemble()
+        held = self.space.held_dofs
         t = (self._contact_motion(u)[0], v)
         w = self._without(u, t)
-        _set_zero(w, self._held)
+        _set_zero(w, held)
         residual = _product(self.factor.A, w)
         residual.scale(-1.0)
         if load:
             residual.axpy(1.0, load)
         residual.maxpy(t, self._far)
-        _set_zero(residual, self._held)
+        _set_zero(residual, held)
         if residual.norm() > 0.0:
             correction = self.factor.solve(residual)
             u.axpy(1.0, correction)
             correction.destroy()
         w.destroy(), residual.destroy()
-        return u
 
     def _contact_motion(self, u: PETSc.Vec) -> tuple[float, float]:
         """Mean displacement of the contact nodes."""
@@ -200,6 +211,16 @@ class SlidingPunch:
             force.destroy()
         w.destroy()
         return comm.allreduce(mine)
+
+
+def hold(A: PETSc.Mat, space: Space) -> PETSc.Vec:
+    """Hold the contact at v = -1 and the far boundary in a matrix; returns the forces of that."""
+    held, b = A.createVecRight(), A.createVecLeft()
+    held.setValues(space.contact.dofs(1), np.full(len(space.contact.blocks), -1.0))
+    held.assemble()
+    A.zeroRowsColumns(space.held_dofs, 1.0, held, b)
+    held.destroy()
+    return b
 
 
 def _ones(A: PETSc.Mat, dofs: NDArray[np.int32]) -> PETSc.Vec:

@@ -18,6 +18,7 @@ from solvers.fem.clock import Clock
 from solvers.fem.compiler import compiling
 from solvers.fem.condensation import CHUNK, CellMatrices
 from solvers.fem.forms import mixed_stiffness, moving_stiffness
+from solvers.fem.matrix import empty_matrix
 from solvers.fem.plane import Plane
 
 
@@ -129,6 +130,11 @@ class Space:
         return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
 
     @cached_property
+    def held_dofs(self) -> NDArray[np.int32]:
+        """Global numbers of the owned unknowns that a punch holds: v under it, and the far boundary."""
+        return np.concatenate([self.contact.dofs(1), self.far_dofs])
+
+    @cached_property
     def _form(self) -> tuple[Any, fem.Constant, fem.Constant]:
         """The compiled form with its constants κ and c, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
@@ -152,7 +158,7 @@ class Space:
         """
         numbers = self._outer_numbers  # the form is compiled here, the first time
         with self.clock("assembly"):
-            A = self._empty_matrix(numbers)
+            A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
                 cells = slice(start, start + CHUNK)
                 condensed, _ = self._condensed(κ, c, cells)
@@ -238,27 +244,6 @@ class Space:
         form, κ_, c_ = self._form
         κ_.value, c_.value = κ, c
         return self._kernel.condense(adapter.constants(form), self.vertices[cells])
-
-    def _empty_matrix(self, numbers: NDArray[np.int32]) -> PETSc.Mat:
-        """A matrix with room for what cells with these node numbers will add."""
-        first, last = self._range
-        A = PETSc.Mat().create(self.comm)
-        A.setSizes(((2 * (last - first), None), (2 * (last - first), None)), bsize=2)
-        A.setType(PETSc.Mat.Type.AIJ)
-        here = (first <= numbers) & (numbers < last)
-
-        def room(cells: NDArray[np.bool_]) -> NDArray[np.int32]:
-            """Entries of each row that these cells can bring."""
-            nodes = numbers[cells][here[cells]] - first
-            count = np.bincount(nodes, minlength=last - first)
-            return np.repeat(2 * numbers.shape[1] * count, 2).astype(np.int32)
-
-        inside = np.maximum(room(np.ones(len(numbers), dtype=bool)), 1)  # a diagonal entry at least
-        across = room(~here.all(axis=1))
-        A.setPreallocationNNZ((np.minimum(inside, 2 * (last - first)), across))
-        # Cells of other ranks add to nodes on the border between ranks.
-        A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
-        return A
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

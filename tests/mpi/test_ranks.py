@@ -20,7 +20,8 @@ REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 
 def on(comm, mesh, mixed=False):
     kind = MESHES[mesh]
-    return Space(*distribute(kind.build(REFINEMENT), comm), TAGS, kind.plane, 5, mixed)
+    piece = kind.build(REFINEMENT, 1, comm.rank, comm.size)
+    return Space(*distribute(piece, comm), TAGS, kind.plane, 5, mixed)
 
 
 @pytest.mark.parametrize("mesh, mixed", [("confocal", False), ("graded", False), ("confocal", True)])

@@ -19,7 +19,7 @@ from solvers.fem.space import Space
 def test_ranks_sample_together_what_one_samples(mesh, extent):
     kind, found = MESHES[mesh], []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        cells = kind.build(Refinement(5, 0.35, 2, (3.0,) * 4))
+        cells = kind.build(Refinement(5, 0.35, 2, (3.0,) * 4), 1, comm.rank, comm.size)
         space = Space(*distribute(cells, comm), TAGS, kind.plane, 5)
         punch = SlidingPunch(space, 2.0, 0.6)
         weights = punch.states(-0.66).weights[0]

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -65,11 +66,16 @@ def write_field(
     Raises:
         UnwritableArchive: the file system refused.
     """
-    field = state_field(scene, number, extent, degree)
-    if field:
-        from postprocess.hdf5 import vtkhdf
+    state, sampled, comm = _piece(scene, number, extent, degree)
+    mine = _in_si(scene, state, sampled)
+    if comm.rank > 0:
+        comm.send(mine, 0)
+        return
+    from postprocess.hdf5 import vtkhdf
 
-        vtkhdf.write(path, field.points, field.quads, field.data, ABOUT)
+    # Rank 0 has one piece of another rank at a time.
+    others = (comm.recv(source=rank) for rank in range(1, comm.size))
+    vtkhdf.write(path, chain([mine], others), ABOUT)
 
 
 def state_field(
@@ -89,6 +95,21 @@ def state_field(
         BadInput: there is no such state, or finite elements have no answer for it.
         SolveError: the equations could not be solved.
     """
+    state, sampled, comm = _piece(scene, number, extent, degree)
+    whole = sampled.gathered(comm)
+    return None if whole is None else _in_si(scene, state, whole)
+
+
+@dataclass(frozen=True)
+class _State:
+    """Speed over the shear wave speed, and σ_XY/σ_YY under the punch."""
+
+    c: float
+    g: float
+
+
+def _piece(scene: Scene, number: int, extent: float, degree: int | None) -> tuple[_State, Any, Any]:
+    """The state, this rank's piece of its field over a, N/(2μ) and N/(2a), and all the ranks."""
     states = enumerate_states(scene)
     if not 0 <= number < len(states):
         raise BadInput(
@@ -98,16 +119,15 @@ def state_field(
     lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
     if degree is not None and not lowest <= degree <= highest:
         raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
-    c, g = float(states.c[number]), float(states.g[number])
-    asked = _for_finite_elements(scene, c)
+    state = _State(float(states.c[number]), float(states.g[number]))
+    asked = _for_finite_elements(scene, state.c)
     plan = make_plan(asked)
     _check(asked, plan, extent)
-    planned = next(speed.degree for speed in plan.speeds if speed.c == c)
+    planned = next(speed.degree for speed in plan.speeds if speed.c == state.c)
     if degree is None:
         # Given tractions are solved one degree above the rule, as in a run.
         degree = planned + (scene.solve.mode == "traction")
-    sampled = _sampled(asked, plan, c, g, extent, degree)
-    return None if sampled is None else _in_si(scene, c, g, sampled)
+    return state, *_sampled(asked, plan, state, extent, degree)
 
 
 def _for_finite_elements(scene: Scene, c: float) -> Scene:
@@ -153,8 +173,7 @@ class _Work:
     space: Callable[[int], Any]
 
 
-def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree: int) -> Any:
-    """The state's sampled field over a, N/(2μ) and N/(2a), gathered on rank 0; None on the others."""
+def _sampled(scene: Scene, plan: Plan, state: _State, extent: float, degree: int) -> tuple[Any, Any]:
     with finite_elements_installed():
         from mpi4py import MPI
 
@@ -164,37 +183,37 @@ def _sampled(scene: Scene, plan: Plan, c: float, g: float, extent: float, degree
     comm, κ, kind = MPI.COMM_WORLD, solid_of(scene).κ, MESHES[scene.solve.mesh]
     space = Space(*shared_mesh(scene, plan, plan.cuts, comm), TAGS, kind.plane, degree)
     solve = _punch if scene.solve.mode == "contact" else _load
-    with solve(_Work(scene, plan, κ, lambda _: space), c, g) as (fields, weights):
-        return sample(space, κ, c, fields, weights, extent, degree).gathered(comm)
+    with solve(_Work(scene, plan, κ, lambda _: space), state) as (fields, weights):
+        return sample(space, κ, state.c, fields, weights, extent, degree), comm
 
 
 @contextmanager
-def _punch(work: _Work, c: float, g: float) -> Iterator[tuple[Any, NDArray]]:
+def _punch(work: _Work, state: _State) -> Iterator[tuple[Any, NDArray]]:
     """Fields of the rigid punch, and the state's weights."""
     from solvers.fem.punch import SlidingPunch
 
-    punch = SlidingPunch(work.space(0), work.κ, c, work.plan.solver)
+    punch = SlidingPunch(work.space(0), work.κ, state.c, work.plan.solver)
     try:
-        weights = punch.states(g).weights[0]  # the fields are complete after this
+        weights = punch.states(state.g).weights[0]  # the fields are complete after this
         yield punch.fields, weights
     finally:
         punch.destroy()
 
 
 @contextmanager
-def _load(work: _Work, c: float, g: float) -> Iterator[tuple[Any, NDArray]]:
+def _load(work: _Work, state: _State) -> Iterator[tuple[Any, NDArray]]:
     """Fields of the given tractions, and the state's weights."""
     from app.traction_mode import LoadAtSpeed
 
-    speed = LoadAtSpeed(work, c, 0)
+    speed = LoadAtSpeed(work, state.c, 0)
     try:
-        speed.prepare(np.array([g]))
-        yield speed.loaded.fields, np.array([1.0, g])
+        speed.prepare(np.array([state.g]))
+        yield speed.loaded.fields, np.array([1.0, state.g])
     finally:
         speed.destroy()
 
 
-def _in_si(scene: Scene, c: float, g: float, sampled: Any) -> StateField:
+def _in_si(scene: Scene, state: _State, sampled: Any) -> StateField:
     """Lengths in m, stresses in Pa, for the scene's load per depth."""
     solid, punch = solid_of(scene), scene.punch
     unit = punch.load / (2.0 * punch.half_width)
@@ -210,7 +229,7 @@ def _in_si(scene: Scene, c: float, g: float, sampled: Any) -> StateField:
         "maximum_shear": maximum_shear(σ["XX"], σ["YY"], σ["XY"]),
     }
     if "closed_form" in scene.solve.methods and has_closed_form(scene):
-        exact = FlatPunch(MovingFrame(solid.κ, c), g)
+        exact = FlatPunch(MovingFrame(solid.κ, state.c), state.g)
         data["sigma_error"] = unit * _error(exact, sampled.points, found)
     return StateField(punch.half_width * sampled.points, sampled.quads, data)
 

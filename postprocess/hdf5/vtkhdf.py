@@ -1,93 +1,108 @@
 """Fields on quadrilaterals as VTKHDF files, which ParaView opens.
 
-The file is put together in memory, where no disk can be full, and appears under its name when all of it
-is on the disk.
+The file grows piece by piece, so that no more than one needs to be in memory, and appears under its name
+when all of it is on the disk.
 """
 
-import io
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import Protocol
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from postprocess.disk import refused
+from postprocess.hdf5.patient import PatientFile
 
 #: Layout that VTK 9.1 knows.
 _VERSION = (1, 0)
 #: VTK's number of a quadrilateral.
 _QUAD = 9
+#: Rows of a dataset that lie together on the disk, at most.
+_TOGETHER = 2**16
 
 
-def write(
-    path: Path,
-    points: NDArray,
-    quads: NDArray,
-    point_data: Mapping[str, NDArray],
-    about: Mapping[str, tuple[str, str]],
-    cell_data: Mapping[str, NDArray] | None = None,
-) -> None:
-    """Write an unstructured grid of quadrilaterals; an earlier file of that name is replaced.
+class Piece(Protocol):
+    """A part of an unstructured grid of quadrilaterals.
+
+    Attributes:
+        points: positions, (n, 2).
+        quads: of the piece's points those of each quadrilateral in turn, (m, 4).
+        data: arrays at the points by name, (n,) or (n, 3); the same names in every piece.
+    """
+
+    points: NDArray
+    quads: NDArray
+    data: Mapping[str, NDArray]
+
+
+def write(path: Path, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:
+    """Write an unstructured grid; an earlier file of that name is replaced.
 
     Args:
         path: final name; ParaView knows the kind of file by the ending .hdf.
-        points: positions, (n, 2) or (n, 3).
-        quads: points of each quadrilateral in turn, (m, 4).
-        point_data: arrays by name, (n,) or (n, 3).
+        pieces: of the grid, one of them with a quadrilateral; the next is asked for when one is written.
         about: unit and long name of every array by name.
-        cell_data: arrays by name, (m,) or (m, 3).
 
     Raises:
         UnwritableArchive: the file system refused.
         KeyError: an array is not in ``about``.
     """
-    content = _content(points, quads, {"PointData": point_data, "CellData": cell_data or {}}, about)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    temporary, needed = path.with_name(f".{path.name}.{os.getpid()}.partial"), 0
     try:
-        with open(temporary, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
+        with PatientFile(temporary) as disk:
+            with h5py.File(disk, "w", libver=("earliest", "v110")) as file:
+                _fill(file.create_group("VTKHDF"), pieces, about)
+                file.flush()
+                needed = file.id.get_filesize()
+            if disk.refusal:
+                raise disk.refusal
+        with open(temporary, "rb") as written:
+            os.fsync(written.fileno())
         os.replace(temporary, path)
     except OSError as error:
-        raise refused(path, error, len(content)) from error
+        raise refused(path, error, needed) from error
     finally:
         with suppress(OSError):  # the folder itself may be what is wrong
             temporary.unlink()
 
 
-def _content(
-    points: NDArray,
-    quads: NDArray,
-    data: Mapping[str, Mapping[str, NDArray]],
-    about: Mapping[str, tuple[str, str]],
-) -> bytes:
-    """The file's bytes."""
-    n, m = len(points), len(quads)
-    memory = io.BytesIO()
-    with h5py.File(memory, "w", libver=("earliest", "v110")) as file:
-        root = file.create_group("VTKHDF")
-        root.attrs["Version"] = np.array(_VERSION, dtype=np.int64)
-        # VTK reads a text of fixed length only.
-        kind = b"UnstructuredGrid"
-        root.attrs.create("Type", kind, dtype=h5py.string_dtype("ascii", len(kind)))
-        for name, number in (
-            ("NumberOfPoints", n),
-            ("NumberOfCells", m),
-            ("NumberOfConnectivityIds", quads.size),
-        ):
-            root[name] = np.array([number], dtype=np.int64)
-        depth = np.zeros((n, 3 - points.shape[1]))
-        root["Points"] = np.column_stack([points, depth]).astype(np.float64)
-        root["Connectivity"] = quads.astype(np.int64).ravel()
-        root["Offsets"] = 4 * np.arange(m + 1, dtype=np.int64)
-        root["Types"] = np.full(m, _QUAD, dtype=np.uint8)
-        for group, arrays in data.items():
-            place = root.create_group(group)
-            for name, values in arrays.items():
-                place[name] = values
-                place[name].attrs["units"], place[name].attrs["long_name"] = about[name]
-    return memory.getvalue()
+def _fill(root: h5py.Group, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:
+    root.attrs["Version"] = np.array(_VERSION, dtype=np.int64)
+    # VTK reads a text of fixed length only.
+    kind = b"UnstructuredGrid"
+    root.attrs.create("Type", kind, dtype=h5py.string_dtype("ascii", len(kind)))
+    points = cells = 0
+    for piece in pieces:
+        if not len(piece.quads):
+            continue
+        n, m = len(piece.points), len(piece.quads)
+        _append(root, "Points", np.column_stack([piece.points, np.zeros(n)]).astype(np.float64))
+        _append(root, "Connectivity", points + piece.quads.astype(np.int64).ravel())
+        # A cell ends where the next begins; the first begins at 0.
+        ends = 4 * np.arange(cells + (cells > 0), cells + m + 1, dtype=np.int64)
+        _append(root, "Offsets", ends)
+        _append(root, "Types", np.full(m, _QUAD, dtype=np.uint8))
+        for name, values in piece.data.items():
+            dataset = _append(root, f"PointData/{name}", values)
+            dataset.attrs["units"], dataset.attrs["long_name"] = about[name]
+        points, cells = points + n, cells + m
+    sizes = {"NumberOfPoints": points, "NumberOfCells": cells, "NumberOfConnectivityIds": 4 * cells}
+    for name, number in sizes.items():
+        root[name] = np.array([number], dtype=np.int64)
+
+
+def _append(root: h5py.Group, name: str, values: NDArray) -> h5py.Dataset:
+    """Add rows to a dataset, which the first of them make."""
+    if name not in root:
+        rows = min(max(len(values), 1), _TOGETHER)
+        shape, chunks = (0, *values.shape[1:]), (rows, *values.shape[1:])
+        root.create_dataset(name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=chunks)
+    dataset = root[name]
+    start = len(dataset)
+    dataset.resize(start + len(values), axis=0)
+    dataset[start:] = values
+    return dataset

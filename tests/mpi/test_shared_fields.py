@@ -1,11 +1,12 @@
 """Run on one rank with the other tests and again under mpirun on two."""
 
+import h5py
 import numpy as np
 import pytest
 from conftest import HOME
 from mpi4py import MPI
 
-from app.fields import write_field
+from app.fields import state_field, write_field
 from app.scene import read
 from meshes.halfplane import MESHES
 from meshes.rings import TAGS, Refinement
@@ -41,7 +42,23 @@ def test_ranks_sample_together_what_one_samples(mesh, extent):
         np.testing.assert_allclose(other, one, rtol=1e-8, atol=1e-9 * np.abs(one).max())
 
 
-def test_rank_0_writes(tmp_path):
-    path = tmp_path / "state.hdf"
-    write_field(read(HOME / "scenes" / "tables4_5.toml"), 0, path, extent=2.0, degree=5)
-    assert path.exists() == (MPI.COMM_WORLD.rank == 0)
+def test_rank_0_writes_what_all_ranks_have(tmp_path):
+    path, scene = tmp_path / "state.hdf", read(HOME / "scenes" / "tables4_5.toml")
+    write_field(scene, 0, path, extent=2.0, degree=5)
+    whole = state_field(scene, 0, extent=2.0, degree=5)
+    assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)
+    if whole is None:
+        return
+    with h5py.File(path) as file:
+        root = file["VTKHDF"]
+        np.testing.assert_array_equal(root["Points"][:, :2], whole.points)
+        np.testing.assert_array_equal(root["Connectivity"][:].reshape(-1, 4), whole.quads)
+        np.testing.assert_array_equal(root["Offsets"], 4 * np.arange(len(whole.quads) + 1))
+        assert (root["NumberOfPoints"][0], root["NumberOfCells"][0]) == (
+            len(whole.points),
+            len(whole.quads),
+        )
+        assert set(root["PointData"]) == set(whole.data)
+        for name, values in whole.data.items():
+            scale = np.nanmax(np.abs(values))
+            np.testing.assert_allclose(root[f"PointData/{name}"], values, rtol=1e-6, atol=1e-8 * scale)

@@ -100,12 +100,15 @@ def run(case: Case, folder: Path) -> Figures:
     scene.write_text(text, encoding="utf-8")
     command = [str(HOME / "run.sh")] + (["-n", str(case.ranks)] if case.ranks > 1 else [])
     command += ["run", str(scene), "-o", str(archive), "--overwrite"]
-    measured = [_measure(command) for _ in range(REPEATS + 1)][1:]
+    measured = [wall_cpu_memory(command) for _ in range(REPEATS + 1)][1:]
     wall, cpu, memory = (median(column) for column in zip(*measured))
     return Figures(case.name, wall=wall, cpu=cpu, memory=memory, **_results(archive))
 
 
-def _measure(command: list[str], environment: dict[str, str] | None = None) -> tuple[float, float, float]:
+def wall_cpu_memory(
+    command: list[str], environment: dict[str, str] | None = None
+) -> tuple[float, float, float]:
+    """Wall and processor seconds of a command, and MB of its largest process."""
     started = time.perf_counter()
     process = subprocess.Popen(
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -156,7 +159,7 @@ def steps(folder: Path) -> str:
     found = []
     environment = os.environ | {"XDG_CACHE_HOME": str(folder / "cache")}
     for _ in range(2):  # cold, then warm
-        wall, _, _ = _measure(command, environment)
+        wall, _, _ = wall_cpu_memory(command, environment)
         with h5py.File(archive) as file:
             seconds = dict(zip(file["run/steps"].asstr()[()], file["run/seconds"][()]))
         found.append({"whole process": wall} | seconds)

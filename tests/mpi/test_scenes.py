@@ -1,0 +1,42 @@
+"""Every scene with its meshes decomposed over the ranks, against whole speeds on one rank each."""
+
+import numpy as np
+import pytest
+from conftest import HOME
+from mpi4py import MPI
+
+from app import plan
+from app.collector import Memory
+from app.plan import make_plan
+from app.run import compute
+from app.scene import read
+
+SCENES = {path.stem: read(path) for path in sorted((HOME / "scenes").glob("*.toml"))}
+#: Largest differences: relative of what a scene is run for, absolute of errors and fitted exponents, and
+#: of stresses over the median of their size, since they are derivatives.
+RESULTS, SMALL, STRESSES = 1e-9, 1e-8, 1e-7
+
+
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="needs two ranks")
+@pytest.mark.parametrize("name", [name for name, scene in SCENES.items() if make_plan(scene).fem])
+def test_a_decomposed_mesh_gives_what_one_rank_gives(name, monkeypatch):
+    found = []
+    for alone in (True, False):
+        monkeypatch.setattr(plan, "_share_speeds", lambda *_, alone=alone: alone)
+        found.append(Memory())
+        compute(SCENES[name], found[-1])
+    one, two = found
+    compared = [key for key in one if "/fem/" in key and not key.startswith("run/")]
+    assert bool(compared) == (MPI.COMM_WORLD.rank == 0)
+    for key in compared:
+        kind, quantity = key.split("/fem/")
+        if kind == "states" and quantity.startswith(("K_I", "normal", "tangential", "v0")):
+            unit = np.abs(one[key]).max()
+            np.testing.assert_allclose(two[key], one[key], atol=RESULTS * unit, rtol=0.0, err_msg=key)
+        elif kind == "states":
+            np.testing.assert_allclose(two[key], one[key], atol=SMALL, rtol=0.0, err_msg=key)
+        else:
+            unit = np.nanmedian(np.abs(one[key]))
+            np.testing.assert_allclose(
+                two[key], one[key], rtol=STRESSES, atol=STRESSES * unit, err_msg=key
+            )

@@ -17,10 +17,14 @@ def image(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
 
 
 def jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """∂x/∂t at places t (..., 2) as [..., component of x, component of t]."""
+    """∂x/∂t at places t (..., 2) as [..., component of x, component of t].
+
+    ``vertices`` are of one cell, (4, 2), or of one at each place, (..., 4, 2).
+    """
     a, b = t[..., :1], t[..., 1:]
-    by_a = (1 - b) * (vertices[1] - vertices[0]) + b * (vertices[3] - vertices[2])
-    by_b = (1 - a) * (vertices[2] - vertices[0]) + a * (vertices[3] - vertices[1])
+    v00, v10, v01, v11 = (vertices[..., i, :] for i in range(4))
+    by_a = (1 - b) * (v10 - v00) + b * (v11 - v01)
+    by_b = (1 - a) * (v01 - v00) + a * (v11 - v10)
     return np.stack([by_a, by_b], axis=-1)
 
 

@@ -17,6 +17,9 @@ from solvers.fem.space import Space
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
 
+#: Pairs of a cell and a point that are looked at together; keeps memory within some ten megabytes.
+_AT_ONCE = 10**6
+
 #: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
 #: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
 _SETTLED = 1e-8
@@ -77,21 +80,29 @@ class _Held:
 
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
-    found = [np.empty((0, 4))]
-    for cell, corners in enumerate(vertices):
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        slack = _SLACK * (high - low)
-        near = np.flatnonzero(np.all((low - slack <= x) & (x <= high + slack), axis=1))
-        t = _pull_back(corners, x[near])
-        inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
-        pairs = np.column_stack([near, np.full(len(near), cell), t])
-        found.append(pairs[inside])
-    pairs = np.concatenate(found)
-    return _Held(pairs[:, 0].astype(int), pairs[:, 1].astype(int), pairs[:, 2:])
+    cell, point = _near(vertices, x)
+    t = _pull_back(vertices[cell], x[point])
+    inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
+    return _Held(point[inside], cell[inside], t[inside])
+
+
+def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of a cell and a point within the smallest box around it."""
+    low, high = vertices.min(axis=1), vertices.max(axis=1)
+    slack = _SLACK * (high - low)
+    low, high = (low - slack)[:, None], (high + slack)[:, None]
+    found = [np.empty((2, 0), dtype=np.int64)]
+    cells = max(1, _AT_ONCE // max(len(x), 1))
+    for start in range(0, len(vertices), cells):
+        some = slice(start, start + cells)
+        cell, point = np.nonzero(np.all((low[some] <= x) & (x <= high[some]), axis=2))
+        found.append(np.stack([start + cell, point]))
+    cell, point = np.concatenate(found, axis=1)
+    return cell, point
 
 
 def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
-    """Places in the unit square of points x (n, 2), by Newton's method for the bilinear map.
+    """Places in the unit square of points x (n, 2) by cells (n, 4, 2): Newton's method for bilinear maps.
 
     NaN where that does not converge: the point is then far outside the cell.
     """
@@ -100,9 +111,9 @@ def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
     for _ in range(25):
         if not len(moving):
             break
-        at = t[moving]
-        rest = x[moving] - image(vertices, at)
-        step = np.linalg.solve(jacobian(vertices, at), rest[..., None])[..., 0]
+        at, corners = t[moving], vertices[moving]
+        rest = x[moving] - image(corners, at[:, None])[:, 0]
+        step = np.linalg.solve(jacobian(corners, at), rest[..., None])[..., 0]
         t[moving] = at + step
         size = np.maximum(1.0, np.abs(t[moving]).max(axis=1))
         moving = moving[~(np.abs(step).max(axis=1) < _SETTLED * size)]

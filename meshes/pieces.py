@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.rings import QuadMesh
+from meshes.rings import Pattern, QuadMesh
 
 
-def cut(pattern: QuadMesh, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
-    """A piece of the pattern with every cell cut into n x n.
+def cut(pattern: Pattern, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
+    """A piece of the pattern with every cell cut into n x n, its grading kept.
 
     Args:
         pattern: few quadrilaterals, the same for every part.
@@ -27,8 +27,10 @@ def cut(pattern: QuadMesh, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
     """
     fine = _Cut(pattern, n)
     points = fine.positions(_share(fine.size, part, parts))
-    cells = fine.cells(_share(len(pattern.cells), part, parts))
-    edges = {tag: fine.along(ends[_share(len(ends), part, parts)]) for tag, ends in pattern.edges.items()}
+    cells = fine.cells(_share(len(pattern.mesh.cells), part, parts))
+    edges = {
+        tag: fine.along(ends[_share(len(ends), part, parts)]) for tag, ends in pattern.mesh.edges.items()
+    }
     return QuadMesh(points, cells, edges)
 
 
@@ -36,48 +38,64 @@ def _share(count: int, part: int, parts: int) -> NDArray[np.int64]:
     return np.arange(count * part // parts, count * (part + 1) // parts)
 
 
+def _graded(growth: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a part of the cuts of an edge ends, over its length; the cuts grow by ``growth`` in all."""
+    even = growth == 1.0
+    q = np.where(even, 2.0, growth)
+    return np.where(even, part, (q**part - 1.0) / (q - 1.0))
+
+
 @dataclass(frozen=True)
 class _Cut:
     """Numbers and places of the vertices of a cut pattern."""
 
-    pattern: QuadMesh
+    pattern: Pattern
     n: int
 
+    @property
+    def _mesh(self) -> QuadMesh:
+        return self.pattern.mesh
+
     @cached_property
-    def _edges(self) -> NDArray[np.int64]:
-        """Ends of the pattern's edges, the lower number first, in order, (edges, 2)."""
-        sides = np.stack([self.pattern.cells, np.roll(self.pattern.cells, -1, axis=1)], axis=-1)
-        return np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0)
+    def _sides(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Ends of the pattern's edges, the lower number first, in order, (edges, 2); and their growth."""
+        cells, (along, across) = self._mesh.cells, self.pattern.growth.T
+        ends = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
+        growth = np.stack([along, across, 1.0 / along, 1.0 / across], axis=-1).ravel()
+        growth = np.where(ends[:, 0] < ends[:, 1], growth, 1.0 / growth)
+        edges, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
+        return edges, growth[first]
 
     @property
     def _first(self) -> tuple[int, int]:
         """The first number along an edge, and inside a cell."""
-        vertices = len(self.pattern.points)
-        return vertices, vertices + len(self._edges) * (self.n - 1)
+        vertices = len(self._mesh.points)
+        return vertices, vertices + len(self._sides[0]) * (self.n - 1)
 
     @property
     def size(self) -> int:
         """Vertices of the whole."""
-        return self._first[1] + len(self.pattern.cells) * (self.n - 1) ** 2
+        return self._first[1] + len(self._mesh.cells) * (self.n - 1) ** 2
 
     def positions(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Where the vertices with these numbers are, (len(numbers), 2); numbers are sorted."""
-        points, inner = self.pattern.points, self.n - 1
-        ends = np.searchsorted(numbers, self._first)
-        old, beside, inside = np.split(numbers, ends)
+        points, inner = self._mesh.points, self.n - 1
+        old, beside, inside = np.split(numbers, np.searchsorted(numbers, self._first))
         edge, step = np.divmod(beside - self._first[0], max(inner, 1))
+        edges, growth = self._sides
         # Exactly on the boundary: between equal coordinates nothing is rounded.
-        A, B = np.moveaxis(points[self._edges[edge]], 1, 0)
-        on_edges = A + ((step + 1) / self.n)[:, None] * (B - A)
+        A, B = np.moveaxis(points[edges[edge]], 1, 0)
+        on_edges = A + _graded(growth[edge], (step + 1) / self.n)[:, None] * (B - A)
         cell, place = np.divmod(inside - self._first[1], max(inner**2, 1))
-        a, b = ((i + 1)[:, None] / self.n for i in np.divmod(place, max(inner, 1)))
-        A, B, C, D = np.moveaxis(points[self.pattern.cells[cell]], 1, 0)
+        steps = np.stack(np.divmod(place, max(inner, 1)), axis=-1)
+        a, b = _graded(self.pattern.growth[cell], (steps + 1) / self.n).T[..., None]
+        A, B, C, D = np.moveaxis(points[self._mesh.cells[cell]], 1, 0)
         in_cells = (1 - a) * (1 - b) * A + a * (1 - b) * B + a * b * C + (1 - a) * b * D
         return np.concatenate([points[old], on_edges, in_cells])
 
     def cells(self, coarse: NDArray[np.int64]) -> NDArray[np.int64]:
         """Cells that these of the pattern are cut into, counterclockwise, (n² coarse, 4)."""
-        n, corners = self.n, self.pattern.cells[coarse]
+        n, corners = self.n, self._mesh.cells[coarse]
         lattice = np.empty((len(coarse), n + 1, n + 1), dtype=np.int64)
         sides = (lattice[:, :, 0], lattice[:, n, :], lattice[:, ::-1, n], lattice[:, 0, ::-1])
         for i, side in enumerate(sides):
@@ -94,8 +112,8 @@ class _Cut:
 
     def _numbers(self, ends: NDArray[np.int64]) -> NDArray[np.int64]:
         """Numbers of the vertices from one end of an edge to the other, (m, n + 1)."""
-        keys = self._edges @ [len(self.pattern.points), 1]
-        edge = np.searchsorted(keys, np.sort(ends, axis=1) @ [len(self.pattern.points), 1])
+        place = [len(self._mesh.points), 1]
+        edge = np.searchsorted(self._sides[0] @ place, np.sort(ends, axis=1) @ place)
         step = np.arange(self.n - 1)
         forward = (ends[:, 0] < ends[:, 1])[:, None]
         between = self._first[0] + (self.n - 1) * edge[:, None] + np.where(forward, step, step[::-1])

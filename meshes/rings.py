@@ -53,7 +53,21 @@ class QuadMesh:
     edges: dict[int, NDArray[np.int64]]
 
 
-def rectangle(refinement: Refinement, fan: bool = False) -> QuadMesh:
+@dataclass(frozen=True)
+class Pattern:
+    """Quadrilaterals and how they go on growing where they are cut.
+
+    Attributes:
+        mesh: the quadrilaterals.
+        growth: size at the far side of a cell over that at the near side, from its first vertex to the
+            second and from the second to the third, (cells, 2).
+    """
+
+    mesh: QuadMesh
+    growth: NDArray[np.float64]
+
+
+def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
     """The graded rectangle in the (ξ, η) plane.
 
     Args:
@@ -63,20 +77,20 @@ def rectangle(refinement: Refinement, fan: bool = False) -> QuadMesh:
             corner's right angle opens to a straight line.
     """
     half = np.pi / 2.0
-    corners = [_corner(half, refinement, fan)]
-    corners.append(_mirrored(corners[0]))
+    corner, growth = _corner(half, refinement, fan)
     ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
     η = np.linspace(-np.pi, 0.0, 2 * refinement.sectors + 1)
     columns = [
         [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
-    quads = np.concatenate([*corners, np.reshape(columns, (-1, 4, 2))])
+    quads = np.concatenate([corner, _mirrored(corner), np.reshape(columns, (-1, 4, 2))])
+    growth = np.concatenate([growth, 1.0 / growth, np.ones((len(columns), 2))])
     corners_of_all = quads.reshape(-1, 2)
     ξ_label, η_label = (_labels(values) for values in corners_of_all.T)
     keys = ξ_label * (η_label.max() + 1) + η_label
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     points, cells = corners_of_all[first], inverse.reshape(-1, 4)
-    return QuadMesh(points, cells, _tagged_edges(points, cells, ξ[-1]))
+    return Pattern(QuadMesh(points, cells, _tagged_edges(points, cells, ξ[-1])), growth)
 
 
 def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -91,8 +105,10 @@ def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
     return labels
 
 
-def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float64]:
-    """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2)."""
+def _corner(
+    size: float, refinement: Refinement, fan: bool
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2), (m, 2)."""
     sectors = refinement.sectors
     t = np.linspace(0.0, 1.0, sectors + 1)
     leg = np.concatenate(
@@ -104,17 +120,20 @@ def _corner(size: float, refinement: Refinement, fan: bool) -> NDArray[np.float6
         for outer, inner in pairwise(sizes)
         for i in range(2 * sectors)
     ]
+    rings = len(quads)
     if fan:
         rim = sizes[-1] * leg
         quads += [[0.0 * rim[0], *rim[2 * i : 2 * i + 3][::-1]] for i in range(sectors)]
-        return np.array(quads)
-    grid = sizes[-1] * t
-    quads += [
-        [(x0, -y0), (x0, -y1), (x1, -y1), (x1, -y0)]
-        for x0, x1 in pairwise(grid)
-        for y0, y1 in pairwise(grid)
-    ]
-    return np.array(quads)
+    else:
+        grid = sizes[-1] * t
+        quads += [
+            [(x0, -y0), (x0, -y1), (x1, -y1), (x1, -y0)]
+            for x0, x1 in pairwise(grid)
+            for y0, y1 in pairwise(grid)
+        ]
+    growth = np.ones((len(quads), 2))
+    growth[:rings, 1] = 1.0 / refinement.ratio
+    return np.array(quads), growth
 
 
 def _mirrored(quads: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from app.errors import BadInput, finite_elements_installed
 from app.plan import INSIDE, Plan, has_closed_form, make_plan
-from app.scene import Output, Scene
+from app.scene import Scene
+from app.sections import Output
 from app.states import enumerate_states, solid_of, speeds
 from meshes.halfplane import MESHES
 from meshes.refine import DEGREES, reach

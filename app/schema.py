@@ -5,7 +5,7 @@ from typing import Any
 import attrs
 from attrs import validators as is_
 
-from app.scene import SECTIONS
+from app.sections import SECTIONS
 
 _BOUNDS = {">": "exclusiveMinimum", ">=": "minimum", "<": "exclusiveMaximum", "<=": "maximum"}
 

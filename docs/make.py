@@ -128,8 +128,8 @@ def scene_page() -> str:
     import attrs
 
     from app.materials import LIBRARY
-    from app.scene import SECTIONS
     from app.schema import schema
+    from app.sections import SECTIONS
 
     known = {f"{name}.{field.name}" for name, kind in SECTIONS.items() for field in attrs.fields(kind)}
     stale = ({*_NOTES, *_CHOICES, *_CONSTANTS}) - known

@@ -84,7 +84,8 @@ def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
         [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
     quads = np.concatenate([corner, _mirrored(corner), np.reshape(columns, (-1, 4, 2))])
-    growth = np.concatenate([growth, 1.0 / growth, np.ones((len(columns), 2))])
+    # The mirrored cells' second and third vertices have changed places.
+    growth = np.concatenate([growth, growth ** [1.0, -1.0], np.ones((len(columns), 2))])
     corners_of_all = quads.reshape(-1, 2)
     ξ_label, η_label = (_labels(values) for values in corners_of_all.T)
     keys = ξ_label * (η_label.max() + 1) + η_label

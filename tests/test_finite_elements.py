@@ -16,6 +16,7 @@ from solvers.fem.distributed import distribute
 from solvers.fem.linear import Factor
 from solvers.fem.punch import SlidingPunch
 from solvers.fem.space import Space
+from solvers.fem.surface import SurfaceTrace
 from solvers.materials import MovingFrame
 from solvers.sie.closed_form import FlatPunch
 
@@ -207,6 +208,14 @@ def test_exponential_convergence_in_the_degree():
     decades_a_degree = -np.polyfit(degrees, np.log10(errors), 1)[0]
     assert decades_a_degree > 0.9
     assert errors[-1] < 1e-7
+
+
+def test_between_facets_the_right_one_counts_whatever_rounding_does():
+    s = np.array([[-1.0, 0.0], [1e-16, 2.0]])
+    trace = SurfaceTrace(s, np.abs(s)[..., None, None] * np.ones((2, 1)))
+    for at in (-1e-16, 0.0, 2e-16):
+        np.testing.assert_allclose(trace.derivative([at]), 1.0)
+    np.testing.assert_allclose(trace.derivative([-1e-6]), -1.0)
 
 
 def test_convergence_in_the_grading():

@@ -10,6 +10,9 @@ from petsc4py import PETSc
 from solvers.fem.lagrange import lagrange
 from solvers.fem.space import Space
 
+#: Distance over a facet's length within which a point counts as between it and the one on the left.
+_BETWEEN = 1e-9
+
 
 @dataclass(frozen=True)
 class SurfaceFacets:
@@ -55,9 +58,13 @@ class SurfaceTrace:
     u: NDArray[np.float64]
 
     def derivative(self, s: ArrayLike) -> NDArray[np.float64]:
-        """du/ds and dv/ds of every field at surface coordinates ``s``: (n, 2, fields)."""
+        """du/ds and dv/ds of every field at surface coordinates ``s``: (n, 2, fields).
+
+        Between two facets these jump; there they are those of the right one.
+        """
         s = np.asarray(s, dtype=float)
-        facet = np.searchsorted(self.s[:, 0], s, side="right") - 1
+        first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
+        facet = np.searchsorted(first, s, side="right") - 1
         facet = np.clip(facet, 0, len(self.s) - 1)
         start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
         _, by_node = lagrange(self._reference_nodes, (s - start) / length)

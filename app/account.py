@@ -49,18 +49,20 @@ def expense(scene: Scene, plan: Plan) -> str:
     """Estimated time and memory of a plan."""
     if not plan.refinement:
         return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
-    cells = len(MESHES[scene.solve.mesh].build(plan.refinement).cells)
-    highest = max(speed.degree for speed in plan.speeds)
+    mesh = MESHES[scene.solve.mesh].build(plan.refinement)
     if scene.solve.degree:
-        levels = [(cells * (plan.cuts // k) ** 2, scene.solve.degree) for k in (4, 2, 1)] * len(
-            plan.speeds
-        )
+        levels = [(scene.solve.degree, plan.cuts // k) for k in (4, 2, 1)] * len(plan.speeds)
     else:
-        levels = [(cells, p) for s in plan.speeds for p in range(s.degree - 2, s.degree + 1)]
-    speeds = sum(cost.seconds_of_level(*level) for level in levels) / ranks.size()
-    states = cost.STATE * plan.states
-    unknowns = _unknowns(scene, plan, highest)
-    memory = cost.bytes_of(cells * plan.cuts**2, unknowns, highest, CHUNK_NUMBERS)
+        levels = [(p, 1) for s in plan.speeds for p in range(s.degree - 2, s.degree + 1)]
+    seconds = sum(
+        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), plan.solver == "direct")
+        for p, k in levels
+    )
+    speeds, states = seconds / ranks.size(), cost.STATE * plan.states
+    highest = max(speed.degree for speed in plan.speeds)
+    together = 1 if plan.shared_speeds else ranks.size()
+    most = unknowns(mesh, plan.cuts * highest) / together
+    memory = cost.bytes_of(most, highest, CHUNK_NUMBERS)
     parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
     total = cost.START + speeds + states
     return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"

@@ -3,6 +3,7 @@
 Seconds of one core of some 3 GHz. They serve to tell a minute from an hour, not to compare machines.
 """
 
+from math import log2
 from pathlib import Path
 
 #: Seconds until a scene with finite elements meets its mesh: imports and start-up; and of one without.
@@ -10,18 +11,26 @@ START = 1.2
 START_WITHOUT_FEM = 0.4
 #: Seconds of a state: friction, closed form, recovery, archive.
 STATE = 1e-4
-#: Bytes of the libraries, of an unknown in three levels, and cells that are condensed at once.
-_LIBRARIES, _UNKNOWN, _AT_ONCE = 170e6, 1300.0, 64
+#: Bytes of the libraries, and cells that are condensed at once.
+_LIBRARIES, _AT_ONCE = 170e6, 64
+#: Right-hand sides of a level, and steps of conjugate gradients for each; both are refined.
+_SOLVES, _STEPS = 34, 25
 
 
-def seconds_of_level(cells: int, degree: int) -> float:
-    """Wall seconds of one degree at one speed: element matrices, factorisation, Krylov space."""
-    return cells * (2.0e-7 * degree**3.9 + 6.6e-6 * degree**1.6)
+def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> float:
+    """Wall seconds of one degree at one speed: element matrices, and either a factor or multigrid."""
+    matrices = cells * (2.0e-7 * degree**3.9 + 6.6e-6 * degree**1.6)
+    if direct:
+        return matrices + 3.5e-7 * unknowns**1.25
+    return matrices + unknowns * (2.4e-6 + _SOLVES * _STEPS * 1.6e-7)
 
 
-def bytes_of_factors(unknowns: int) -> float:
-    """Memory of the factors of three levels on all ranks together."""
-    return _UNKNOWN * unknowns
+def bytes_of_factors(unknowns: float) -> float:
+    """Memory of matrices, factors and fields of three levels, the finest with so many unknowns.
+
+    On all ranks together; measured at degree 2, a third less at degree 8.
+    """
+    return unknowns * (1200.0 + 55.0 * log2(max(unknowns, 2)))
 
 
 def free_memory() -> float:
@@ -33,7 +42,7 @@ def free_memory() -> float:
     return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
 
 
-def bytes_of(cells: int, unknowns: int, degree: int, chunk_numbers: int) -> float:
-    """Largest resident set of a rank."""
-    dense = 3 * 8 * min(cells, _AT_ONCE) * (2 * (degree + 1) ** 2) ** 2
-    return _LIBRARIES + _UNKNOWN * unknowns + dense + 3 * 8 * chunk_numbers
+def bytes_of(unknowns: float, degree: int, chunk_numbers: int) -> float:
+    """Largest resident set of a rank that has so many unknowns."""
+    dense = 3 * 8 * _AT_ONCE * (2 * (degree + 1) ** 2) ** 2
+    return _LIBRARIES + bytes_of_factors(unknowns) + dense + 3 * 8 * chunk_numbers

@@ -177,6 +177,8 @@ def _solver(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]
         return "direct"
     highest = max(speed.degree for speed in speeds)
     needed = cost.bytes_of_factors(unknowns_of(mesh, scene.solve.cuts * highest))
+    if _share_speeds(scene, mesh, speeds):
+        needed *= ranks.size()
     return "direct" if needed < 0.8 * cost.free_memory() else "multigrid"
 
 

@@ -1,11 +1,13 @@
 """Meshes cut finely at a fixed degree, and multigrid where a factor is too large."""
 
+import re
+
 import numpy as np
 import pytest
 from conftest import run_scene
 
 from app import cost
-from app.account import lines
+from app.account import expense, lines
 from app.changes import changed
 from app.errors import BadInput
 from app.fields import state_field
@@ -52,6 +54,22 @@ def test_multigrid_gives_what_a_factor_gives(solver):
         np.testing.assert_allclose(iterative[name], direct[name], rtol=1e-9)
     assert not direct["run/fem/iterations"].any()
     assert np.all(np.isin(iterative["run/fem/iterations"], np.arange(1, LIMIT)))
+
+
+@pytest.mark.parametrize(
+    "degree, cuts, measured",
+    [(2, 24, 0.889e9), (2, 64, 6.07e9), (4, 24, 3.04e9), (4, 32, 5.45e9), (8, 8, 1.24e9)],
+)
+def test_planned_memory_covers_what_runs_took(degree, cuts, measured):
+    """Largest resident sets of runs with one speed, on one rank."""
+    scene = parse(
+        changed(
+            TEXT,
+            {"solve.degree": degree, "solve.cuts": cuts, "solve.tolerance": 1e-4, "motion.c": 0.0},
+        )
+    )
+    planned = float(re.search(r"and (\S+) GB a rank", expense(scene, make_plan(scene)))[1]) * 1e9
+    assert 0.95 * measured < planned < 1.6 * measured
 
 
 def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):

@@ -54,15 +54,15 @@ def expense(scene: Scene, plan: Plan) -> str:
         levels = [(scene.solve.degree, plan.cuts // k) for k in (4, 2, 1)] * len(plan.speeds)
     else:
         levels = [(p, 1) for s in plan.speeds for p in range(s.degree - 2, s.degree + 1)]
+    direct = plan.solver == "direct"
     seconds = sum(
-        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), plan.solver == "direct")
-        for p, k in levels
+        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct) for p, k in levels
     )
     speeds, states = seconds / ranks.size(), cost.STATE * plan.states
     highest = max(speed.degree for speed in plan.speeds)
     together = 1 if plan.shared_speeds else ranks.size()
     most = unknowns(mesh, plan.cuts * highest) / together
-    memory = cost.bytes_of(most, highest, CHUNK_NUMBERS)
+    memory = cost.bytes_of(most, highest, direct, CHUNK_NUMBERS)
     parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
     total = cost.START + speeds + states
     return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"

@@ -25,12 +25,12 @@ def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> fl
     return matrices + unknowns * (2.4e-6 + _SOLVES * _STEPS * 1.6e-7)
 
 
-def bytes_of_factors(unknowns: float) -> float:
-    """Memory of matrices, factors and fields of three levels, the finest with so many unknowns.
+def bytes_of_levels(unknowns: float, direct: bool) -> float:
+    """Memory of matrices, factors or multigrid, and fields of three levels, on all ranks together.
 
-    On all ranks together; measured at degree 2, a third less at degree 8.
+    Measured at degree 2 with so many unknowns on the finest level; a third less at degree 8.
     """
-    return unknowns * (1200.0 + 55.0 * log2(max(unknowns, 2)))
+    return unknowns * (1200.0 + 55.0 * log2(max(unknowns, 2)) if direct else 1700.0)
 
 
 def free_memory() -> float:
@@ -42,7 +42,7 @@ def free_memory() -> float:
     return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
 
 
-def bytes_of(unknowns: float, degree: int, chunk_numbers: int) -> float:
+def bytes_of(unknowns: float, degree: int, direct: bool, chunk_numbers: int) -> float:
     """Largest resident set of a rank that has so many unknowns."""
     dense = 3 * 8 * _AT_ONCE * (2 * (degree + 1) ** 2) ** 2
-    return _LIBRARIES + bytes_of_factors(unknowns) + dense + 3 * 8 * chunk_numbers
+    return _LIBRARIES + bytes_of_levels(unknowns, direct) + dense + 3 * 8 * chunk_numbers

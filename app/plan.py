@@ -129,10 +129,18 @@ def make_plan(scene: Scene) -> Plan:
                 f"{truncation(name, tolerance):.1g} (relative, with friction), more than the "
                 f'tolerance {tolerance:g}; use mesh = "confocal" or "graded"'
             )
+    solver = _solver(scene, mesh, speed_plans, mixed)
+    if mesh:
+        needed, free = _memory(scene, mesh, speed_plans, solver == "direct"), cost.free_memory()
+        if needed > free:
+            warnings.append(
+                f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
+                f"{free / 1e9:.2g} GB free: use fewer cuts, a larger tolerance, or more machines"
+            )
     return Plan(
         count, closed, fem, contact and "surface" in asked, contact and "interior" in asked,
-        surface_grid(), points, mixed, mesh, scene.solve.cuts, _solver(scene, mesh, speed_plans, mixed),
-        speed_plans, _share_speeds(scene, mesh, speed_plans),
+        surface_grid(), points, mixed, mesh, scene.solve.cuts, solver, speed_plans,
+        _share_speeds(scene, mesh, speed_plans),
         tuple(_skipped(scene, contact, closed, mesh)), tuple(warnings),
     )  # fmt: skip
 
@@ -175,11 +183,16 @@ def _solver(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]
         return wanted
     if mesh is None:
         return "direct"
-    highest = max(speed.degree for speed in speeds)
-    needed = cost.bytes_of_factors(unknowns_of(mesh, scene.solve.cuts * highest))
-    if _share_speeds(scene, mesh, speeds):
-        needed *= ranks.size()
+    needed = _memory(scene, mesh, speeds, direct=True)
     return "direct" if needed < 0.8 * cost.free_memory() else "multigrid"
+
+
+def _memory(scene: Scene, mesh: Refinement, speeds: tuple[SpeedPlan, ...], direct: bool) -> float:
+    """Bytes of the linear systems on all ranks together."""
+    size = unknowns_of(mesh, scene.solve.cuts * max(speed.degree for speed in speeds))
+    return cost.bytes_of_levels(size, direct) * (
+        ranks.size() if _share_speeds(scene, mesh, speeds) else 1
+    )
 
 
 def _share_speeds(scene: Scene, mesh: Refinement | None, speeds: tuple[SpeedPlan, ...]) -> bool:

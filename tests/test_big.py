@@ -76,12 +76,23 @@ def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     scene = parse(changed(TEXT, {"solve.degree": 2, "solve.cuts": 64}))
     monkeypatch.setattr(cost, "free_memory", lambda: 64e9)
     assert make_plan(scene).solver == "direct"
-    monkeypatch.setattr(cost, "free_memory", lambda: 1e9)
+    monkeypatch.setattr(cost, "free_memory", lambda: 6e9)
     plan = make_plan(scene)
-    assert plan.solver == "multigrid"
+    assert plan.solver == "multigrid" and not plan.warnings
     assert any(
         "conjugate gradients" in line and "half and a quarter" in line for line in lines(scene, plan)
     )
+
+
+def test_memory_that_is_not_there_is_warned_of(monkeypatch):
+    monkeypatch.setattr(cost, "free_memory", lambda: 3e9)
+    for solver in ("direct", "auto", "boomeramg"):
+        scene = parse(changed(TEXT, {"solve.degree": 2, "solve.cuts": 64, "solve.solver": solver}))
+        assert any(
+            re.search(r"need about \S+ GB, of which this machine has 3 GB free", warning)
+            for warning in make_plan(scene).warnings
+        )
+    assert not make_plan(parse(TEXT)).warnings
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,9 @@ CASES = [
     ("uniform", 2, (12, 24, 48, 72)),
     ("uniform", 4, (6, 12, 24)),
     ("confocal", 2, (12, 24, 48, 64)),
-    ("confocal", 4, (6, 12, 24)),
+    ("confocal", 4, (6, 12, 24, 32)),
+    ("graded", 2, (12, 24, 44)),
+    ("graded", 4, (6, 12)),
 ]
 HEAD = """\
 | mesh | degree | unknowns | c | solver | steps | set-up (s) | solve (s) | peak so far (MB) |

@@ -2,9 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
 
-import numpy as np
 from petsc4py import PETSc
 
 from solvers.errors import SolveError
@@ -133,16 +131,6 @@ class Factor:
         """Free the factor's memory now; petsc4py would wait for a collective garbage collection."""
         for held in (self._mumps, self._ksp, self._residual, self.A):
             held.destroy()
-
-
-def largest(x: PETSc.Vec) -> float:
-    """Largest absolute entry over all ranks."""
-    return float(x.norm(PETSc.NormType.NORM_INFINITY))
-
-
-def array(x: PETSc.Vec) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Entries owned by this rank, a view."""
-    return x.getArray(readonly=True)
 
 
 @contextmanager

@@ -53,7 +53,7 @@ class PunchAtSpeed:
         Args:
             g: the speed's values of σ_XY/σ_YY, sorted.
         """
-        plan, fixed = self.run.plan, self.run.scene.solve.degree is not None
+        plan, fixed, self._g = self.run.plan, self.run.scene.solve.degree is not None, g
         for step in (2, 1, 0):
             if fixed:
                 self._add_level(self.degree, plan.cuts >> step)
@@ -69,10 +69,6 @@ class PunchAtSpeed:
             self._add_level(self.degree)
             self._measure(probes)
         punch = self.levels[-1].punch
-        # Every basis is complete before traces are taken, and the same whatever states are still to do.
-        for first in range(0, len(g), plan.chunk):
-            for level in self.levels:
-                level.punch.states(g[first : first + plan.chunk])
         self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
 
     def results(self, g: NDArray) -> dict[str, NDArray]:
@@ -117,10 +113,15 @@ class PunchAtSpeed:
             level.punch.destroy()
 
     def _add_level(self, degree: int, cuts: int = 1) -> None:
+        for level in self.levels[-1:]:
+            level.punch.release()  # makes room for the next factor
         space = self.run.space(degree, cuts)
         negligible = min(NEGLIGIBLE * self.run.scene.solve.tolerance, NEGLIGIBLE_MOST)
         punch = SlidingPunch(space, self.frame.κ, self.frame.c, self.run.plan.solver, negligible)
         recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.plan.grid)
+        # The basis is complete before traces are taken, and the same whatever states are still to do.
+        for first in range(0, len(self._g), self.run.plan.chunk):
+            punch.states(self._g[first : first + self.run.plan.chunk])
         self.levels.append(Level(punch, recovery))
         if len(self.levels) > 3:
             old = self.levels.pop(0).punch

@@ -26,11 +26,11 @@ def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> fl
 
 
 def bytes_of_levels(unknowns: float, direct: bool) -> float:
-    """Memory of matrices, factors or multigrid, and fields of three levels, on all ranks together.
+    """Memory of matrices, a factor or multigrid, and fields, on all ranks together.
 
-    Measured at degree 2 with so many unknowns on the finest level; a third less at degree 8.
+    Measured at degree 2 with so many unknowns on the finest level; a fourth less at degree 8.
     """
-    return unknowns * (1200.0 + 55.0 * log2(max(unknowns, 2)) if direct else 1700.0)
+    return unknowns * (900.0 + 48.0 * log2(max(unknowns, 2)) if direct else 1400.0)
 
 
 def free_memory() -> float:

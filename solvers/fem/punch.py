@@ -102,6 +102,11 @@ class SlidingPunch:
         scale = v0[:, None]
         return ContactStates(g, scale * weights, scale * normal, scale * tangential, v0)
 
+    def release(self) -> None:
+        """Free factor and fields; states that were asked for before can be asked for again."""
+        self._complete = True
+        self.destroy()
+
     def destroy(self) -> None:
         """Free factor and fields."""
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):

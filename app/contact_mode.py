@@ -53,12 +53,12 @@ class PunchAtSpeed:
         Args:
             g: the speed's values of σ_XY/σ_YY, sorted.
         """
-        plan, fixed, self._g = self.run.plan, self.run.scene.solve.degree is not None, g
+        plan, fixed = self.run.plan, self.run.scene.solve.degree is not None
         for step in (2, 1, 0):
             if fixed:
-                self._add_level(self.degree, plan.cuts >> step)
+                self._add_level(g, self.degree, plan.cuts >> step)
             else:
-                self._add_level(self.degree - step)
+                self._add_level(g, self.degree - step)
         probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
         tolerance = self.run.scene.solve.tolerance
         self._measure(probes)
@@ -66,7 +66,7 @@ class PunchAtSpeed:
         enough = max(tolerance, 1.1 * self._cut(probes).max())
         while not fixed and self.degree < DEGREES[1] and self._estimates(probes).max() > enough:
             self.degree += 1
-            self._add_level(self.degree)
+            self._add_level(g, self.degree)
             self._measure(probes)
         punch = self.levels[-1].punch
         self.displacement = Displacement(self.frame, punch.space, punch.fields, plan)
@@ -112,7 +112,7 @@ class PunchAtSpeed:
         for level in self.levels:
             level.punch.destroy()
 
-    def _add_level(self, degree: int, cuts: int = 1) -> None:
+    def _add_level(self, g: NDArray, degree: int, cuts: int = 1) -> None:
         for level in self.levels[-1:]:
             level.punch.release()  # makes room for the next factor
         space = self.run.space(degree, cuts)
@@ -120,8 +120,8 @@ class PunchAtSpeed:
         punch = SlidingPunch(space, self.frame.κ, self.frame.c, self.run.plan.solver, negligible)
         recovery = contact_recovery(space.contact.s, degree, space.plane, self.run.plan.grid)
         # The basis is complete before traces are taken, and the same whatever states are still to do.
-        for first in range(0, len(self._g), self.run.plan.chunk):
-            punch.states(self._g[first : first + self.run.plan.chunk])
+        for first in range(0, len(g), self.run.plan.chunk):
+            punch.states(g[first : first + self.run.plan.chunk])
         self.levels.append(Level(punch, recovery))
         if len(self.levels) > 3:
             old = self.levels.pop(0).punch

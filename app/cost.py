@@ -13,7 +13,7 @@ START_WITHOUT_FEM = 0.4
 STATE = 1e-4
 #: Bytes of the libraries, and cells that are condensed at once.
 _LIBRARIES, _AT_ONCE = 170e6, 64
-#: Right-hand sides of a level, and steps of conjugate gradients for each; both are refined.
+#: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.
 _SOLVES, _STEPS = 34, 25
 
 

@@ -32,7 +32,7 @@ def test_stubs_of_a_killed_run_are_swept(cache):
     started = time.monotonic()
     done = command("run", SCENE, "-o", cache / "two.h5")
     assert done.returncode == 0, done.stderr
-    assert time.monotonic() - started < 10.0 * len(compiled)
+    assert time.monotonic() - started < 10.0
 
 
 def test_no_compiler(cache, monkeypatch):

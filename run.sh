@@ -8,7 +8,7 @@
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
-home=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+home=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 # Another Python, with dolfinx of its own, and the mpirun beside it; nothing is installed for that one.
 python=${GALINX_PYTHON:-/usr/bin/python3}
 mpirun=mpirun
@@ -52,6 +52,10 @@ set_up() {
 }
 
 export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
+# How messages name this command: through bin/galinx it is called galinx.
+GALINX_COMMAND=${0##*/}
+[ "$GALINX_COMMAND" != run.sh ] || GALINX_COMMAND=./run.sh
+export GALINX_COMMAND
 # One BLAS thread a rank: more are slower at these sizes.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
@@ -109,6 +113,7 @@ fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
 if [ -n "$ranks" ]; then
-  on_ranks "$ranks" "$python" -m app "$@"
+  on_ranks "$ranks" "$python" -P -m galinx "$@"
 fi
-exec "$python" -m app "$@"
+# -P: no file of the current folder is taken for a library.
+exec "$python" -P -m galinx "$@"

@@ -8,11 +8,12 @@ from typing import NoReturn
 
 import click
 
-from app import __version__, errors, ranks
-from app.commands import begin, compute, look
-from app.errors import BadInput, MachineFailure
-from postprocess.errors import UnreadableArchive, UnwritableArchive
-from solvers.errors import CompilerError, MeshError, SolveError
+from galinx import __version__
+from galinx.app import errors, ranks
+from galinx.app.commands import begin, compute, look
+from galinx.app.errors import BadInput, MachineFailure
+from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
+from galinx.solvers.errors import CompilerError, MeshError, SolveError
 
 #: Failures whose message says all; others show where they happened.
 _FAILURES = (

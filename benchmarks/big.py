@@ -9,15 +9,15 @@ import time
 
 from mpi4py import MPI
 
-from meshes.halfplane import MESHES
-from meshes.refine import refinement
-from meshes.rings import TAGS
-from solvers.fem.clock import Clock
-from solvers.fem.distributed import distribute
-from solvers.fem.linear import Factor
-from solvers.fem.multigrid import Multigrid, available
-from solvers.fem.punch import hold
-from solvers.fem.space import Space
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.refine import refinement
+from galinx.meshes.rings import TAGS
+from galinx.solvers.fem.clock import Clock
+from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.multigrid import Multigrid, available
+from galinx.solvers.fem.punch import hold
+from galinx.solvers.fem.space import Space
 
 #: Kolosov's constant of ν = 0.25 in plane strain.
 KAPPA = 2.0
@@ -56,7 +56,7 @@ def main() -> None:
         for cuts in all_cuts:
             kind = MESHES[name]
             cells = kind.build(refinement(name, 1e-6, 1.0), cuts, comm.rank, comm.size)
-            space = Space(*distribute(cells, comm), TAGS, kind.plane, degree)
+            space = Space(*distribute(cells, comm), TAGS, kind.chart, degree)
             if space.size > most:
                 continue
             for c in (0.0, 0.9):

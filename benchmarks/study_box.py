@@ -11,19 +11,19 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from app.collector import Memory
-from app.run import compute
-from app.scene import parse
-from meshes.gmsh_model import through_gmsh
-from meshes.halfplane import MESHES, check_cells
-from meshes.refine import refinement
-from meshes.rings import TAGS, QuadMesh, Refinement
-from postprocess.pressure import contact_recovery, from_moments
-from solvers.fem.distributed import distribute
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
-from solvers.materials import MovingFrame
-from solvers.sie.closed_form import FlatPunch
+from galinx.app.run.collector import Memory
+from galinx.app.run.compute import compute
+from galinx.app.scene.scene import parse
+from galinx.meshes.gmsh_model import through_gmsh
+from galinx.meshes.halfplane import MESHES, check_cells
+from galinx.meshes.refine import refinement
+from galinx.meshes.rings import TAGS, QuadMesh, Refinement
+from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Elements of the study's model.
 ELEMENTS = 145_106
@@ -54,11 +54,11 @@ def block() -> QuadMesh:
 
 def study() -> tuple[float, int, int]:
     """Error of K_I, cells and unknowns of the study's size."""
-    pattern, plane = block(), MESHES["box"].plane
+    pattern, chart = block(), MESHES["box"].chart
     check_cells(pattern)
-    space = Space(*distribute(through_gmsh(pattern), MPI.COMM_SELF), TAGS, plane, 2)
+    space = Space(*distribute(through_gmsh(pattern), MPI.COMM_SELF), TAGS, chart, 2)
     punch = SlidingPunch(space, 2.0, 0.0)
-    recovery = contact_recovery(space.contact.s, 2, plane, np.array([0.0]))
+    recovery = contact_recovery(space.contact.s, 2, chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, 0.0), np.array([G]))
     pressure = from_moments(punch.states(G).normal @ recovery.moments, local.α, local.β)
     punch.destroy()

@@ -106,7 +106,7 @@ def commands_page() -> str:
     """Every command: what it does, usage, example, options."""
     import click
 
-    from app.cli import cli
+    from galinx.app.cli import cli
 
     parts = [_COMMANDS]
     for name, command in cli.commands.items():
@@ -127,9 +127,9 @@ def scene_page() -> str:
     """Every section and key of a scene, and the known materials."""
     import attrs
 
-    from app.materials import LIBRARY
-    from app.schema import schema
-    from app.sections import SECTIONS
+    from galinx.app.scene.materials import LIBRARY
+    from galinx.app.scene.schema import schema
+    from galinx.app.scene.sections import SECTIONS
 
     known = {f"{name}.{field.name}" for name, kind in SECTIONS.items() for field in attrs.fields(kind)}
     stale = ({*_NOTES, *_CHOICES, *_CONSTANTS}) - known
@@ -150,7 +150,7 @@ def scene_page() -> str:
 
 def schema_text() -> str:
     """The JSON schema of scenes as ``./run.sh schema`` prints it."""
-    from app.schema import schema
+    from galinx.app.scene.schema import schema
 
     return json.dumps(schema(), ensure_ascii=False, indent=1) + "\n"
 

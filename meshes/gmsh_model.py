@@ -4,7 +4,7 @@ import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.rings import TAGS, QuadMesh
+from galinx.meshes.rings import TAGS, QuadMesh
 
 _LINE, _QUADRANGLE = 1, 3  # gmsh's element types
 

@@ -1,6 +1,6 @@
 """Meshes of the half-plane under a flat punch, by name.
 
-One row of ``MESHES`` is a mesh: the plane it lives in, and how the ring pattern is laid into it.
+One row of ``MESHES`` is a mesh: the chart it is drawn in, and how the ring pattern is laid into it.
 """
 
 from collections.abc import Callable
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.pieces import cut
-from meshes.planes import Confocal, Physical
-from meshes.rings import QuadMesh, Refinement, rectangle
+from galinx.meshes.charts import Confocal, Physical
+from galinx.meshes.pieces import cut
+from galinx.meshes.rings import QuadMesh, Refinement, rectangle
 
 #: Width and depth of the study's block over the half-width: l_p/W = 0.01, l_p/H = 0.02, l_p = 2a.
 BOX_WIDTH, BOX_DEPTH = 200.0, 100.0
@@ -22,12 +22,12 @@ class MeshKind:
     """A way to mesh the half-plane.
 
     Attributes:
-        plane: where the mesh lives.
-        place: puts points (n, 2) of the pattern with a refinement into that plane.
-        fan: what fills the innermost squares of the pattern, see :func:`meshes.rings.rectangle`.
+        chart: where the mesh is drawn.
+        place: puts points (n, 2) of the pattern with a refinement into that chart.
+        fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
     """
 
-    plane: Confocal | Physical
+    chart: Confocal | Physical
     place: Callable[[NDArray, Refinement], NDArray]
     fan: bool
 
@@ -103,4 +103,4 @@ def edges(kind: MeshKind, mesh: QuadMesh, points: int = 17) -> NDArray[np.float6
     first, last = np.unique(np.sort(sides, axis=1), axis=0).T
     t = np.linspace(0.0, 1.0, points)[:, None]
     lines = (1.0 - t) * mesh.points[first][:, None] + t * mesh.points[last][:, None]
-    return kind.plane.to_physical(lines.reshape(-1, 2)).reshape(-1, points, 2)
+    return kind.chart.to_physical(lines.reshape(-1, 2)).reshape(-1, points, 2)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.rings import Pattern, QuadMesh
+from galinx.meshes.rings import Pattern, QuadMesh
 
 
 def cut(pattern: Pattern, n: int, part: int = 0, parts: int = 1) -> QuadMesh:

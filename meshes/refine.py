@@ -2,8 +2,8 @@
 
 from math import ceil, exp, log, log10, pi, sqrt
 
-from meshes.halfplane import BOX_DEPTH
-from meshes.rings import Refinement
+from galinx.meshes.halfplane import BOX_DEPTH
+from galinx.meshes.rings import Refinement
 
 #: Ratio of ring sizes in the (ξ, η) plane by mesh. Straight cells in the physical plane need gentler
 #: rings: a ratio t there is t² in distance.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.rings import QuadMesh
+from galinx.meshes.rings import QuadMesh
 
 #: Part of every key; raised when what is kept, or how it is made, changes.
 _FORMAT = 1
@@ -33,7 +33,7 @@ def obtain(pattern: QuadMesh) -> QuadMesh:
     kept = _load(_path(pattern))
     if kept:
         return kept
-    from meshes.gmsh_model import through_gmsh  # a slow import, for nothing if the mesh is kept
+    from galinx.meshes.gmsh_model import through_gmsh  # a slow import, for nothing if the mesh is kept
 
     mesh = through_gmsh(pattern)
     _keep(_path(pattern), mesh)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from postprocess import compare
-from postprocess.fields import FIELDS
-from postprocess.hdf5 import archive
+from galinx.postprocess import compare
+from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.quantities import FIELDS
 
 #: States looked at together.
 _ROWS = 1000

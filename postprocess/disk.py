@@ -5,7 +5,7 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
-from postprocess.errors import UnwritableArchive
+from galinx.postprocess.errors import UnwritableArchive
 
 
 def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchive:

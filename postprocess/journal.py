@@ -18,9 +18,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from postprocess.compare import Comparison
-from postprocess.disk import refused
-from postprocess.errors import ArchiveInUse, LeftOver
+from galinx.postprocess.compare import Comparison
+from galinx.postprocess.disk import refused
+from galinx.postprocess.errors import ArchiveInUse, LeftOver
 
 
 @dataclass(frozen=True)

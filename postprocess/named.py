@@ -4,7 +4,7 @@ from typing import Any
 
 import xarray
 
-from postprocess.fields import FIELDS
+from galinx.postprocess.quantities import FIELDS
 
 #: What tells states apart: coordinates, in the order of an archive.
 PARAMETERS = ("c", "mu_c", "sigma0_over_load", "delta", "motion", "X_over_L")

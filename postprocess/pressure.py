@@ -128,7 +128,7 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
 
 
 def contact_recovery(
-    s: NDArray, degree: int, plane: Any, r: NDArray, farthest: float = 1e-3
+    s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3
 ) -> ContactRecovery:
     """Maps for the contact nodes of a mesh.
 
@@ -139,7 +139,7 @@ def contact_recovery(
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        plane: the mesh's plane, see :class:`solvers.fem.plane.Plane`.
+        chart: the mesh's chart, see :class:`galinx.solvers.fem.chart.Chart`.
         r: positions X/a of the raw pressure.
         farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
             two at least: the innermost cannot follow the singularity and disturb their neighbours,
@@ -151,15 +151,15 @@ def contact_recovery(
     nodes = (s[facets[0]] - start[0]) / length[0]
 
     inside = np.abs(r) < 1.0
-    at = plane.surface_coordinate(r[inside])
+    at = chart.surface_coordinate(r[inside])
     facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
     values = _lagrange(nodes, (at - start[facet]) / length[facet])
     raw = np.full((len(s), len(r)), np.nan)
     raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
-    raw[:, inside] /= plane.surface_stretch(at)
+    raw[:, inside] /= chart.surface_stretch(at)
 
     t = (np.polynomial.legendre.leggauss(degree)[0] + 1.0) / 2.0
-    d_left, d_right, stretch = plane.under_punch(
+    d_left, d_right, stretch = chart.under_punch(
         start[:, None] - s[0] + length[:, None] * t,
         s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
     )
@@ -169,7 +169,7 @@ def contact_recovery(
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
         used = slice(min(last // 2, last - 2), last)
         edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
-    return ContactRecovery(chebyshev(plane.surface_position(s)), raw, tuple(edges))
+    return ContactRecovery(chebyshev(chart.surface_position(s)), raw, tuple(edges))
 
 
 def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:

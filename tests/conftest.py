@@ -14,7 +14,7 @@ HOME = Path(__file__).parent.parent
 @pytest.fixture(scope="session")
 def published():
     """The study's printed tables."""
-    return json.loads((HOME / "app" / "published_tables.json").read_text(encoding="utf-8"))
+    return json.loads((HOME / "app" / "study" / "published_tables.json").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="session")
@@ -32,9 +32,9 @@ def tables_run():
 
 def run_scene(name, *changes):
     """Compute a scene of scenes/, its text changed by (old, new) pairs first."""
-    from app.collector import Memory
-    from app.run import compute
-    from app.scene import parse
+    from galinx.app.run.collector import Memory
+    from galinx.app.run.compute import compute
+    from galinx.app.scene.scene import parse
 
     text = (HOME / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
     for old, new in changes:

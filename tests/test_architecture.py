@@ -11,11 +11,11 @@ ONE_PLACE = {
     "gmsh": {"meshes/gmsh_model.py"},
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "solvers/fem/adapter.py"},
-    "matplotlib": {"postprocess/figures/", "app/drawings.py"},
+    "matplotlib": {"postprocess/figures/", "app/results/drawings.py"},
     "jinja2": {"postprocess/page.py"},
-    "xarray": {"postprocess/named.py", "app/result.py"},
-    "tomlkit": {"app/changes.py"},
-    "pint": {"app/quantities.py"},
+    "xarray": {"postprocess/named.py", "app/results/result.py"},
+    "tomlkit": {"app/scene/changes.py"},
+    "pint": {"app/scene/units.py"},
 }
 
 
@@ -23,9 +23,9 @@ def imports(path):
     """Modules that a file imports, wherever in it."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            yield from (alias.name.removeprefix("galinx.") for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
+            yield node.module.removeprefix("galinx.")
 
 
 FILES = [path for room in ROOMS for path in sorted((HOME / room).rglob("*.py"))]

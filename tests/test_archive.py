@@ -4,8 +4,8 @@ import h5py
 import numpy as np
 import pytest
 
-from postprocess.errors import UnreadableArchive, UnwritableArchive
-from postprocess.hdf5 import archive
+from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
+from galinx.postprocess.hdf5 import archive
 
 DATA = {
     "scene/text": "title = 'σ'\n",

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from conftest import run_scene
 
-from app import cost
-from app.account import expense, lines
-from app.changes import changed
-from app.errors import BadInput
-from app.fields import state_field
-from app.plan import make_plan
-from app.scene import parse
-from app.templates import templates
-from meshes.halfplane import MESHES
-from meshes.refine import refinement
-from solvers.fem.multigrid import LIMIT, available
+from galinx.app.errors import BadInput
+from galinx.app.plan import cost
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.words import expense, lines
+from galinx.app.results.paraview import state_field
+from galinx.app.scene.changes import changed
+from galinx.app.scene.scene import parse
+from galinx.app.scene.templates import templates
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.refine import refinement
+from galinx.solvers.fem.multigrid import LIMIT, available
 
 TEXT = templates()["tables4_5"].text
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from conftest import HOME, command
 
-from app.changes import changed, from_words
-from app.errors import BadInput
-from app.materials import LIBRARY
-from app.scene import parse, read
-from app.states import solid_of
-from app.templates import templates
+from galinx.app.errors import BadInput
+from galinx.app.plan.states import solid_of
+from galinx.app.scene.changes import changed, from_words
+from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.scene import parse, read
+from galinx.app.scene.templates import templates
 
 SCENE = HOME / "scenes" / "tables4_5.toml"
 
@@ -56,7 +56,7 @@ def test_the_archive_holds_the_changed_scene(tmp_path):
     assert done.returncode == 0, done.stderr
     shown = json.loads(command("show", tmp_path / "a.h5", "--json").stdout)
     assert {state["mu_c"] for state in shown["states"]} == {0.25}
-    from postprocess.hdf5.archive import read as read_archive
+    from galinx.postprocess.hdf5.archive import read as read_archive
 
     data, _ = read_archive(tmp_path / "a.h5")
     assert "mu_c = 0.25" in data["scene/text"]

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from conftest import HOME, command
 
-from app.judge import BALANCE_LIMIT
-from app.run import compute
-from app.scene import parse
-from postprocess import check
-from postprocess.hdf5 import archive
+from galinx.app.run.compute import compute
+from galinx.app.run.judge import BALANCE_LIMIT
+from galinx.app.scene.scene import parse
+from galinx.postprocess import check
+from galinx.postprocess.hdf5 import archive
 
 
 @pytest.fixture

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from solvers.materials import MovingFrame, Solid
-from solvers.sie import collocation, field
-from solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie import collocation, potentials
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame, Solid
 
 
 def punch_of(entry, g):
@@ -31,7 +31,7 @@ def test_surface_stresses_of_the_references(references):
 
 def test_interior_stresses_of_the_references(references):
     for entry in references["interior"]:
-        found = field.stresses(punch_of(entry, entry["g"]), float(entry["X/a"]), float(entry["Y/a"]))
+        found = potentials.stresses(punch_of(entry, entry["g"]), float(entry["X/a"]), float(entry["Y/a"]))
         wanted = np.array([float(entry[f"sigma_{ij}"]) for ij in ("XX", "YY", "XY")])
         np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
@@ -40,7 +40,7 @@ def test_interior_stresses_of_the_references(references):
 def test_interior_field_meets_the_surface(c):
     punch = FlatPunch(MovingFrame(2.0, c), -0.66)
     X = np.array([-2.0, -0.5, 0.0, 0.7, 1.5])
-    σ_XX, σ_YY, σ_XY = field.stresses(punch, X, np.full_like(X, -1e-9))
+    σ_XX, σ_YY, σ_XY = potentials.stresses(punch, X, np.full_like(X, -1e-9))
     np.testing.assert_allclose(σ_XX, punch.σ_XX(X), atol=1e-7)
     np.testing.assert_allclose(σ_YY, punch.σ_YY(X), atol=1e-7)
     np.testing.assert_allclose(σ_XY, -0.66 * punch.σ_YY(X), atol=1e-7)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import HOME, clean_environment, command, mpirun
 
-from app.cli import cli
+from galinx.app.cli import cli
 
 SCENE = HOME / "scenes" / "tables4_5.toml"
 
@@ -90,7 +90,7 @@ def test_an_archive_is_not_overwritten_unasked(archives):
 
 def test_friction_alone_imports_no_finite_elements(tmp_path):
     script = (
-        "import sys\nfrom click.testing import CliRunner\nfrom app.cli import cli\n"
+        "import sys\nfrom click.testing import CliRunner\nfrom galinx.app.cli import cli\n"
         f"done = CliRunner().invoke(cli, ['run', {str(HOME / 'scenes' / 'fig6.toml')!r}, '-o', "
         f"{str(tmp_path / 'loops.h5')!r}], standalone_mode=False)\n"
         "assert done.exception is None, done.exception\n"
@@ -139,16 +139,16 @@ def test_a_number_of_ranks_is_checked():
 
 def test_a_failure_on_one_rank_ends_all(tmp_path):
     script = (
-        "import sys, time, app.run, app.ranks\n"
-        "true = app.run.compute\n"
+        "import sys, time; from galinx.app.run import compute as module; from galinx.app import ranks\n"
+        "true = module.compute\n"
         "def compute(*a):\n"
-        "    if app.ranks.rank() == 1:\n"
+        "    if ranks.rank() == 1:\n"
         "        print('raised at', time.time(), flush=True)\n"
         "        raise RuntimeError('provoked')\n"
         "    return true(*a)\n"
-        "app.run.compute = compute\n"
+        "module.compute = compute\n"
         f"sys.argv = ['app', 'run', {str(SCENE)!r}, '-o', 'never.h5']\n"
-        "from app.cli import run_from_shell\nrun_from_shell()\n"
+        "from galinx.app.cli import run_from_shell\nrun_from_shell()\n"
     )
     done = subprocess.run(
         mpirun(2, "-c", script), cwd=tmp_path, env=clean_environment(),

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from postprocess import compare
+from galinx.postprocess import compare
 
 X = np.array([-1.5, -0.5, 0.0, 0.5, 1.5])
 EXACT = np.array([[2.0, -1.0, -1.0, -1.0, 4.0]])

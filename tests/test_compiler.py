@@ -9,8 +9,8 @@ import pytest
 from conftest import HOME, clean_environment, command
 from mpi4py import MPI
 
-from solvers.errors import CompilerError
-from solvers.fem.compiler import compiling
+from galinx.solvers.errors import CompilerError
+from galinx.solvers.fem.compiler import compiling
 
 SCENE = HOME / "scenes" / "tables4_5.toml"
 
@@ -38,7 +38,7 @@ def test_stubs_of_a_killed_run_are_swept(cache):
 def test_no_compiler(cache, monkeypatch):
     tools = cache / "bin"
     tools.mkdir()
-    for name in ("bash", "dirname", "sed", "grep", "dpkg-query", "id", "cat"):
+    for name in ("bash", "dirname", "sed", "grep", "dpkg-query", "id", "cat", "readlink"):
         for folder in ("/bin", "/usr/bin"):
             if os.path.exists(f"{folder}/{name}") and not (tools / name).exists():
                 (tools / name).symlink_to(f"{folder}/{name}")

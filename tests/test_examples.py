@@ -24,12 +24,12 @@ from examples import (
     words_of,
 )
 
-from app.changes import changed
-from app.cli import cli
-from app.scene import parse
-from app.sections import SECTIONS
-from app.templates import templates
-from postprocess.fields import FIELDS
+from galinx.app.cli import cli
+from galinx.app.scene.changes import changed
+from galinx.app.scene.scene import parse
+from galinx.app.scene.sections import SECTIONS
+from galinx.app.scene.templates import templates
+from galinx.postprocess.quantities import FIELDS
 
 
 @pytest.fixture(scope="module")

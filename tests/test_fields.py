@@ -8,24 +8,24 @@ from mpi4py import MPI
 from numpy.polynomial.legendre import leggauss
 from scipy.spatial import cKDTree
 
-from app import fields
-from app.errors import BadInput
-from app.fields import ABOUT, StateField, state_field, write_field
-from app.scene import parse, read
-from app.states import enumerate_states
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, Refinement
-from postprocess import stresses
-from postprocess.errors import UnwritableArchive
-from postprocess.hdf5 import vtkhdf
-from solvers.fem.distributed import distribute
-from solvers.fem.field import sample
-from solvers.fem.interior import InteriorGradients
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
-from solvers.materials import MovingFrame
-from solvers.sie import field as exact_field
-from solvers.sie.closed_form import FlatPunch
+from galinx.app.errors import BadInput
+from galinx.app.plan.states import enumerate_states
+from galinx.app.results import paraview as fields
+from galinx.app.results.paraview import ABOUT, StateField, state_field, write_field
+from galinx.app.scene.scene import parse, read
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.postprocess import stresses
+from galinx.postprocess.errors import UnwritableArchive
+from galinx.postprocess.hdf5 import vtkhdf
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.sampling import sample
+from galinx.solvers.fem.space import Space
+from galinx.solvers.sie import potentials
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
 
 κ, C, G, EXTENT = 2.0, 0.6, -0.66, 4.0
 
@@ -35,7 +35,7 @@ def solved(request):
     """A punch and one of its states, on a mesh of the given kind."""
     kind = MESHES[request.param]
     cells = kind.build(Refinement(8, 0.35, 3, (1.0, 2.0, 3.0, 3.0, 3.0, 3.0)))
-    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 7)
+    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.chart, 7)
     punch = SlidingPunch(space, κ, C)
     yield punch, punch.states(G)
     punch.destroy()
@@ -151,7 +151,7 @@ def test_stresses_are_those_of_the_potentials(mode):
     X, Y = found.points.T / a
     some = (Y <= -0.01) & (np.hypot(X, Y) <= 5.0)
     punch = FlatPunch(MovingFrame(3.0 - 4.0 * solid.nu, 0.6), states.g[number])
-    exact = unit * exact_field.stresses(punch, X[some], Y[some])
+    exact = unit * potentials.stresses(punch, X[some], Y[some])
     fem = np.array([found.data[f"sigma_{ij}"][some] for ij in ("XX", "YY", "XY")])
     assert np.abs(fem - exact).max() <= 1e-4 * np.abs(exact).max()
     error = found.data["sigma_error"]
@@ -165,7 +165,7 @@ def test_stresses_are_those_of_the_potentials(mode):
 
 
 def test_a_field_is_solved_once_and_for_any_scene(monkeypatch):
-    from solvers.fem import punch as punches
+    from galinx.solvers.fem import punch as punches
 
     made = []
 

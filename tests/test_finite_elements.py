@@ -6,19 +6,19 @@ from conftest import run_scene
 from mpi4py import MPI
 from scipy.special import eval_chebyt
 
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, Refinement
-from postprocess import compare
-from solvers.errors import MeshError, SolveError
-from solvers.fem import linear
-from solvers.fem.clock import Clock
-from solvers.fem.distributed import distribute
-from solvers.fem.linear import Factor
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
-from solvers.fem.surface import SurfaceTrace
-from solvers.materials import MovingFrame
-from solvers.sie.closed_form import FlatPunch
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.postprocess import compare
+from galinx.solvers.errors import MeshError, SolveError
+from galinx.solvers.fem import direct as linear
+from galinx.solvers.fem.clock import Clock
+from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.surface import SurfaceTrace
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
 
 
 def disagreement(data):
@@ -27,7 +27,7 @@ def disagreement(data):
 
 
 def test_tables_4_and_5_to_every_printed_digit(tables_run):
-    from app.published import intensity_rows
+    from galinx.app.study.published import intensity_rows
 
     data, _ = tables_run
     rows = [row for name in ("table4", "table5") for row in intensity_rows(name, data)]
@@ -180,10 +180,10 @@ def test_pressure_and_tension_lead_at_the_trailing_end(tables_run):
 def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
     """Largest error of the pressure's first six Chebyshev moments over N."""
     kind = MESHES[mesh]
-    space = Space(*distribute(kind.build(refinement), MPI.COMM_WORLD), TAGS, kind.plane, degree)
+    space = Space(*distribute(kind.build(refinement), MPI.COMM_WORLD), TAGS, kind.chart, degree)
     solver = SlidingPunch(space, 2.0, c)
     state = solver.states(g)
-    X = kind.plane.surface_position(space.contact.s)
+    X = kind.chart.surface_position(space.contact.s)
     exact = FlatPunch(MovingFrame(2.0, c), g)
     t, w = np.polynomial.legendre.leggauss(200)
     τ, w = (t + 1.0) / 2.0, w / 2.0
@@ -232,7 +232,7 @@ def test_a_missing_boundary_part_is_named():
     kind = MESHES["confocal"]
     mesh, tags = distribute(kind.build(Refinement(1, 0.3, 1, (1.0,))), MPI.COMM_WORLD)
     with pytest.raises(MeshError, match="far"):
-        Space(mesh, tags, TAGS | {"far": 17}, kind.plane, 2)
+        Space(mesh, tags, TAGS | {"far": 17}, kind.chart, 2)
 
 
 @pytest.mark.parametrize("entry", [0.0, float("nan")])
@@ -253,7 +253,7 @@ def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
 def small_punch(c=0.6, **options):
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(6, 0.35, 2, (3.0,) * 3))
-    return SlidingPunch(Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 7), 2.0, c, **options)
+    return SlidingPunch(Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.chart, 7), 2.0, c, **options)
 
 
 @pytest.mark.parametrize("c, refines", [(0.0, False), (0.6, False), (0.9192, True)])

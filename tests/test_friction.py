@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from app.published import table1_rows
-from solvers.friction.dahl import RK4_STABILITY_LIMIT, Dahl, exact, runge_kutta
-from solvers.friction.strokes import friction_along
+from galinx.app.study.published import table1_rows
+from galinx.solvers.friction.dahl import RK4_STABILITY_LIMIT, Dahl, exact, runge_kutta
+from galinx.solvers.friction.strokes import friction_along
 
 STROKES = ["forward", "backward", "forward"]
 

@@ -15,13 +15,13 @@ from conftest import HOME
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from app.account import expense, lines
-from app.collector import Memory
-from app.errors import BadInput
-from app.plan import make_plan
-from app.run import compute
-from app.scene import parse
-from solvers.materials import Solid, rayleigh_speed
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.words import expense, lines
+from galinx.app.run.collector import Memory
+from galinx.app.run.compute import compute
+from galinx.app.scene.scene import parse
+from galinx.solvers.solids.isotropic import Solid, rayleigh_speed
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 SCENES = 2000 if THOROUGH else 300

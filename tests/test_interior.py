@@ -4,15 +4,15 @@ import sympy as sp
 from conftest import run_scene
 from mpi4py import MPI
 
-from app.errors import BadInput
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, Refinement
-from postprocess.stresses import stresses_inside
-from solvers.errors import MeshError
-from solvers.fem.distributed import distribute
-from solvers.fem.interior import InteriorGradients
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
+from galinx.app.errors import BadInput
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.postprocess.stresses import stresses_inside
+from galinx.solvers.errors import MeshError
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
 
 
 def random_points(count, seed):
@@ -68,7 +68,7 @@ def test_a_point_beyond_the_mesh_is_refused():
         )
     kind = MESHES["graded"]
     cells = kind.build(Refinement(4, 0.5, 2, (1.0,) * 3))
-    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.plane, 2)
+    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.chart, 2)
     punch = SlidingPunch(space, 2.0, 0.0)
     with pytest.raises(MeshError, match="X/a = 0, Y/a = -1e\\+06 lies outside"):
         InteriorGradients(space, 2.0, 0.0, punch.fields, np.array([[0.0, -1.0], [0.0, -1e6]]))

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from solvers.materials import MovingFrame, Solid, rayleigh_speed
-from solvers.sie.fourier import surface_response
+from galinx.solvers.sie.fourier import surface_response
+from galinx.solvers.solids.isotropic import MovingFrame, Solid, rayleigh_speed
 
 mpmath = pytest.importorskip("mpmath")
 

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from app.plan import unknowns
-from meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
-from meshes.planes import Confocal
-from meshes.refine import outer_ξ, refinement
-from meshes.rings import CONTACT, FAR, FREE, TAGS
-from solvers.fem.distributed import distribute
-from solvers.fem.space import Space
+from galinx.app.plan.plan import unknowns
+from galinx.meshes.charts import Confocal
+from galinx.meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
+from galinx.meshes.refine import outer_ξ, refinement
+from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.space import Space
 
 TOLERANCES = [1e-2, 1e-6, 1e-9]
 
@@ -49,7 +49,7 @@ def test_cut_meshes_have_no_cracks(mesh, times):
 def test_boundary_parts_lie_where_they_should(mesh):
     kind = MESHES[mesh]
     cells = kind.build(refinement(mesh, 1e-6, 1.0))
-    X = {tag: kind.plane.to_physical(cells.points[np.unique(cells.edges[tag])]) for tag in TAGS.values()}
+    X = {tag: kind.chart.to_physical(cells.points[np.unique(cells.edges[tag])]) for tag in TAGS.values()}
     for tag in (CONTACT, FREE):
         np.testing.assert_allclose(X[tag][:, 1], 0.0, atol=1e-12 * np.abs(X[tag]).max())
     assert np.abs(X[CONTACT][:, 0]).max() == pytest.approx(1.0, abs=1e-15)
@@ -68,29 +68,29 @@ def test_a_turned_cell_is_refused():
         check_cells(QuadMesh(square, np.array([[0, 3, 2, 1]]), {}))
 
 
-@pytest.mark.parametrize("plane", [kind.plane for kind in MESHES.values()], ids=list(MESHES))
-def test_planes_invert_themselves(plane):
+@pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))
+def test_charts_invert_themselves(chart):
     X = np.array([[-3.0, -0.5], [0.2, -1e-6], [0.999, -0.1], [50.0, -70.0], [0.3, 0.0], [-2.0, 0.0]])
-    np.testing.assert_allclose(plane.to_physical(plane.from_physical(X)), X, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(chart.to_physical(chart.from_physical(X)), X, rtol=1e-12, atol=1e-15)
     surface = np.array([-5.0, -1.001, -0.99, 0.0, 0.5, 1.5])
-    s = plane.surface_coordinate(surface)
-    np.testing.assert_allclose(plane.surface_position(s), surface, rtol=1e-13)
+    s = chart.surface_coordinate(surface)
+    np.testing.assert_allclose(chart.surface_position(s), surface, rtol=1e-13)
     step = 1e-6
-    slope = (plane.surface_position(s + step) - plane.surface_position(s - step)) / (2.0 * step)
-    np.testing.assert_allclose(plane.surface_stretch(s), slope, rtol=1e-8)
-    points = plane.from_physical(np.column_stack([surface, np.zeros_like(surface)]))
-    np.testing.assert_allclose(plane.along_surface(points), s, atol=1e-13)
+    slope = (chart.surface_position(s + step) - chart.surface_position(s - step)) / (2.0 * step)
+    np.testing.assert_allclose(chart.surface_stretch(s), slope, rtol=1e-8)
+    points = chart.from_physical(np.column_stack([surface, np.zeros_like(surface)]))
+    np.testing.assert_allclose(chart.along_surface(points), s, atol=1e-13)
 
 
 def test_confocal_rotation_is_that_of_the_map():
-    plane, x, step = Confocal(), np.array([0.7, -1.1]), np.array([1e-6, 0.0])
-    along_ξ = (plane.to_physical(x + step) - plane.to_physical(x - step)) / 2e-6
-    cos, sin = plane.rotation(x, np)
+    chart, x, step = Confocal(), np.array([0.7, -1.1]), np.array([1e-6, 0.0])
+    along_ξ = (chart.to_physical(x + step) - chart.to_physical(x - step)) / 2e-6
+    cos, sin = chart.rotation(x, np)
     np.testing.assert_allclose([cos, sin], along_ξ / np.linalg.norm(along_ξ), rtol=1e-9)
 
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_planned_sizes_are_those_of_the_run(mesh):
     cells = MESHES[mesh].build(refinement(mesh, 1e-3, 1.0))
-    space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, MESHES[mesh].plane, 3)
+    space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, MESHES[mesh].chart, 3)
     assert (space.cells, space.size) == (len(cells.cells), unknowns(cells, 3))

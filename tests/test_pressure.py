@@ -1,7 +1,7 @@
 import numpy as np
 from scipy.special import eval_jacobi, roots_jacobi
 
-from postprocess import estimate, pressure
+from galinx.postprocess import estimate, pressure
 
 α = np.array([-0.5, -0.42, -0.7])
 β = -1.0 - α

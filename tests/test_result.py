@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from conftest import HOME, command
 
-from app import compute, load, read_scene, template
-from app.drawings import of_archive
-from app.errors import BadInput
+from galinx import compute, load, read_scene, template
+from galinx.app.errors import BadInput
+from galinx.app.results.drawings import of_archive
 
 CHROMIUM = shutil.which("chromium")
 

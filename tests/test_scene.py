@@ -1,11 +1,11 @@
 import pytest
 from conftest import HOME
 
-from app.account import lines
-from app.errors import BadInput
-from app.plan import make_plan
-from app.scene import parse, read
-from app.states import enumerate_states, speeds
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.words import lines
+from galinx.app.scene.scene import parse, read
 
 GOOD = (HOME / "scenes" / "tables4_5.toml").read_text(encoding="utf-8")
 

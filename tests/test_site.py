@@ -11,7 +11,7 @@ import pytest
 from conftest import HOME, clean_environment, command
 from examples import DOCS, SILENT, name_of
 
-from app.scene import parse
+from galinx.app.scene.scene import parse
 
 SCENES = sorted((HOME / "scenes").glob("*.toml"))
 
@@ -30,7 +30,7 @@ def test_the_schema_is_what_the_command_prints():
 @pytest.mark.parametrize("path", SCENES, ids=name_of)
 def test_scenes_follow_the_schema(path):
     jsonschema = pytest.importorskip("jsonschema")
-    from app.schema import schema
+    from galinx.app.scene.schema import schema
 
     text = path.read_text(encoding="utf-8")
     parse(text, path.name)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from conftest import command
 
-from meshes import store
-from meshes.halfplane import MESHES
-from meshes.refine import refinement
-from meshes.rings import QuadMesh
+from galinx.meshes import store
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.refine import refinement
+from galinx.meshes.rings import QuadMesh
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def test_gmsh_gives_the_pattern_back_and_is_not_asked_twice(pattern, monkeypatch
     assert not store.is_kept(pattern)
     same(store.obtain(pattern), pattern)
     assert store.is_kept(pattern)
-    monkeypatch.setitem(sys.modules, "meshes.gmsh_model", None)  # its import would raise
+    monkeypatch.setitem(sys.modules, "galinx.meshes.gmsh_model", None)  # its import would raise
     same(store.obtain(pattern), pattern)
 
 

@@ -2,8 +2,8 @@ import h5py
 import numpy as np
 import pytest
 
-from app.stress import friction_law, matrix, mechanics, resolution
-from app.stress.row import Row, Verdict, honest, reached, scene, solved
+from galinx.app.extremes import friction_law, matrix, mechanics, resolution
+from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
 
 
 def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):

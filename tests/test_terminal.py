@@ -8,7 +8,7 @@ import subprocess
 import pytest
 from conftest import HOME, clean_environment, command
 
-from app.cli import cli
+from galinx.app.cli import cli
 
 SCENE = HOME / "scenes" / "tables4_5.toml"
 RUN = HOME / "run.sh"
@@ -69,9 +69,9 @@ def test_output_fits_80_columns_without_colours(archive, arguments, tmp_path):
 def test_the_studys_tables_fit_80_columns():
     from io import StringIO
 
-    from app.published import INTENSITIES, intensities, table1, table3
-    from postprocess.tables import new_console, print_sheet
-    from solvers.materials import Solid
+    from galinx.app.study.published import INTENSITIES, intensities, table1, table3
+    from galinx.postprocess.tables import new_console, print_sheet
+    from galinx.solvers.solids.isotropic import Solid
 
     text = StringIO()
     sheets = [table1(), table3(Solid(193e9, 0.25, 7860.0), 1e-4)]

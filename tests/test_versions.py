@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, QuadMesh
-from postprocess.pressure import contact_recovery, from_moments
-from solvers.fem import adapter
-from solvers.fem.distributed import distribute
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
-from solvers.materials import MovingFrame
-from solvers.sie.closed_form import FlatPunch
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, QuadMesh
+from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.fem import adapter
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
 
 STORED = Path(__file__).parent / "reference" / "stored_mesh.npz"
 
@@ -31,10 +31,10 @@ def test_the_stored_mesh_has_the_same_intensities(c):
     with np.load(STORED) as file:
         edges = {tag: file[str(tag)] for tag in TAGS.values()}
         mesh = QuadMesh(file["points"], file["cells"], edges)
-    plane = MESHES["confocal"].plane
-    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, plane, 7)
+    chart = MESHES["confocal"].chart
+    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, chart, 7)
     punch = SlidingPunch(space, 2.0, c)
-    recovery = contact_recovery(space.contact.s, 7, plane, np.array([0.0]))
+    recovery = contact_recovery(space.contact.s, 7, chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), np.array([-0.66]))
     found = from_moments(punch.states(-0.66).normal @ recovery.moments, local.α, local.β).K_I[0]
     punch.destroy()

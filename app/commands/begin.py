@@ -6,10 +6,10 @@ from typing import Any
 
 import click
 
-from app import errors, ranks
-from app.commands import options
-from app.errors import BadInput, MachineFailure
-from app.terminal import say
+from galinx.app import errors, ranks
+from galinx.app.commands import options
+from galinx.app.console.terminal import say
+from galinx.app.errors import BadInput, MachineFailure
 
 
 @click.command()
@@ -20,7 +20,7 @@ def init(name: str | None, output: Path | None) -> int:
 
     Example: ./run.sh init own_material -o mine.toml
     """
-    from app.templates import templates
+    from galinx.app.scene.templates import templates
 
     known = templates()
     if not ranks.is_root():
@@ -50,7 +50,7 @@ def materials() -> int:
 
     Example: ./run.sh materials
     """
-    from app.materials import LIBRARY
+    from galinx.app.scene.materials import LIBRARY
 
     if ranks.is_root():
         for name, material in LIBRARY.items():
@@ -66,7 +66,7 @@ def schema() -> int:
 
     Example: ./run.sh schema > scene.schema.json
     """
-    from app.schema import schema as made
+    from galinx.app.scene.schema import schema as made
 
     if ranks.is_root():
         print(json.dumps(made(), ensure_ascii=False, indent=1))

@@ -7,13 +7,14 @@ from typing import Any
 
 import click
 
-from app import __version__, errors, ranks
-from app import scene as scenes
-from app.changes import from_words
-from app.commands import options
-from app.errors import MachineFailure
-from app.progress import Progress
-from app.terminal import print_summary, print_times, say
+from galinx import __version__
+from galinx.app import errors, ranks
+from galinx.app.commands import options
+from galinx.app.console.progress import Progress
+from galinx.app.console.terminal import print_summary, print_times, say
+from galinx.app.errors import MachineFailure
+from galinx.app.scene import scene as scenes
+from galinx.app.scene.changes import from_words
 
 
 @click.command()
@@ -31,8 +32,8 @@ def run(
 
     Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
     """
-    from app import plan as planning
-    from app.run import check_output, compute
+    from galinx.app.plan import plan as planning
+    from galinx.app.run.compute import check_output, compute
 
     target = output or Path(scene.stem + ".h5")
     checked = scenes.read(scene, from_words(changes))
@@ -42,8 +43,8 @@ def run(
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from postprocess.hdf5 import archive
-    from postprocess.journal import Journal
+    from galinx.postprocess.hdf5 import archive
+    from galinx.postprocess.journal import Journal
 
     journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -79,8 +80,8 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from app.account import expense, lines
-    from app.plan import make_plan
+    from galinx.app.plan.plan import make_plan
+    from galinx.app.plan.words import expense, lines
 
     checked = scenes.read(scene, from_words(changes))
     planned = make_plan(checked)
@@ -103,7 +104,7 @@ def paper(folder: Path, progress: Progress, quiet: bool) -> int:
 
     Example: ./run.sh paper -o results
     """
-    from app.paper import reproduce
+    from galinx.app.study.paper import reproduce
 
     with progress:
         good = reproduce(folder, progress, quiet)
@@ -117,7 +118,7 @@ def stress(folder: Path) -> int:
 
     Example: ./run.sh stress -o stress
     """
-    from app.stress import matrix
+    from galinx.app.extremes import matrix
 
     return errors.GOOD if matrix.stress(folder) else errors.FAILED_VERDICT
 

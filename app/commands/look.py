@@ -6,10 +6,10 @@ from typing import Any
 
 import click
 
-from app import errors, ranks
-from app.commands import options
-from app.errors import BadInput
-from app.terminal import print_summary
+from galinx.app import errors, ranks
+from galinx.app.commands import options
+from galinx.app.console.terminal import print_summary
+from galinx.app.errors import BadInput
 
 
 @click.command()
@@ -20,7 +20,7 @@ def show(archive: Path, as_json: bool) -> int:
 
     Example: ./run.sh show tables.h5 --json
     """
-    from postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.archive import read
 
     data, attributes = read(archive, stresses=False)
     if ranks.is_root():
@@ -38,8 +38,8 @@ def check(archive: Path) -> int:
 
     Example: ./run.sh check tables.h5
     """
-    from app.judge import BALANCE_LIMIT
-    from postprocess.check import faults
+    from galinx.app.run.judge import BALANCE_LIMIT
+    from galinx.postprocess.check import faults
 
     found = faults(archive, BALANCE_LIMIT)
     if ranks.is_root():
@@ -57,7 +57,7 @@ def report(archive: Path, output: Path | None) -> int:
 
     Example: ./run.sh report tables.h5
     """
-    from app.result import load
+    from galinx.app.results.result import load
 
     target = _beside(archive, output, f"{archive.stem}.html")
     result = load(archive)
@@ -76,7 +76,7 @@ def plot(archive: Path, folder: Path) -> int:
 
     Example: ./run.sh plot tables.h5 -o figures
     """
-    from app.result import load
+    from galinx.app.results.result import load
 
     result = load(archive)
     if ranks.is_root():
@@ -97,7 +97,7 @@ def fields(archive: Path, state: int, extent: float, output: Path | None) -> int
 
     Example: ./run.sh fields tables.h5 --state 3
     """
-    from app.result import load
+    from galinx.app.results.result import load
 
     target = _beside(archive, output, f"{archive.stem}_{state}.hdf")
     load(archive, stresses=False).fields(target, state, extent)

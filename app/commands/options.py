@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from app.progress import Progress
+from galinx.app.console.progress import Progress
 
 FILE = click.Path(path_type=Path)
 

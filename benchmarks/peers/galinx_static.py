@@ -12,13 +12,13 @@ import numpy as np
 from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
-from meshes.gmsh_model import through_gmsh
-from meshes.halfplane import MESHES, check_cells
-from meshes.rings import TAGS, Refinement
-from postprocess.pressure import contact_recovery
-from solvers.fem.distributed import distribute
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
+from galinx.meshes.gmsh_model import through_gmsh
+from galinx.meshes.halfplane import MESHES, check_cells
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.postprocess.pressure import contact_recovery
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
 
 #: Degree, levels, ratio, columns, outer ξ; one sector.
 CONFIGURATIONS = [
@@ -39,9 +39,9 @@ def solve(degree: int, levels: int, ratio: float, columns: int, outer: float) ->
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, ratio, 1, (width,) * columns))
     check_cells(cells)
-    space = Space(*distribute(through_gmsh(cells), MPI.COMM_SELF), TAGS, kind.plane, degree)
+    space = Space(*distribute(through_gmsh(cells), MPI.COMM_SELF), TAGS, kind.chart, degree)
     punch = SlidingPunch(space, KAPPA, 0.0)
-    recovery = contact_recovery(space.contact.s, degree, space.plane, np.zeros(0))
+    recovery = contact_recovery(space.contact.s, degree, space.chart, np.zeros(0))
     moments = punch.states(G).normal[0] @ recovery.moments[:, :6]
     punch.destroy()
     return space.size, moments

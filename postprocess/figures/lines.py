@@ -5,7 +5,7 @@ from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from postprocess.figures.canvas import COLOURS, MARKERS
+from galinx.postprocess.figures.canvas import COLOURS, MARKERS
 
 
 def lines_figure(

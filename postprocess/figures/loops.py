@@ -7,7 +7,7 @@ from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from postprocess.figures.canvas import COLOURS
+from galinx.postprocess.figures.canvas import COLOURS
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from postprocess.figures.canvas import COLOURS
+from galinx.postprocess.figures.canvas import COLOURS
 
 
 def mesh_figure(edges: NDArray, zooms: tuple[float, ...] = (4.0, 0.5, 0.01)) -> Figure:

@@ -9,8 +9,8 @@ from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from postprocess.figures.canvas import COLOURS, MARKERS
-from postprocess.figures.loops import Loop
+from galinx.postprocess.figures.canvas import COLOURS, MARKERS
+from galinx.postprocess.figures.loops import Loop
 
 _STRESSES = {"sigma_YY": r"$\sigma_{YY}/(N/2a)$", "sigma_XX": r"$\sigma_{XX}/(N/2a)$"}
 

@@ -16,10 +16,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from postprocess.disk import refused
-from postprocess.errors import UnreadableArchive, UnwritableArchive
-from postprocess.fields import FIELDS
-from postprocess.hdf5.patient import PatientFile
+from galinx.postprocess.disk import refused
+from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
+from galinx.postprocess.hdf5.patient import PatientFile
+from galinx.postprocess.quantities import FIELDS
 
 #: Version of the layout; a reader refuses a newer one.
 SCHEMA_VERSION = 1

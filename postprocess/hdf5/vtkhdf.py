@@ -14,8 +14,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from postprocess.disk import refused
-from postprocess.hdf5.patient import PatientFile
+from galinx.postprocess.disk import refused
+from galinx.postprocess.hdf5.patient import PatientFile
 
 #: Layout that VTK 9.1 knows.
 _VERSION = (1, 0)

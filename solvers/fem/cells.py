@@ -6,12 +6,12 @@ A cell is the bilinear image of the unit square; its vertices come in dolfinx's 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.fem.lagrange import lagrange
-from solvers.fem.plane import Plane
+from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.lagrange import lagrange
 
 
 def image(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """Points of the mesh's plane at places t (..., 2) of the unit square: (..., 2)."""
+    """Points of the mesh's chart at places t (..., 2) of the unit square: (..., 2)."""
     a, b = t[..., 0], t[..., 1]
     return np.stack([(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b], axis=-1) @ vertices
 
@@ -54,7 +54,7 @@ def reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.fl
 
 
 def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """Derivatives along the axes of the mesh's plane, at places t (n, 2), of displacements u.
+    """Derivatives along the axes of the mesh's chart, at places t (n, 2), of displacements u.
 
     Args:
         vertices: of the cell, (4, 2).
@@ -69,14 +69,14 @@ def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray
     return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
 
 
-def to_physical_axes(plane: Plane, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
-    """Derivatives along X and Y from those along the axes of the mesh's plane, at its points x (n, 2).
+def to_physical_axes(chart: Chart, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
+    """Derivatives along X and Y from those along the axes of the mesh's chart, at its points x (n, 2).
 
     Args:
-        plane: the mesh's plane.
-        x: where; not at a punch edge of a plane whose stretch vanishes there.
+        chart: the mesh's chart.
+        x: where; not at a punch edge of a chart whose stretch vanishes there.
         gradients: array (n, component, axis, fields).
     """
-    cos, sin = (value * np.ones(len(x)) for value in plane.rotation(x.T, np))
-    R = np.array([[cos, -sin], [sin, cos]]) / plane.stretch(x)
+    cos, sin = (value * np.ones(len(x)) for value in chart.rotation(x.T, np))
+    R = np.array([[cos, -sin], [sin, cos]]) / chart.stretch(x)
     return np.einsum("ncxf,Xxn->ncXf", gradients, R)

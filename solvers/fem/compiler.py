@@ -13,7 +13,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from solvers.errors import CompilerError
+from galinx.solvers.errors import CompilerError
 
 #: The kernels are long loops of multiply-adds; full vectorisation makes them three times faster.
 _FLAGS = ["-O3", "-march=native"]

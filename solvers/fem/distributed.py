@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from solvers.fem.adapter import create_mesh, tag_facets
+from galinx.solvers.fem.adapter import create_mesh, tag_facets
 
 #: dolfinx numbers a quadrilateral's vertices row by row, others go round it.
 _ORDER = [0, 1, 3, 2]

@@ -4,12 +4,12 @@ from typing import Any
 
 import ufl
 
-from solvers.fem.plane import Plane
+from galinx.solvers.fem.chart import Chart
 
 
-def gradient(u: Any, plane: Plane, x: Any) -> Any:
-    """Gradient of u along the physical axes, up to the plane's stretch: ∇u·Rᵀ."""
-    cos, sin = plane.rotation(x, ufl)
+def gradient(u: Any, chart: Chart, x: Any) -> Any:
+    """Gradient of u along the physical axes, up to the chart's stretch: ∇u·Rᵀ."""
+    cos, sin = chart.rotation(x, ufl)
     R = ufl.as_matrix([[cos, -sin], [sin, cos]])
     return ufl.dot(ufl.grad(u), ufl.transpose(R))
 
@@ -21,26 +21,26 @@ def stress(G: Any, κ: Any) -> Any:
     return 2 * ε + λ * ufl.tr(ε) * ufl.Identity(2)
 
 
-def moving_stiffness(u: Any, w: Any, plane: Plane, x: Any, κ: Any, c: Any, degree: int) -> Any:
+def moving_stiffness(u: Any, w: Any, chart: Chart, x: Any, κ: Any, c: Any, degree: int) -> Any:
     """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed.
 
     On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial on a conformal
     plane; two degrees above the product of gradients integrate it as well as the space can tell.
     """
-    Gu, Gw = gradient(u, plane, x), gradient(w, plane, x)
+    Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
     energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
 
 
 def mixed_stiffness(
-    u: Any, p: Any, w: Any, q: Any, plane: Plane, x: Any, κ: Any, c: Any, degree: int
+    u: Any, p: Any, w: Any, q: Any, chart: Chart, x: Any, κ: Any, c: Any, degree: int
 ) -> Any:
-    """The same with an unknown p = -λ div u/μ (times the plane's stretch), for ν up to 1/2.
+    """The same with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
 
     ∫ 2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
     displacement alone carries λ, rounding grows with it.
     """
-    Gu, Gw = gradient(u, plane, x), gradient(w, plane, x)
+    Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
     compliance = (κ - 1) / (3 - κ)  # μ/λ
     energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q

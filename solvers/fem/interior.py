@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from solvers.errors import MeshError
-from solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
-from solvers.fem.space import Space
+from galinx.solvers.errors import MeshError
+from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
+from galinx.solvers.fem.space import Space
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
@@ -41,7 +41,7 @@ class InteriorGradients:
     def __init__(
         self, space: Space, κ: float, c: float, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
-        x = space.plane.from_physical(points)
+        x = space.chart.from_physical(points)
         vertices = space.vertices[..., :2]
         held = _locate(vertices, x)
         found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
@@ -58,7 +58,7 @@ class InteriorGradients:
             np.add.at(gradients, held.point[here], in_plane)
         # On the border between cells the gradient jumps; it is their mean.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-        self._basis = to_physical_axes(space.plane, x, gradients)
+        self._basis = to_physical_axes(space.chart, x, gradients)
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""

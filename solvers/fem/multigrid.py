@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from solvers.errors import SolveError
-from solvers.fem.clock import Clock
-from solvers.fem.linear import PREFIX, defaults
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.clock import Clock
+from galinx.solvers.fem.direct import PREFIX, defaults
 
 #: |b - Ax|/|b| that is asked for. Contact forces need more; refinement gives it.
 TOLERANCE = 1e-10

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from solvers.errors import SolveError
-from solvers.fem.linear import Factor
-from solvers.fem.multigrid import Multigrid
-from solvers.fem.space import Space
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.multigrid import Multigrid
+from galinx.solvers.fem.space import Space
 
 #: Contact forces are found to this relative residual; the last digits are rounding.
 KRYLOV_TOLERANCE = 1e-13

@@ -12,14 +12,14 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from solvers.errors import MeshError
-from solvers.fem import adapter
-from solvers.fem.clock import Clock
-from solvers.fem.compiler import compiling
-from solvers.fem.condensation import CHUNK, CellMatrices
-from solvers.fem.forms import mixed_stiffness, moving_stiffness
-from solvers.fem.matrix import empty_matrix
-from solvers.fem.plane import Plane
+from galinx.solvers.errors import MeshError
+from galinx.solvers.fem import adapter
+from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.clock import Clock
+from galinx.solvers.fem.compiler import compiling
+from galinx.solvers.fem.condensation import CHUNK, CellMatrices
+from galinx.solvers.fem.forms import mixed_stiffness, moving_stiffness
+from galinx.solvers.fem.matrix import empty_matrix
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class SurfaceNodes:
     """Nodes of a part of the surface, in order of X, the same on every rank.
 
     Attributes:
-        s: surface coordinates in the mesh's plane, (n,).
+        s: surface coordinates in the mesh's chart, (n,).
         owned: positions in ``s`` of the nodes this rank owns.
         blocks: global node numbers of those.
     """
@@ -47,7 +47,7 @@ class Space:
     Args:
         mesh, facet_tags: dolfinx mesh and tags of its boundary facets.
         tags: number of the tag of each of the parts "contact", "free surface" and "far".
-        plane: the plane that the mesh lives in.
+        chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
         mixed: with an unknown pressure in each cell, for nearly and fully incompressible solids.
         clock: takes the time of what is done with the space.
@@ -61,12 +61,12 @@ class Space:
         mesh: Any,
         facet_tags: Any,
         tags: dict[str, int],
-        plane: Plane,
+        chart: Chart,
         degree: int,
         mixed: bool = False,
         clock: Clock | None = None,
     ) -> None:
-        self.mesh, self.plane, self.degree, self.mixed = mesh, plane, degree, mixed
+        self.mesh, self.chart, self.degree, self.mixed = mesh, chart, degree, mixed
         self.clock = Clock() if clock is None else clock
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
@@ -90,14 +90,14 @@ class Space:
 
     @cached_property
     def coordinates(self) -> NDArray[np.float64]:
-        """Coordinates of this rank's nodes in the plane, ghosts included, (n, 2)."""
+        """Coordinates of this rank's nodes in the chart, ghosts included, (n, 2)."""
         return self.V.tabulate_dof_coordinates()[:, :2]
 
     @cached_property
     def contact(self) -> SurfaceNodes:
         """Nodes under the punch, both edges included."""
         blocks = self._owned_blocks("contact")
-        s = self.plane.along_surface(self.coordinates[blocks])
+        s = self.chart.along_surface(self.coordinates[blocks])
         parts = self.comm.allgather(s)
         everyone = np.concatenate(parts)
         rank_of = np.argsort(np.argsort(everyone, kind="stable"), kind="stable")
@@ -117,7 +117,7 @@ class Space:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
         owned = len(self.node_dofs) // 2
         mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
-        X, Y = self.plane.to_physical(self.coordinates[mine]).T  # in the order of their numbers
+        X, Y = self.chart.to_physical(self.coordinates[mine]).T  # in the order of their numbers
         modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
         modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
         modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
@@ -144,10 +144,10 @@ class Space:
             with self.clock("forms"), compiling(self.comm) as options:
                 W = adapter.mixed_space(self.mesh, self.degree, self.degree - 2, options)
             (u, p), (w, q) = ufl.TrialFunctions(W), ufl.TestFunctions(W)
-            form = mixed_stiffness(u, p, w, q, self.plane, x, κ, c, self.degree)
+            form = mixed_stiffness(u, p, w, q, self.chart, x, κ, c, self.degree)
         else:
             u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-            form = moving_stiffness(u, w, self.plane, x, κ, c, self.degree)
+            form = moving_stiffness(u, w, self.chart, x, κ, c, self.degree)
         with self.clock("forms"), compiling(self.comm) as options:
             return adapter.compile_form(form, options), κ, c
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from solvers.fem.lagrange import lagrange
-from solvers.fem.space import Space
+from galinx.solvers.fem.lagrange import lagrange
+from galinx.solvers.fem.space import Space
 
 #: Distance over a facet's length within which a point counts as between it and the one on the left.
 _BETWEEN = 1e-9
@@ -40,7 +40,7 @@ def surface_facets(space: Space, parts: Sequence[str]) -> SurfaceFacets:
             closure = dofmap.dof_layout.entity_closure_dofs(1, local)
             nodes.append(dofmap.cell_dofs(cell)[closure])
     index = np.array(nodes, dtype=np.int32).reshape(-1, space.degree + 1)
-    s = space.plane.along_surface(space.coordinates[index])
+    s = space.chart.along_surface(space.coordinates[index])
     order = np.argsort(s, axis=1)
     return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
 
@@ -89,8 +89,8 @@ class SurfaceSlopes:
     """
 
     def __init__(self, space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> None:
-        s = space.plane.surface_coordinate(X)
-        stretch = space.plane.surface_stretch(s)[:, None, None]
+        s = space.chart.surface_coordinate(X)
+        stretch = space.chart.surface_stretch(s)[:, None, None]
         self._basis = gather(space, fields).derivative(s) / stretch
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

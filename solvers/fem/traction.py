@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from solvers.fem.lagrange import lagrange
-from solvers.fem.linear import Factor
-from solvers.fem.space import Space
-from solvers.fem.surface import surface_facets
+from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.lagrange import lagrange
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.surface import surface_facets
 
 #: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
 #: because next to an edge X/a itself no longer tells the distance.
@@ -77,6 +77,6 @@ class LoadedHalfPlane:
             from_right = right - nodes[-1] + length * (t if at_right else 1.0 - t)
             position = 1.0 - t if at_right else t
             basis, _ = lagrange((nodes - nodes[0]) / length, position)
-            d_left, d_right, stretch = self.space.plane.under_punch(from_left, from_right)
+            d_left, d_right, stretch = self.space.chart.under_punch(from_left, from_right)
             forces[i] = (w * length * stretch * σ_YY(d_left, d_right)) @ basis
         return forces

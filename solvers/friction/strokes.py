@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.friction.dahl import Dahl, exact, runge_kutta
+from galinx.solvers.friction.dahl import Dahl, exact, runge_kutta
 
 #: Direction of sliding by the name of a stroke.
 DIRECTION = {"forward": 1, "backward": -1}

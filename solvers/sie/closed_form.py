@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.materials import MovingFrame
+from galinx.solvers.solids.isotropic import MovingFrame
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import eval_jacobi, roots_jacobi
 
-from solvers.materials import MovingFrame
+from galinx.solvers.solids.isotropic import MovingFrame
 
 
 @dataclass(frozen=True)

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, Refinement
-from solvers.fem import surface
-from solvers.fem.distributed import distribute
-from solvers.fem.interior import InteriorGradients
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
-from solvers.fem.traction import LoadedHalfPlane
-from solvers.materials import MovingFrame
-from solvers.sie.closed_form import FlatPunch
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.solvers.fem import surface
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.traction import LoadedHalfPlane
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
 
 REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 
@@ -21,7 +21,7 @@ REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 def on(comm, mesh, mixed=False):
     kind = MESHES[mesh]
     piece = kind.build(REFINEMENT, 1, comm.rank, comm.size)
-    return Space(*distribute(piece, comm), TAGS, kind.plane, 5, mixed)
+    return Space(*distribute(piece, comm), TAGS, kind.chart, 5, mixed)
 
 
 @pytest.mark.parametrize("mesh, mixed", [("confocal", False), ("graded", False), ("confocal", True)])

@@ -5,11 +5,11 @@ import pytest
 from conftest import HOME
 from mpi4py import MPI
 
-from app import plan
-from app.collector import Memory
-from app.plan import make_plan
-from app.run import compute
-from app.scene import read
+from galinx.app.plan import plan
+from galinx.app.plan.plan import make_plan
+from galinx.app.run.collector import Memory
+from galinx.app.run.compute import compute
+from galinx.app.scene.scene import read
 
 SCENES = {path.stem: read(path) for path in sorted((HOME / "scenes").glob("*.toml"))}
 #: Largest differences: relative of what a scene is run for, absolute of errors and fitted exponents, and

@@ -6,14 +6,14 @@ import pytest
 from conftest import HOME
 from mpi4py import MPI
 
-from app.fields import state_field, write_field
-from app.scene import read
-from meshes.halfplane import MESHES
-from meshes.rings import TAGS, Refinement
-from solvers.fem.distributed import distribute
-from solvers.fem.field import sample
-from solvers.fem.punch import SlidingPunch
-from solvers.fem.space import Space
+from galinx.app.results.paraview import state_field, write_field
+from galinx.app.scene.scene import read
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.sampling import sample
+from galinx.solvers.fem.space import Space
 
 
 @pytest.mark.parametrize("mesh, extent", [("confocal", 5.0), ("graded", 5.0), ("confocal", 1e-3)])
@@ -21,7 +21,7 @@ def test_ranks_sample_together_what_one_samples(mesh, extent):
     kind, found = MESHES[mesh], []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         cells = kind.build(Refinement(5, 0.35, 2, (3.0,) * 4), 1, comm.rank, comm.size)
-        space = Space(*distribute(cells, comm), TAGS, kind.plane, 5)
+        space = Space(*distribute(cells, comm), TAGS, kind.chart, 5)
         punch = SlidingPunch(space, 2.0, 0.6)
         weights = punch.states(-0.66).weights[0]
         found.append(sample(space, 2.0, 0.6, punch.fields, weights, extent, 4).gathered(comm))

@@ -1,0 +1,40 @@
+"""What commands print at their end."""
+
+import json
+import os
+import shutil
+import sys
+import textwrap
+from typing import Any
+
+from galinx.app import ranks
+
+
+def say(text: str, hang: int = 2) -> None:
+    """Print a line, folded at the terminal's width (80 columns where it is none)."""
+    width = shutil.get_terminal_size().columns
+    print(textwrap.fill(text, width, subsequent_indent=" " * hang, break_on_hyphens=False))
+
+
+def colours() -> bool:
+    """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
+    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+
+
+def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
+    """States, comparisons and verdict unless quiet; warnings go to the error stream."""
+    from galinx.postprocess.tables import new_console, print_sheet, print_verdict, states_sheet
+
+    if not quiet:
+        console = new_console(colours=colours())
+        print_sheet(console, states_sheet(data, attributes["title"]))
+        print_verdict(console, attributes)
+    for text in json.loads(attributes["warnings"]):
+        print(f"warning: {text}", file=sys.stderr)
+
+
+def print_times(data: dict[str, Any]) -> None:
+    """Wall time of the steps that took some, longest first."""
+    steps = sorted(zip(data["run/seconds"].tolist(), data["run/steps"].tolist()), reverse=True)
+    told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
+    say(f"time: {sum(seconds for seconds, _ in steps):.2g} s{f' ({told})' if told else ''}")

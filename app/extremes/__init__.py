@@ -1,0 +1,1 @@
+"""Extremes of every parameter, and whether the promises hold there."""

@@ -1,0 +1,113 @@
+"""The report of an archive: one HTML page that needs nothing else."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from galinx.app.errors import MachineFailure
+from galinx.app.results.drawings import Drawing
+from galinx.app.scene.scene import Scene
+from galinx.app.study.published import INTENSITIES, intensities, intensity_rows
+from galinx.postprocess.figures.canvas import in_a_page
+from galinx.postprocess.page import render
+from galinx.postprocess.tables import Sheet, states_sheet
+
+
+class Report:
+    """A report in the making.
+
+    Args:
+        data, attributes: an archive.
+        scene: the archive's.
+        sheets: tables before that of the states; the published ones where the archive has their states.
+    """
+
+    def __init__(
+        self,
+        data: dict[str, Any],
+        attributes: dict[str, Any],
+        scene: Scene,
+        sheets: list[Sheet] | None = None,
+    ) -> None:
+        self._data, self._attributes, self._scene = data, attributes, scene
+        self._sheets = _published(data, scene) if sheets is None else sheets
+        self._pictures: list[dict[str, Any]] = []
+
+    def add(self, drawing: Drawing) -> None:
+        """Take a figure in; it can be saved elsewhere afterwards."""
+        source = in_a_page(drawing.figure, drawing.pixels)
+        self._pictures.append({"source": source, "caption": drawing.caption, "pixels": drawing.pixels})
+
+    def text(self) -> str:
+        """The page."""
+        attributes, data = self._attributes, self._data
+        comparisons = json.loads(attributes["comparisons"])
+        seconds = data["run/seconds"]
+        longest = max(float(seconds.max()), 1e-9)
+        return render(
+            {
+                "title": attributes["title"] or "A sliding punch",
+                "verdict": attributes["verdict"],
+                "summary": self._summary(),
+                "warnings": json.loads(attributes["warnings"]),
+                "reasons": json.loads(attributes["verdict_reasons"]),
+                "comparisons": [(text, f"{value:.1e}") for text, value in comparisons.items()],
+                "sheets": [*self._sheets, states_sheet(data, "States")],
+                "pictures": self._pictures,
+                "times": [
+                    (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
+                    for name, value in zip(data["run/steps"].tolist(), seconds.tolist())
+                ],
+                "done": data["run/done"].tolist(),
+                "skipped": data["run/skipped"].tolist(),
+                "versions": _versions(attributes),
+                "scene": data["scene/text"],
+            }
+        )
+
+    def _summary(self) -> str:
+        data, scene = self._data, self._scene
+        speeds = np.unique(data["states/c"])
+        moving = f"{speeds[0]:g}" if len(speeds) == 1 else f"{speeds[0]:g} to {speeds[-1]:g}"
+        count = len(data["states/f"])
+        text = (
+            f"{count} friction state{'s' * (count > 1)} of a rigid flat punch, half-width "
+            f"{scene.punch.half_width:g} m, load {scene.punch.load:g} N/m, that slides at c = {moving} "
+            f"(over the shear wave speed) on a half-plane with E = {scene.solid.E:.6g} Pa, "
+            f"ν = {scene.solid.nu:g}, ρ = {scene.solid.rho:g} kg/m³ in plane {scene.solid.plane}."
+        )
+        if "run/fem/unknowns" in data:
+            text += (
+                f" Finite elements: {scene.solve.mesh} mesh, {int(data['run/fem/cells'].max())} cells of "
+                f"degree up to {int(data['run/fem/degree'].max())}, "
+                f"{int(data['run/fem/unknowns'].max())} unknowns, tolerance {scene.solve.tolerance:g}."
+            )
+        return text
+
+
+def write_report(path: Path, report: Report) -> None:
+    """Write the page.
+
+    Raises:
+        MachineFailure: the file system refused.
+    """
+    try:
+        path.write_text(report.text(), encoding="utf-8")
+    except OSError as error:
+        raise MachineFailure(f"cannot write {path}: {error.strerror}") from None
+
+
+def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
+    """The study's tables that the archive has all states of, for the study's solid."""
+    if (scene.solid.nu, scene.solid.plane) != (0.25, "strain"):
+        return []
+    found = {name: intensity_rows(name, data) for name in INTENSITIES}
+    return [intensities(name, rows) for name, rows in found.items() if rows]
+
+
+def _versions(attributes: dict[str, Any]) -> str:
+    told = {"galinx": attributes["version"], **json.loads(attributes.get("versions", "{}"))}
+    text = ", ".join(f"{name} {version}" for name, version in told.items())
+    return f"{text}; {attributes.get('machine', 'machine unknown')}; {attributes.get('created', '')}"

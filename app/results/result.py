@@ -1,0 +1,178 @@
+"""Results in Python: everything the command line does in a few lines, with or without files."""
+
+import json
+from collections.abc import Iterator
+from contextlib import nullcontext
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from galinx.app.console.progress import Progress
+from galinx.app.run.collector import Memory
+from galinx.app.run.compute import check_output
+from galinx.app.run.compute import compute as compute_into
+from galinx.app.scene import scene as scenes
+from galinx.app.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray
+
+    from galinx.app.results.drawings import Drawing
+
+
+class Result:
+    """What was computed of a scene.
+
+    Args:
+        data: datasets by their path in an archive; units and meanings in ``docs/archive.md``.
+        attributes: those of an archive's root.
+    """
+
+    def __init__(self, data: dict[str, Any], attributes: dict[str, Any]) -> None:
+        self.data, self.attributes = data, attributes
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that was computed."""
+        return scenes.parse(self.data["scene/text"], "the scene of the archive")
+
+    @property
+    def verdict(self) -> str:
+        """``"PASS"``, ``"FAIL"`` or ``"not judged"``."""
+        return self.attributes["verdict"]
+
+    @property
+    def comparisons(self) -> dict[str, float]:
+        """Largest difference over all states by what was compared, dimensionless."""
+        return json.loads(self.attributes["comparisons"])
+
+    @cached_property
+    def dataset(self) -> "xarray.Dataset":
+        """Named arrays over the dimension ``state``, with units and long names."""
+        from galinx.postprocess.named import dataset
+
+        return dataset(self.data, self.attributes)
+
+    @cached_property
+    def grid(self) -> "xarray.Dataset":
+        """The same over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
+        from galinx.postprocess.named import over_parameters
+
+        return over_parameters(self.dataset)
+
+    def drawings(self) -> Iterator["Drawing"]:
+        """Every figure that the result allows."""
+        from galinx.app.results.drawings import of_archive
+
+        return of_archive(self.data, self.scene)
+
+    def plot(self, folder: Path | str = ".", name: str = "galinx") -> list[Path]:
+        """Write every figure as PDF and PNG into a folder, which is made; their paths."""
+        from galinx.postprocess.figures.canvas import save
+
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        return [path for d in self.drawings() for path in save(d.figure, folder, f"{name}_{d.name}")]
+
+    def report(self, path: Path | str) -> None:
+        """Write a self-contained HTML page.
+
+        Raises:
+            MachineFailure: the file system refused.
+        """
+        from galinx.app.results.report import Report, write_report
+
+        report = Report(self.data, self.attributes, self.scene)
+        for drawing in self.drawings():
+            report.add(drawing)
+        write_report(Path(path), report)
+
+    def fields(self, path: Path | str, state: int = 0, extent: float = 10.0) -> None:
+        """Write displacement and stresses of a state for ParaView (VTKHDF); collective under MPI.
+
+        Args:
+            path: the file, ``.hdf`` by ParaView's habit.
+            state: which, from 0.
+            extent: how far from the punch's centre, over a.
+
+        Raises:
+            BadInput: no such state, or finite elements have no answer there.
+        """
+        from galinx.app.results.paraview import write_field
+
+        write_field(self.scene, state, Path(path), extent, self._degree(state))
+
+    def save(self, path: Path | str, overwrite: bool = False) -> None:
+        """Write an archive.
+
+        Raises:
+            BadInput: the file exists, or its folder does not.
+            UnwritableArchive: the file system refused.
+        """
+        from galinx.postprocess.hdf5.archive import Writer
+
+        check_output(Path(path), overwrite)
+        with Writer(Path(path)) as writer:
+            for name, value in self.data.items():
+                writer.put(name, value)
+            writer.finish(self.attributes)
+
+    def _degree(self, state: int) -> int | None:
+        """Degree that was used at a state's speed, None without finite elements."""
+        c, used = self.data["states/c"], self.data.get("run/fem/degree")
+        if used is None or not 0 <= state < len(c):
+            return None
+        return int(used[self.data["run/fem/c"] == c[state]][0]) or None
+
+
+def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:
+    """A scene from a file, with other values by ``"section.key"``.
+
+    Raises:
+        BadInput: the file cannot be read, or the scene has faults; all are listed.
+    """
+    return scenes.read(Path(path), changes)
+
+
+def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
+    """One of the scenes to begin with, with other values by ``"section.key"``.
+
+    Raises:
+        BadInput: no such scene, or the changed one has faults.
+    """
+    from galinx.app.errors import BadInput
+    from galinx.app.scene.changes import changed
+    from galinx.app.scene.templates import templates
+
+    known = templates()
+    if name not in known:
+        raise BadInput(f"template {name!r}: no such scene; expected one of {', '.join(known)}")
+    return scenes.parse(changed(known[name].text, changes or {}), name)
+
+
+def compute(scene: Scene, progress: bool = False) -> Result:
+    """Compute a scene in memory.
+
+    Args:
+        scene: what is asked for.
+        progress: show a bar on a terminal.
+
+    Raises:
+        BadInput: the scene asks for what has no answer.
+        SolveError: no speed could be solved.
+    """
+    data = Memory()
+    with Progress() if progress else nullcontext() as shown:
+        attributes = compute_into(scene, data, shown)
+    return Result(dict(data), attributes)
+
+
+def load(path: Path | str, stresses: bool = True) -> Result:
+    """An archive's result; ``stresses`` on the surface and inside can be left out.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
+    """
+    from galinx.postprocess.hdf5.archive import read
+
+    return Result(*read(Path(path), stresses))

@@ -1,0 +1,1 @@
+"""The flow from a plan to an archive."""

@@ -1,0 +1,1 @@
+"""Scenes: sections, values with units, materials, templates."""

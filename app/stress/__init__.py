@@ -1,1 +1,0 @@
-"""The stress matrix: extremes of every parameter, and whether the program keeps its word there."""

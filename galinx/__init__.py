@@ -1,0 +1,31 @@
+"""galinx: sliding contact at wave speed.
+
+In Python::
+
+    import galinx
+    result = galinx.compute(galinx.template("tables4_5", {"friction.mu_c": 0.5}))
+    result.dataset.fem_K_I_right
+
+The rooms of the program, ``galinx.app``, ``galinx.solvers`` and so on, are the folders of those names
+beside this one in the source tree, where they are linked to, and inside this one where it is installed.
+"""
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+#: Where each public name comes from; imported when it is asked for.
+_NAMES = dict.fromkeys(("Result", "compute", "load", "read_scene", "template"), "app.results.result")
+
+__all__ = [*_NAMES, "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _NAMES:
+        return getattr(import_module(f"galinx.{_NAMES[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,135 @@
+"""A combination of condensed fields, sampled over whole cells: what a picture of the solid shows.
+
+Cells of high degree are cut into small quadrilaterals. Each cell has points of its own, since stresses
+jump from cell to cell.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from galinx.solvers.fem.cells import (
+    gradients_in_plane,
+    image,
+    reference_values,
+    tensor_order,
+    to_physical_axes,
+)
+from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.condensation import CHUNK
+from galinx.solvers.fem.space import Space
+
+#: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
+_VANISHING = 1e-6
+
+
+@dataclass(frozen=True)
+class SampledField:
+    """A displacement field at the corners of small quadrilaterals.
+
+    Attributes:
+        points: positions over a, (n, 2).
+        quads: points of each quadrilateral counterclockwise, (m, 4).
+        displacement: over N/(2μ), (n, 2).
+        gradient: μ ∂u_i/∂X_j over N/(2a), (n, 2, 2).
+    """
+
+    points: NDArray[np.float64]
+    quads: NDArray[np.int64]
+    displacement: NDArray[np.float64]
+    gradient: NDArray[np.float64]
+
+    def gathered(self, comm: MPI.Comm) -> "SampledField | None":
+        """The pieces of all ranks in one, on rank 0; None on the others. Collective."""
+        pieces = comm.gather(self)
+        return None if pieces is None else _joined(pieces)
+
+
+def sample(
+    space: Space,
+    κ: float,
+    c: float,
+    fields: Sequence[PETSc.Vec],
+    weights: NDArray,
+    extent: float,
+    n: int,
+) -> SampledField:
+    """This rank's piece of a combination of fields, in the part |X|, |Y| <= extent of the solid.
+
+    Collective. Quadrilaterals that reach beyond that part are whole.
+
+    Args:
+        space: the finite element space.
+        κ, c: Kolosov's constant and the speed of the fields.
+        fields: displacements over N/(2μ), condensed.
+        weights: of the first of the fields, or of all.
+        extent: half the width, and the depth, of what is sampled, over a.
+        n: quadrilaterals along each side of a cell, about the degree.
+    """
+    t, corners = _cut(n)
+    vertices = space.vertices[..., :2]
+    X = space.chart.to_physical(image(vertices, t))
+    low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
+    wanted = np.all((low < extent) & (high > -extent), axis=2)
+    cells = np.flatnonzero(wanted.any(axis=1))
+    field = fields[0].duplicate()
+    field.zeroEntries()
+    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
+    grid, nodes = tensor_order(space.reference_nodes)
+    pieces = []
+    for start in range(0, space.comm.allreduce(len(cells), MPI.MAX), CHUNK):
+        some = cells[start : start + CHUNK]
+        for cell, u in zip(some, space.cell_values([field], κ, c, some)[:, grid]):
+            quads = corners[wanted[cell]]  # counterclockwise, as every mesh's cells are
+            displacement = reference_values(nodes, t, u)[..., 0]
+            gradient = _gradients(space.chart, vertices[cell], nodes, t, u, n)
+            pieces.append(_without_unused(SampledField(X[cell], quads, displacement, gradient)))
+    field.destroy()
+    return _joined(pieces)
+
+
+def _cut(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The unit square cut into n x n: its (n+1)² points, and the corners of each part in turn."""
+    side = np.linspace(0.0, 1.0, n + 1)
+    t = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    number = np.arange(len(t)).reshape(n + 1, n + 1)
+    around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    return t, np.stack(around, axis=-1).reshape(-1, 4)
+
+
+def _gradients(
+    chart: Chart, vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray, n: int
+) -> NDArray[np.float64]:
+    """Physical displacement gradients of one field at places t of a cell, all finite: (m, 2, 2)."""
+    # At a punch edge the chart's stretch is 0 and the stress infinite. What stands there is the stress
+    # in the middle of the small quadrilateral at that corner, the mean a viewer would paint it with.
+    stretch = chart.stretch(image(vertices, t))
+    at_edge = stretch < _VANISHING * stretch.max()
+    t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
+    gradients = gradients_in_plane(vertices, nodes, t, u)
+    return to_physical_axes(chart, image(vertices, t), gradients)[..., 0]
+
+
+def _without_unused(field: SampledField) -> SampledField:
+    """The same without points that no quadrilateral has."""
+    used, quads = np.unique(field.quads, return_inverse=True)
+    return SampledField(
+        field.points[used], quads.reshape(-1, 4), field.displacement[used], field.gradient[used]
+    )
+
+
+def _joined(pieces: Sequence[SampledField]) -> SampledField:
+    """All pieces in one, in their order."""
+    first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
+    return SampledField(
+        np.concatenate([np.empty((0, 2)), *(piece.points for piece in pieces)]),
+        np.concatenate(
+            [np.empty((0, 4), dtype=np.int64), *(piece.quads + k for piece, k in zip(pieces, first))]
+        ),
+        np.concatenate([np.empty((0, 2)), *(piece.displacement for piece in pieces)]),
+        np.concatenate([np.empty((0, 2, 2)), *(piece.gradient for piece in pieces)]),
+    )

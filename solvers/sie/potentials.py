@@ -1,0 +1,66 @@
+"""Exact stresses inside the half-plane under the sliding flat punch, stable for every 0 <= c < 1.
+
+The two potentials live at z_j = (X + i β_j Y)/a. At slow speed they nearly coincide, and what counts
+is their difference over c², which is therefore computed as such.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import log1p  # NumPy's loses digits for small complex arguments
+
+from galinx.solvers.sie.closed_form import FlatPunch
+
+
+def stresses(punch: FlatPunch, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+    """σ_XX, σ_YY, σ_XY over N/(2a) at points below the surface.
+
+    Args:
+        punch: the exact solution of the contact.
+        X, Y: coordinates over a, of one shape; Y < 0.
+
+    Returns:
+        Array of shape (3, ...).
+
+    Raises:
+        ValueError: a point has Y >= 0; the surface has formulas of its own.
+    """
+    X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
+    if np.any(Y >= 0.0):
+        raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use FlatPunch on the surface")
+    frame, g = punch.frame, punch.g
+    k, β_s, β_d, e, r, q, κ = (
+        frame.k, frame.β_s, frame.β_d, frame.e, frame.r, frame.q, frame.κ
+    )  # fmt: skip
+    Φ_s, d = _potentials(punch, X, Y)
+    s_s, h_s, s, h = -Φ_s.imag, Φ_s.real, -d.imag, d.real
+
+    u_X = (e * s + β_s * g * (2.0 * h + h_s)) / r + q * s_s
+    v_Y = (
+        -(β_d**2) * e * s
+        + β_d * (β_d - 2.0 * (1.0 - k) / (β_d + β_s)) * s_s
+        + β_s * g * ((2.0 * k - 1.0) * h_s - 2.0 * β_d**2 * h)
+    ) / r
+    σ_XY = g * (4.0 * β_s * β_d * s / r + s_s) - 2.0 * β_d * e * h / r
+    # (u,X + v,Y)/(κ - 1), in which κ - 1 has cancelled: it stays what it is up to ν = 1/2.
+    S, c2 = 1.0 + β_s * β_d, frame.c**2
+    of_s_s = 2.0 * (1.0 - c2) / S - c2 + 2.0 * (β_d + β_s * c2 / S) / (β_d + β_s)
+    dilatation = (c2 * (e * s + 2.0 * g * β_s * h) + 2.0 * β_s * g * h_s + of_s_s * s_s) / ((κ + 1.0) * r)
+    σ_XX = u_X - v_Y + 2.0 * dilatation  # Eq 6
+    σ_YY = v_Y - u_X + 2.0 * dilatation  # Eq 7
+    return np.array([σ_XX, σ_YY, σ_XY])
+
+
+def _potentials(
+    punch: FlatPunch, X: NDArray[np.float64], Y: NDArray[np.float64]
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Φ(z_s) and (Φ(z_d) - Φ(z_s))/c² with Φ(z) = (2/π)(z - 1)^α (z + 1)^β."""
+    frame, α, β, c2 = punch.frame, punch.α, punch.β, punch.frame.c**2
+    z = X + 1j * frame.β_s * Y
+    Φ: Any = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
+    δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
+    if c2 == 0.0:
+        return Φ, Φ * δ * (α / (z - 1.0) + β / (z + 1.0))
+    growth = α * log1p(c2 * δ / (z - 1.0)) + β * log1p(c2 * δ / (z + 1.0))
+    return Φ, Φ * np.expm1(growth) / c2

@@ -1,0 +1,1 @@
+"""Elastic solids and their response at speed."""

@@ -7,12 +7,12 @@ import resource
 import sys
 import time
 
-from mpi4py import MPI
-
 from galinx.meshes.halfplane import MESHES
 from galinx.meshes.refine import refinement
+from mpi4py import MPI
+
+from galinx.clock import Clock
 from galinx.meshes.rings import TAGS
-from galinx.solvers.fem.clock import Clock
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.multigrid import Multigrid, available

@@ -9,14 +9,14 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from galinx.app.run.compute import compute
+from galinx.meshes.halfplane import MESHES, check_cells
+from galinx.meshes.refine import refinement
 from mpi4py import MPI
 
 from galinx.app.run.collector import Memory
-from galinx.app.run.compute import compute
 from galinx.app.scene.scene import parse
 from galinx.meshes.gmsh_model import through_gmsh
-from galinx.meshes.halfplane import MESHES, check_cells
-from galinx.meshes.refine import refinement
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
 from galinx.postprocess.pressure import contact_recovery, from_moments
 from galinx.solvers.fem.distributed import distribute

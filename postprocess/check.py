@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -9,43 +10,37 @@ import numpy as np
 
 from galinx.postprocess import compare
 from galinx.postprocess.hdf5 import archive
-from galinx.postprocess.quantities import FIELDS
+from galinx.postprocess.quantities import STATE, Quantity, table
+from galinx.solvers.contact import under_punch
 
 #: States looked at together.
 _ROWS = 1000
 
-#: Where NaN is an answer: outside the contact, and where no exponent can be fitted.
-_MAY_BE_NAN = ("sigma_YY", "sigma_YY_raw", "fem/alpha", "fem/beta")
 
-
-def faults(path: Path, balance: float) -> list[str]:
+def faults(path: Path) -> list[str]:
     """What is wrong with an archive, one sentence each; every byte of it is read.
-
-    Args:
-        path: the archive.
-        balance: largest imbalance of nodal forces, over N.
 
     Raises:
         UnreadableArchive: a checksum fails, or it is no archive at all.
     """
     data, attributes = archive.read(path, stresses=False)
+    known = table()
     found = []
     if not attributes.get("complete"):
         found.append("it does not say that it is complete")
     if hashlib.sha256(data["scene/text"].encode()).hexdigest() != attributes["scene_sha256"]:
         found.append("scene/text has another hash than scene_sha256 says")
     states = len(data["states/g"])
-    found += _layout(path, states)
+    found += _layout(path, states, known)
     worst: dict[str, float] = {}
     failed = data.get("run/failures", [])
     for start in range(0, states, _ROWS):
         rows = archive.read_rows(path, slice(start, start + _ROWS))
-        found += _not_finite(rows, start, bool(len(failed)))
-        for comparison in compare.comparisons(_solved(rows), attributes["load"]):
+        found += _not_finite(rows, start, bool(len(failed)), known)
+        rules = (rule for name in rows if name in known for rule in known[name].compared)
+        for comparison in compare.comparisons(_solved(rows), attributes["load"], rules):
             worst[comparison.text] = max(worst.get(comparison.text, 0.0), comparison.value)
-            if comparison.name == compare.BALANCE and not comparison.value <= balance:
-                value = f"{comparison.value:.1e}, at most {balance:g}"
-                found.append(f"{comparison.text} in states {start} ...: {value}")
+            found += _out_of_balance(comparison, start)
     told = json.loads(attributes["comparisons"])
     if told.keys() != worst.keys() or any(
         not np.isclose(worst[text], told[text], rtol=1e-9) for text in told
@@ -54,30 +49,42 @@ def faults(path: Path, balance: float) -> list[str]:
     return found
 
 
-def _layout(path: Path, states: int) -> list[str]:
+def _layout(path: Path, states: int, known: dict[str, Quantity]) -> list[str]:
     found = []
     for name, (unit, shape) in archive.described(path).items():
-        if name not in FIELDS:
+        if name not in known:
             found.append(f"{name} is not in the table of datasets")
-        elif unit != FIELDS[name][0]:
-            found.append(f"{name} has the unit {unit!r}, expected {FIELDS[name][0]!r}")
-        elif name.startswith("states/") and shape != (states,):
+        elif unit != known[name].unit:
+            found.append(f"{name} has the unit {unit!r}, expected {known[name].unit!r}")
+        elif known[name].over == (STATE,) and shape != (states,):
             found.append(f"{name} has the shape {shape}, expected {states} states")
     return found
 
 
-def _not_finite(rows: dict[str, Any], start: int, failures: bool) -> list[str]:
+def _not_finite(
+    rows: dict[str, Any], start: int, failures: bool, known: dict[str, Quantity]
+) -> Iterator[str]:
     """Datasets with a NaN or an infinity that is not an answer."""
-    found = []
     for name, values in rows.items():
         if np.asarray(values).dtype.kind != "f" or (failures and "/fem/" in name):
             continue
-        bad = np.isinf(values) if name.endswith(_MAY_BE_NAN) else ~np.isfinite(values)
-        if name.startswith("surface/") and name.endswith(_MAY_BE_NAN):
-            bad = bad | (np.isnan(values) & (np.abs(rows["surface/X_over_a"]) < 1.0))
+        allowed = known[name].nan_allowed if name in known else "never"
+        bad = ~np.isfinite(values)
+        if allowed == "anywhere":
+            bad = np.isinf(values)
+        elif allowed == "beside":
+            bad &= np.isinf(values) | under_punch(rows["surface/X_over_a"])
         if bad.any():
-            found.append(f"{name} is not finite in states {start} ...")
-    return found
+            yield f"{name} is not finite in states {start} ..."
+
+
+def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]:
+    """Forces that do not balance are a fault, whatever the verdict."""
+    limit = compare.BALANCE.limit
+    assert limit is not None
+    if comparison.name == compare.BALANCE.name and not comparison.value <= limit:
+        value = f"{comparison.value:.1e}, at most {limit:g}"
+        yield f"{comparison.text} in states {start} ...: {value}"
 
 
 def _solved(rows: dict[str, Any]) -> dict[str, Any]:

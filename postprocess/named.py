@@ -4,17 +4,28 @@ from typing import Any
 
 import xarray
 
-from galinx.postprocess.quantities import FIELDS
+from galinx.postprocess.quantities import Quantity, table
+from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 
-#: What tells states apart: coordinates, in the order of an archive.
-PARAMETERS = ("c", "mu_c", "sigma0_over_load", "delta", "motion", "X_over_L")
-
-_COORDINATES = {
-    "surface/X_over_a": ("X_over_a", ("X_over_a",)),
-    "interior/X_over_a": ("inside_X_over_a", ("point",)),
-    "interior/Y_over_a": ("inside_Y_over_a", ("point",)),
+#: Names of dimensions, and of the positions along them.
+_DIMENSIONS = {STATE: "state", POINT: "X_over_a", INSIDE: "point"}
+_POSITIONS = {
+    "surface/X_over_a": "X_over_a",
+    "interior/X_over_a": "inside_X_over_a",
+    "interior/Y_over_a": "inside_Y_over_a",
 }
-_SECOND = {"states": (), "surface": ("X_over_a",), "interior": ("point",)}
+
+
+def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
+    """What tells an archive's states apart, by its dataset's path, slowest first.
+
+    Args:
+        data: datasets by path.
+    """
+    known = {path: row for path, row in table().items() if row.symbol and path in data}
+    first, last = ["states/c"], ["states/motion", "states/X_over_L"]
+    own = [path for path in known if path not in (*first, *last)]
+    return {path: known[path] for path in (*first, *own, *last)}
 
 
 def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
@@ -24,24 +35,28 @@ def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
         data: datasets by path.
         attributes: of the archive's root.
     """
-    variables, coordinates = {}, {}
+    known, apart = table(), parameters(data)
+    variables: dict[str, Any] = {}
+    coordinates: dict[str, Any] = dict.fromkeys(path.rpartition("/")[2] for path in apart)
     for path, values in data.items():
-        section, *rest = path.split("/")
-        if section not in _SECOND or path == "interior/map":
+        row = known.get(path)
+        if row is None or not row.over or not set(row.over) <= _DIMENSIONS.keys():
             continue
-        about = dict(zip(("units", "long_name"), FIELDS[path]))
-        if path in _COORDINATES:
-            name, dims = _COORDINATES[path]
-            coordinates[name] = (dims, values, about)
-        elif section == "states" and rest[-1] in PARAMETERS and len(rest) == 1:
-            coordinates[rest[0]] = (("state",), values, about)
+        dims = tuple(_DIMENSIONS[dimension] for dimension in row.over)
+        about = {"units": row.unit, "long_name": row.about}
+        section, *rest = path.split("/")
+        if path in _POSITIONS:
+            coordinates[_POSITIONS[path]] = (dims, values, about)
+        elif path in apart:
+            coordinates[rest[0]] = (dims, values, about)
         else:
             name = "_".join(rest if section == "states" else (section, *rest))
-            variables[name] = (("state", *_SECOND[section]), values, about)
+            variables[name] = (dims, values, about)
     kept = {name: attributes[name] for name in ("title", "version", "verdict")}
     return xarray.Dataset(variables, coordinates, kept)
 
 
 def over_parameters(states: xarray.Dataset) -> xarray.Dataset:
-    """The arrays over ``c``, ``mu_c``, ``sigma0_over_load``, ``delta``, ``motion`` and ``X_over_L``."""
-    return states.set_index(state=PARAMETERS).unstack("state")
+    """The arrays over ``c``, the law's parameters, ``motion`` and ``X_over_L``."""
+    apart = [name for name in states.coords if states[name].dims == ("state",)]
+    return states.set_index(state=apart).unstack("state")

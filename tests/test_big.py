@@ -5,6 +5,8 @@ import re
 import numpy as np
 import pytest
 from conftest import run_scene
+from galinx.meshes.halfplane import MESHES
+from galinx.meshes.refine import refinement
 
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
@@ -14,8 +16,6 @@ from galinx.app.results.paraview import state_field
 from galinx.app.scene.changes import changed
 from galinx.app.scene.scene import parse
 from galinx.app.scene.templates import templates
-from galinx.meshes.halfplane import MESHES
-from galinx.meshes.refine import refinement
 from galinx.solvers.fem.multigrid import LIMIT, available
 
 TEXT = templates()["tables4_5"].text

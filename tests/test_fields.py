@@ -4,6 +4,7 @@ import attrs
 import numpy as np
 import pytest
 from conftest import HOME
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 from numpy.polynomial.legendre import leggauss
 from scipy.spatial import cKDTree
@@ -13,7 +14,6 @@ from galinx.app.plan.states import enumerate_states
 from galinx.app.results import paraview as fields
 from galinx.app.results.paraview import ABOUT, StateField, state_field, write_field
 from galinx.app.scene.scene import parse, read
-from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess import stresses
 from galinx.postprocess.errors import UnwritableArchive

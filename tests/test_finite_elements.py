@@ -3,15 +3,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import run_scene
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 from scipy.special import eval_chebyt
 
-from galinx.meshes.halfplane import MESHES
+from galinx.clock import Clock
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess import compare
 from galinx.solvers.errors import MeshError, SolveError
 from galinx.solvers.fem import direct as linear
-from galinx.solvers.fem.clock import Clock
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 import sympy as sp
 from conftest import run_scene
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 
 from galinx.app.errors import BadInput
-from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.stresses import stresses_inside
 from galinx.solvers.errors import MeshError

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
+from galinx.meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
+from galinx.meshes.refine import outer_ξ, refinement
 from mpi4py import MPI
 
 from galinx.app.plan.plan import unknowns
 from galinx.meshes.charts import Confocal
-from galinx.meshes.halfplane import BOX_DEPTH, BOX_WIDTH, MESHES, QuadMesh, check_cells
-from galinx.meshes.refine import outer_ξ, refinement
 from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space

@@ -3,10 +3,10 @@ import sys
 import numpy as np
 import pytest
 from conftest import command
-
-from galinx.meshes import store
 from galinx.meshes.halfplane import MESHES
 from galinx.meshes.refine import refinement
+
+from galinx.meshes import store
 from galinx.meshes.rings import QuadMesh
 
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 
-from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.postprocess.pressure import contact_recovery, from_moments
 from galinx.solvers.fem import adapter

@@ -13,7 +13,7 @@ from galinx.app.commands import options
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import print_summary, print_times, say
 from galinx.app.errors import MachineFailure
-from galinx.app.scene import scene as scenes
+from galinx.app.scene import read as scenes
 from galinx.app.scene.changes import from_words
 
 
@@ -33,7 +33,8 @@ def run(
     Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
     """
     from galinx.app.plan import plan as planning
-    from galinx.app.run.compute import check_output, compute
+    from galinx.app.run.flow import compute
+    from galinx.app.run.output import check_output
 
     target = output or Path(scene.stem + ".h5")
     checked = scenes.read(scene, from_words(changes))
@@ -90,7 +91,7 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
             say(f"do    {text}", 6)
         for text in planned.skipped:
             say(f"skip  {text}", 6)
-        say(f"cost  {expense(checked, planned)}", 6)
+        say(f"cost  {expense(planned)}", 6)
         for text in planned.warnings:
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD

@@ -38,10 +38,9 @@ def check(archive: Path) -> int:
 
     Example: ./run.sh check tables.h5
     """
-    from galinx.app.run.judge import BALANCE_LIMIT
     from galinx.postprocess.check import faults
 
-    found = faults(archive, BALANCE_LIMIT)
+    found = faults(archive)
     if ranks.is_root():
         for text in found:
             print(f"fault: {text}")

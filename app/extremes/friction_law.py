@@ -1,10 +1,12 @@
 """Extremes of Dahl's law: its exact solution against integration, and Runge-Kutta's stability."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from galinx.app.extremes.row import Row, Verdict
-from galinx.solvers.friction.dahl import RK4_STABILITY_LIMIT, Dahl, exact, runge_kutta
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.integrate import RK4_STABILITY_LIMIT, runge_kutta
 
 
 def exact_law() -> Row:
@@ -37,10 +39,15 @@ def _difference(law: Dahl) -> float:
             (0.0, end), [np.log(y0)], method="DOP853", t_eval=grid, rtol=1e-12, atol=1e-13,
         )  # fmt: skip
         y = np.exp(solution.y[0])
-        worst = max(worst, float(np.abs(1.0 - exact(law, f0, 1, grid) / law.μ_C - y).max()))
-        beyond = exact(law, f0, 1, np.array([2.0 * end])) / law.μ_C
+        worst = max(worst, float(np.abs(1.0 - _exact(law, f0, grid) / law.μ_C - y).max()))
+        beyond = _exact(law, f0, np.array([2.0 * end])) / law.μ_C
         worst = max(worst, float(max(beyond[0] - 1.0, 0.0)))  # never above μ_C
     return worst
+
+
+def _exact(law: Dahl, f0: float, d: NDArray) -> NDArray:
+    """f after slip d forward from f0."""
+    return law.exact(np.array([f0]), 1, 0.0, d)[:, 0]
 
 
 def runge_kutta_steps() -> Row:
@@ -49,8 +56,8 @@ def runge_kutta_steps() -> Row:
     law = Dahl(0.7, 25000.0, 1.0)
     length = (1.0 - 1e-9) * 2.0 * RK4_STABILITY_LIMIT * law.μ_C / law.λ
     errors = np.array([
-        np.abs(runge_kutta(law, 0.0, 1, length, int(n)).f
-               - exact(law, 0.0, 1, np.linspace(0.0, length, n + 1))).max() / law.μ_C
+        np.abs(runge_kutta(law, law.rest(), 1, 0.0, length, int(n)).z[:, 0]
+               - _exact(law, 0.0, np.linspace(0.0, length, n + 1))).max() / law.μ_C
         for n in steps
     ])  # fmt: skip
     slope = np.polyfit(np.log(steps[4:]), -np.log(errors[4:]), 1)[0]
@@ -58,7 +65,7 @@ def runge_kutta_steps() -> Row:
     factors = (1.0001, 1.1, 2.0, 1e3, 1e6)
     for factor in factors:
         try:
-            runge_kutta(law, 0.0, 1, factor * length, 2)
+            runge_kutta(law, law.rest(), 1, 0.0, factor * length, 2)
         except ValueError as error:
             refused += "unstable" in str(error)
     verdicts = (

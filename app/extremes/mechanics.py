@@ -6,22 +6,22 @@ from mpi4py import MPI
 from galinx.app.errors import BadInput
 from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
 from galinx.app.plan.plan import make_plan
-from galinx.app.scene.scene import parse
-from galinx.meshes.halfplane import MESHES
+from galinx.app.scene.read import parse
+from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import MovingFrame, Solid, rayleigh_speed
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 
 TOLERANCE = 1e-6
 
 
 def speeds() -> Row:
     """From rest to 0.999 of the Rayleigh speed."""
-    κ = Solid(193e9, 0.25, 7860.0).κ
+    κ = Isotropic(193e9, 0.25, 7860.0).κ
     c_R = rayleigh_speed(κ)
     shares = [0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999]
     c = [0.0, 1e-12, 4.786e-7, 1e-3, *(share * c_R for share in shares)]
@@ -60,8 +60,8 @@ def _in_plane_error(data: dict[str, np.ndarray]) -> np.ndarray:
 def _slope_error(κ: float, c: float, degree: int, g: float = -0.5) -> float:
     """Error of v,X for 1.1 <= |X/a| <= 5 over its largest value there; v,X knows the Rayleigh speed."""
     plan, kind = make_plan(parse(scene(c=[c]))), MESHES["confocal"]
-    space = Space(*distribute(kind.build(plan.refinement), MPI.COMM_WORLD), TAGS, kind.chart, degree)
-    punch = SlidingPunch(space, κ, c)
+    space = Space(*distribute(plan.fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree)
+    punch = SlidingPunch(space, MovingFrame(κ, c))
     weights = punch.states(g).weights
     X = np.concatenate([-np.linspace(1.1, 5.0, 40), np.linspace(1.1, 5.0, 40)])
     found = SurfaceSlopes(space, punch.fields, X).of(weights)[1][0]
@@ -112,7 +112,7 @@ def solids() -> Row:
 
 def _slow_and_fast(ν: float, plane: str) -> list[float]:
     """Rest, and 0.9 of the Rayleigh speed, which changes with ν."""
-    return [0.0, 0.9 * rayleigh_speed(Solid(193e9, ν, 7860.0, plane).κ)]
+    return [0.0, 0.9 * rayleigh_speed(Isotropic(193e9, ν, 7860.0, plane).κ)]
 
 
 def frictions() -> Row:

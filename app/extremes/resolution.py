@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from galinx.app.extremes.row import Row, Verdict
-from galinx.meshes.halfplane import MESHES
+from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.pressure import contact_recovery, from_moments
 from galinx.solvers.fem.distributed import distribute
@@ -27,7 +27,7 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, _RATIO, 2, (reach / count,) * count))
     space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, kind.chart, degree)
-    punch, g = SlidingPunch(space, 2.0, c), np.array([-0.66, 0.66])
+    punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
     recovery = contact_recovery(space.contact.s, degree, space.chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), g)
     pressure = from_moments(punch.states(g).normal @ recovery.moments, local.α, local.β)

@@ -5,9 +5,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from galinx.app.run.collector import Memory
-from galinx.app.run.compute import compute
-from galinx.app.scene.scene import parse
+from galinx.app.run.flow import compute
+from galinx.app.run.sinks import Memory
+from galinx.app.scene.read import parse
 
 #: The true error may exceed the estimate by this factor.
 HONEST = 3.0

@@ -1,103 +1,117 @@
 """The states a scene asks for: every combination of its lists, in the order they are archived."""
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.scene import Scene
-from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.friction.strokes import friction_along
-from galinx.solvers.solids.isotropic import Solid
+from galinx.app.scene.sense import oddities
+from galinx.solvers.friction import FrictionLaw
+from galinx.solvers.friction.strokes import Stroke, friction_along
+
+#: Positions on a stroke at which loops are archived, and the most loops that are.
+FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
 
 
 @dataclass(frozen=True)
 class States:
-    """One entry a state in every array.
+    """Friction states, and the loops that they lie on.
 
     Attributes:
-        motion: name of the stroke, FM1, BM1, ….
-        X_over_L, c, mu_c, sigma0_over_load, delta: as the scene's; 1/m for sigma0_over_load.
-        f: friction coefficient F/N, signed.
-        g: σ_XY/σ_YY under the punch.
+        columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
+            speed), the law's parameters, f = F/N signed, g = σ_XY/σ_YY under the punch, and loop, the row
+            of ``loops``.
+        travel: positions X/L along all strokes in the order of travel, (steps,).
+        loops: friction coefficient there, (loops, steps).
     """
 
-    motion: NDArray[np.str_]
-    X_over_L: NDArray[np.float64]
-    c: NDArray[np.float64]
-    mu_c: NDArray[np.float64]
-    sigma0_over_load: NDArray[np.float64]
-    delta: NDArray[np.float64]
-    f: NDArray[np.float64]
-    g: NDArray[np.float64]
+    columns: dict[str, NDArray]
+    travel: NDArray[np.float64]
+    loops: NDArray[np.float64]
 
     def __len__(self) -> int:
-        return len(self.f)
+        return len(self.g)
 
-
-def solid_of(scene: Scene) -> Solid:
-    """The scene's solid."""
-    return Solid(scene.solid.E, scene.solid.nu, scene.solid.rho, scene.solid.plane)
+    @property
+    def g(self) -> NDArray[np.float64]:
+        """σ_XY/σ_YY under the punch, (states,)."""
+        return self.columns["g"]
 
 
 def speeds(scene: Scene) -> tuple[float, ...]:
-    """Speeds over the shear wave speed.
+    """Speeds over the wave speed.
 
     Raises:
         BadInput: a speed given in m/s is not subsonic.
     """
     if scene.motion.c is not None:
         return tuple(dict.fromkeys(scene.motion.c))
-    c_s = solid_of(scene).c_s
+    c_s = scene.solid.c_s
     for speed in scene.motion.speed or ():
         if speed >= c_s:
             raise BadInput(
                 f"motion.speed = {speed:g} m/s: expected less than the shear wave speed {c_s:.6g} m/s"
-                + "".join(f"; {text}" for text in scene.warnings)
+                + "".join(f"; {text}" for text in oddities(scene))
             )
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 
-def pieces(states: States, size: int, c: float | None = None) -> Iterator[slice]:
-    """Runs of at most ``size`` states, each at one speed; of all speeds, or of one."""
-    for speed in dict.fromkeys(states.c.tolist()) if c is None else (c,):
-        mine = np.flatnonzero(states.c == speed)  # the speed is the slowest index
-        for first in range(int(mine[0]), int(mine[-1]) + 1, size):
-            yield slice(first, min(first + size, int(mine[-1]) + 1))
+def states_a_speed(scene: Scene) -> int:
+    """Number of states at each speed."""
+    lists = [*scene.friction.parameters.values(), scene.motion.strokes, set(scene.motion.X_over_L)]
+    return int(np.prod([len(entries) for entries in lists], dtype=np.int64))
 
 
 def enumerate_states(scene: Scene) -> States:
-    """Friction of every state; each set of friction parameters is integrated once.
+    """Friction of every state; each law is followed once, or once a speed where it depends on that.
 
     Raises:
         BadInput: the integrator refuses the parameters.
     """
     friction = scene.friction
-    sign = -1.0 if friction.sign == "physical" else 1.0
-    rows = []
-    laws = list(product(friction.mu_c, friction.sigma0_over_load, friction.delta))
     try:
-        histories = [
-            friction_along(
-                Dahl(*law),
-                scene.motion.strokes,
-                friction.pre_sliding,
-                scene.motion.X_over_L,
-                friction.integrator,
-            )
-            for law in laws
-        ]
+        laws = friction.laws()
+        followed = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+        histories = [_strokes(scene, law, c, scene.motion.X_over_L) for c in followed for _, law in laws]
+        drawn = [_strokes(scene, law, c, FINE) for c in followed for _, law in laws][:LOOPS]
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
-    for c in speeds(scene):
-        for law, history in zip(laws, histories):
-            rows += [
-                (stroke.name, X, c, *law, f, sign * f + 0.0)
-                for stroke in history
-                for X, f in zip(stroke.X_over_L, stroke.f)
-            ]
-    columns = list(zip(*rows))
-    return States(np.array(columns[0]), *(np.array(column, dtype=float) for column in columns[1:]))
+    f = np.array([_joined([stroke.f for stroke in strokes]) for strokes in histories])
+    loop = np.arange(len(f))
+    loop[LOOPS:] = -1
+    if not friction.law.depends_on_speed:
+        f, loop = np.tile(f, (len(speeds(scene)), 1)), np.tile(loop, len(speeds(scene)))
+    first = histories[0]
+    per_law = f.shape[1]
+    values = {
+        key: np.tile(np.repeat([given[key] for given, _ in laws], per_law), len(speeds(scene)))
+        for key in friction.parameters
+    }
+    columns = {
+        "motion": np.tile(np.repeat([s.name for s in first], len(first[0].X_over_L)), len(f)),
+        "X_over_L": np.tile(_joined([stroke.X_over_L for stroke in first]), len(f)),
+        "c": np.repeat(speeds(scene), len(laws) * per_law),
+        **values,
+        "f": f.ravel(),
+        "g": friction.stress_ratio * f.ravel() + 0.0,
+        "loop": np.repeat(loop, per_law),
+    }
+    loops = np.array([_joined([stroke.f for stroke in strokes]) for strokes in drawn])
+    return States(columns, _joined([stroke.X_over_L for stroke in drawn[0]]), loops)
+
+
+def _strokes(
+    scene: Scene, law: FrictionLaw, c: float, X_over_L: Sequence[float] | NDArray
+) -> list[Stroke]:
+    friction = scene.friction
+    V = c * scene.solid.c_s
+    return friction_along(
+        law, scene.motion.strokes, friction.pre_sliding, X_over_L, V, friction.integrator
+    )
+
+
+def _joined(parts: list[NDArray]) -> NDArray:
+    return np.concatenate(parts)

@@ -1,27 +1,23 @@
 """The whole field of one state, for ParaView: displacement and stresses from finite elements."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
-from galinx.app.plan.plan import INSIDE, Plan, has_closed_form, make_plan
-from galinx.app.plan.states import enumerate_states, solid_of, speeds
-from galinx.app.scene.scene import Scene
-from galinx.app.scene.sections import Output
-from galinx.meshes.halfplane import MESHES
-from galinx.meshes.refine import DEGREES, reach
-from galinx.meshes.rings import TAGS
-from galinx.postprocess.stresses import maximum_shear, stresses_inside, von_mises, σ_ZZ
+from galinx.app.plan.limits import check_distance
+from galinx.app.plan.plan import Plan, Task, make_plan, own_pressure
+from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.scene.scene import Output, Scene
+from galinx.clock import Clock
+from galinx.meshes.kind import DEGREES
+from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import MovingFrame
 
 #: What a field may hold, by name: (unit, long name).
 ABOUT = {
@@ -67,8 +63,9 @@ def write_field(
     Raises:
         UnwritableArchive: the file system refused.
     """
-    state, sampled, comm = _piece(scene, number, extent, degree)
-    mine = _in_si(scene, state, sampled)
+    state = _state(scene, number, extent, degree)
+    sampled, comm = _sampled(state, extent)
+    mine = _in_si(state, sampled)
     if comm.rank > 0:
         comm.send(mine, 0)
         return
@@ -96,21 +93,32 @@ def state_field(
         BadInput: there is no such state, or finite elements have no answer for it.
         SolveError: the equations could not be solved.
     """
-    state, sampled, comm = _piece(scene, number, extent, degree)
+    state = _state(scene, number, extent, degree)
+    sampled, comm = _sampled(state, extent)
     whole = sampled.gathered(comm)
-    return None if whole is None else _in_si(scene, state, whole)
+    return None if whole is None else _in_si(state, whole)
 
 
 @dataclass(frozen=True)
 class _State:
-    """Speed over the shear wave speed, and σ_XY/σ_YY under the punch."""
+    """One state, and what computes it.
 
-    c: float
+    Attributes:
+        plan: finite elements at the scene's speeds.
+        task: the state's speed.
+        g: σ_XY/σ_YY under the punch.
+        degree: polynomial degree.
+        exact: is there a closed form to compare with?
+    """
+
+    plan: Plan
+    task: Task
     g: float
+    degree: int
+    exact: bool
 
 
-def _piece(scene: Scene, number: int, extent: float, degree: int | None) -> tuple[_State, Any, Any]:
-    """The state, this rank's piece of its field over a, N/(2μ) and N/(2a), and all the ranks."""
+def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _State:
     states = enumerate_states(scene)
     if not 0 <= number < len(states):
         raise BadInput(
@@ -120,15 +128,16 @@ def _piece(scene: Scene, number: int, extent: float, degree: int | None) -> tupl
     lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
     if degree is not None and not lowest <= degree <= highest:
         raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
-    state = _State(float(states.c[number]), float(states.g[number]))
-    asked = _for_finite_elements(scene, state.c)
-    plan = make_plan(asked)
-    _check(asked, plan, extent)
-    planned = next(speed.degree for speed in plan.speeds if speed.c == state.c)
+    c = float(states.columns["c"][number])
+    plan = make_plan(_for_finite_elements(scene, c))
+    _check(scene, extent)
+    task = next(task for task in plan.tasks if task.response.c == c)
+    assert plan.fem
     if degree is None:
         # Given tractions are solved one degree above the rule, as in a run.
-        degree = planned + (scene.solve.mode == "traction")
-    return state, *_sampled(asked, plan, state, extent, degree)
+        degree = plan.fem.degrees[task.number] + (scene.solve.mode == "traction")
+    exact = "closed_form" in scene.solve.methods and not own_pressure(scene)
+    return _State(plan, task, float(states.g[number]), degree, exact)
 
 
 def _for_finite_elements(scene: Scene, c: float) -> Scene:
@@ -136,113 +145,68 @@ def _for_finite_elements(scene: Scene, c: float) -> Scene:
 
     All speeds share one mesh; with the same speeds it is that of a run.
     """
-    κ = solid_of(scene).κ
-    possible = tuple(speed for speed in speeds(scene) if speed == c or MovingFrame(κ, speed).r > 0.0)
-    return attrs.evolve(
+    possible = tuple(v for v in speeds(scene) if v == c or scene.solid.response(v).margin > 0.0)
+    return replace(
         scene,
-        motion=attrs.evolve(scene.motion, c=possible, speed=None),
-        solve=attrs.evolve(scene.solve, methods=("fem",)),
+        motion=replace(scene.motion, c=possible, speed=None),
+        solve=replace(scene.solve, methods=("fem",)),
         output=Output(quantities=("sif",)),
     )
 
 
-def _check(scene: Scene, plan: Plan, extent: float) -> None:
-    if plan.mixed:
+def _check(scene: Scene, extent: float) -> None:
+    if scene.solid.nearly_incompressible:
         raise BadInput(
-            f"solid.nu: found ν = {scene.solid.nu:g} in plane strain, expected ν <= 0.49 for stresses "
-            "inside from finite elements"
+            f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
+            "elements"
         )
-    limit = 0.6 * reach(scene.solve.mesh, scene.solve.tolerance)
-    if not 0.0 < extent <= limit:
-        raise BadInput(
-            f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
-            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
-        )
+    check_distance(scene, "extent", "", extent)
 
 
-@dataclass(frozen=True)
-class _Work:
-    """One solution's ingredients; the part of a run that a load at one speed asks for.
-
-    Attributes:
-        space: gives the space, whatever degree is named.
-    """
-
-    scene: Scene
-    plan: Plan
-    κ: float
-    space: Callable[[int], Any]
-
-
-def _sampled(scene: Scene, plan: Plan, state: _State, extent: float, degree: int) -> tuple[Any, Any]:
+def _sampled(state: _State, extent: float) -> tuple[Any, Any]:
+    """This rank's piece of the state's field over a, N/(2μ) and N/(2a), and the ranks."""
     with finite_elements_installed():
-        from mpi4py import MPI
-
-        from galinx.app.run.finite_elements import (
-            shared_mesh,  # first: it silences the form compiler's tools
-        )
+        from galinx.app.run.methods.fem import FiniteElements
         from galinx.solvers.fem.sampling import sample
-        from galinx.solvers.fem.space import Space
-    comm, κ, kind = MPI.COMM_WORLD, solid_of(scene).κ, MESHES[scene.solve.mesh]
-    space = Space(*shared_mesh(scene, plan, plan.cuts, comm), TAGS, kind.chart, degree)
-    solve = _punch if scene.solve.mode == "contact" else _load
-    with solve(_Work(scene, plan, κ, lambda _: space), state) as (fields, weights):
-        return sample(space, κ, state.c, fields, weights, extent, degree), comm
+    task, degree = state.task, state.degree
+    # One speed alone is never shared out.
+    work = FiniteElements(_on_one_mesh(state.plan), Progress(), Clock())
+    with work.one_state(task, state.g, degree) as (space, fields, weights):
+        return sample(space, task.response, fields, weights, extent, degree), work.comm
 
 
-@contextmanager
-def _punch(work: _Work, state: _State) -> Iterator[tuple[Any, NDArray]]:
-    """Fields of the rigid punch, and the state's weights."""
-    from galinx.solvers.fem.punch import SlidingPunch
-
-    punch = SlidingPunch(work.space(0), work.κ, state.c, work.plan.solver)
-    try:
-        weights = punch.states(state.g).weights[0]  # the fields are complete after this
-        yield punch.fields, weights
-    finally:
-        punch.destroy()
+def _on_one_mesh(plan: Plan) -> Plan:
+    assert plan.fem
+    return replace(plan, fem=replace(plan.fem, shared_speeds=False))
 
 
-@contextmanager
-def _load(work: _Work, state: _State) -> Iterator[tuple[Any, NDArray]]:
-    """Fields of the given tractions, and the state's weights."""
-    from galinx.app.run.traction_mode import LoadAtSpeed
-
-    speed = LoadAtSpeed(work, state.c, 0)
-    try:
-        speed.prepare(np.array([state.g]))
-        yield speed.loaded.fields, np.array([1.0, state.g])
-    finally:
-        speed.destroy()
-
-
-def _in_si(scene: Scene, state: _State, sampled: Any) -> StateField:
+def _in_si(state: _State, sampled: Any) -> StateField:
     """Lengths in m, stresses in Pa, for the scene's load per depth."""
-    solid, punch = solid_of(scene), scene.punch
-    unit = punch.load / (2.0 * punch.half_width)
-    found = stresses_inside(solid.κ, sampled.gradient)
-    σ = dict(zip(INSIDE, unit * found))
-    out_of_plane = σ_ZZ(solid.ν, solid.plane, σ["XX"], σ["YY"])
-    displacement = punch.load / (2.0 * solid.μ) * sampled.displacement
+    task = state.task
+    body, solid = task.body, task.body.solid
+    found = task.response.stresses(sampled.gradient)
+    XX, YY, XY = body.stress * found
+    ZZ = solid.σ_ZZ(XX, YY, XY)
+    displacement = body.displacement * sampled.displacement
     data = {
         "displacement": np.column_stack([displacement, np.zeros(len(displacement))]),
-        **{f"sigma_{ij}": values for ij, values in σ.items()},
-        "sigma_ZZ": out_of_plane,
-        "von_mises": von_mises(σ["XX"], σ["YY"], σ["XY"], out_of_plane),
-        "maximum_shear": maximum_shear(σ["XX"], σ["YY"], σ["XY"]),
+        "sigma_XX": XX,
+        "sigma_YY": YY,
+        "sigma_XY": XY,
+        "sigma_ZZ": ZZ,
+        "von_mises": von_mises(XX, YY, XY, ZZ),
+        "maximum_shear": maximum_shear(XX, YY, XY),
     }
-    if "closed_form" in scene.solve.methods and has_closed_form(scene):
-        exact = FlatPunch(MovingFrame(solid.κ, state.c), state.g)
-        data["sigma_error"] = unit * _error(exact, sampled.points, found)
-    return StateField(punch.half_width * sampled.points, sampled.quads, data)
+    if state.exact:
+        exact = FlatPunch(task.response, state.g)
+        data["sigma_error"] = body.stress * _error(exact, sampled.points, found)
+    return StateField(body.profile.half_width * sampled.points, sampled.quads, data)
 
 
 def _error(exact: FlatPunch, points: NDArray, found: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
-    from galinx.solvers.sie.potentials import stresses  # SciPy's special functions, a slow import
-
     X, Y = points.T
     inside = -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
     error = np.full(len(points), np.nan)
-    error[inside] = np.abs(found[:, inside] - stresses(exact, X[inside], Y[inside])).max(axis=0)
+    error[inside] = np.abs(found[:, inside] - exact.inside(X[inside], Y[inside])).max(axis=0)
     return error

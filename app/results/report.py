@@ -9,7 +9,12 @@ import numpy as np
 from galinx.app.errors import MachineFailure
 from galinx.app.results.drawings import Drawing
 from galinx.app.scene.scene import Scene
-from galinx.app.study.published import INTENSITIES, intensities, intensity_rows
+from galinx.app.study.published import (
+    INTENSITIES,
+    intensities,
+    intensity_rows,
+    like_the_studys,
+)
 from galinx.postprocess.figures.canvas import in_a_page
 from galinx.postprocess.page import render
 from galinx.postprocess.tables import Sheet, states_sheet
@@ -73,10 +78,9 @@ class Report:
         moving = f"{speeds[0]:g}" if len(speeds) == 1 else f"{speeds[0]:g} to {speeds[-1]:g}"
         count = len(data["states/f"])
         text = (
-            f"{count} friction state{'s' * (count > 1)} of a rigid flat punch, half-width "
-            f"{scene.punch.half_width:g} m, load {scene.punch.load:g} N/m, that slides at c = {moving} "
-            f"(over the shear wave speed) on a half-plane with E = {scene.solid.E:.6g} Pa, "
-            f"ν = {scene.solid.nu:g}, ρ = {scene.solid.rho:g} kg/m³ in plane {scene.solid.plane}."
+            f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
+            f"{scene.punch.load:g} N/m, that slides at c = {moving} (over the shear wave speed) on a "
+            f"half-plane with {scene.solid.words()}."
         )
         if "run/fem/unknowns" in data:
             text += (
@@ -101,7 +105,7 @@ def write_report(path: Path, report: Report) -> None:
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
     """The study's tables that the archive has all states of, for the study's solid."""
-    if (scene.solid.nu, scene.solid.plane) != (0.25, "strain"):
+    if not like_the_studys(scene.solid):
         return []
     found = {name: intensity_rows(name, data) for name in INTENSITIES}
     return [intensities(name, rows) for name, rows in found.items() if rows]

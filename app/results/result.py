@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from galinx.app.console.progress import Progress
-from galinx.app.run.collector import Memory
-from galinx.app.run.compute import check_output
-from galinx.app.run.compute import compute as compute_into
-from galinx.app.scene import scene as scenes
+from galinx.app.run.flow import compute as compute_into
+from galinx.app.run.output import check_output
+from galinx.app.run.sinks import Memory
+from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 
 if TYPE_CHECKING:

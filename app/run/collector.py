@@ -1,73 +1,43 @@
-"""Where results go, and who takes them there."""
+"""Who takes results where they go."""
 
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
-from galinx.app.plan.plan import RECORD, Plan
+from galinx.app.plan.plan import Plan
 from galinx.app.run.judge import Judge
+from galinx.app.run.sinks import Sink
 from galinx.postprocess.journal import Journal, Part
+from galinx.postprocess.quantities import RECORD
 from galinx.solvers.errors import SolveError
-
-
-class Sink(Protocol):
-    """Where results go: an archive in the making, or memory."""
-
-    def put(self, name: str, value: Any) -> None:
-        """A whole dataset."""
-
-    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
-        """Room for a dataset that comes by rows."""
-
-    def write(self, name: str, rows: slice, values: NDArray) -> None:
-        """Rows of a reserved dataset."""
-
-
-class Memory(dict[str, Any]):
-    """A sink that keeps the datasets by path, as an archive would give them back."""
-
-    def put(self, name: str, value: Any) -> None:
-        self[name] = np.array(value, dtype=object) if isinstance(value, list) else value
-
-    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
-        self[name] = np.full(shape, np.nan)
-
-    def write(self, name: str, rows: slice, values: NDArray) -> None:
-        self[name][rows] = values
-
-
-class Nowhere:
-    """The sink of ranks other than 0."""
-
-    def put(self, name: str, value: Any) -> None:
-        pass
-
-    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
-        pass
-
-    def write(self, name: str, rows: slice, values: NDArray) -> None:
-        pass
 
 
 class Collector:
     """Takes finished parts in: judges, writes and keeps them.
 
+    Args:
+        sink: where results go.
+        judge: is shown the comparisons.
+        progress: is told what is done.
+        journal: keeps parts; None for no journal.
+        plan: the plan that is followed.
+
     Attributes:
-        records: of the speeds that are complete, by number.
         seconds: wall time spent here.
     """
 
     def __init__(
-        self, sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, states: int
+        self, sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, plan: Plan
     ) -> None:
-        self.sink, self.judge, self.progress = sink, judge, progress
-        self.records: dict[int, dict[str, Any]] = {}
+        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, plan
+        self._journal, self._done = journal, 0
+        self._records: dict[int, dict[str, Any]] = {}
         self.seconds = 0.0
-        self._journal, self._states, self._done = journal, states, 0
+        for quantity in plan.quantities:
+            sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
 
     def earlier(self) -> frozenset[int]:
         """Take in what the journal has; first rows of those parts."""
@@ -87,34 +57,35 @@ class Collector:
 
     def _take(self, part: Part) -> None:
         started = perf_counter()
-        self.judge.see(part.comparisons)
+        self._judge.see(part.comparisons)
         for name, values in part.data.items():
-            self.sink.write(name, part.rows, values)
+            self._sink.write(name, part.rows, values)
         if part.record:
-            self.records[part.record["speed"]] = part.record
+            self._records[part.record["speed"]] = part.record
         self._done += part.rows.stop - part.rows.start
-        self.progress.done(self._done, self._states)
+        self._progress.done(self._done, self._plan.states)
         self.seconds += perf_counter() - started
 
-    def finish(self, plan: Plan) -> None:
+    def finish(self) -> None:
         """Write the records of the speeds.
 
         Raises:
             SolveError: no speed could be solved.
         """
-        if not plan.fem or not ranks.is_root():
+        if not self._plan.fem or not ranks.is_root():
             return
-        records = [self.records[i] for i in sorted(self.records)]
+        records = [self._records[i] for i in sorted(self._records)]
         failures = [
             f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
         ]
-        if len(failures) == len(plan.speeds):
+        if len(failures) == len(self._plan.tasks):
             raise SolveError(failures[0])
-        self.judge.failures = failures
-        self.sink.put("run/failures", failures)
-        for name in RECORD:
-            self.sink.put(f"run/fem/{name}", np.array([record[name] for record in records]))
+        self._judge.failures = failures
+        self._sink.put("run/failures", failures)
+        for quantity in RECORD:
+            name = quantity.path.rpartition("/")[2]
+            self._sink.put(quantity.path, np.array([record[name] for record in records]))
         changes = [record.get("change_by_degree", []) for record in records]
         if longest := max(map(len, changes)):
             padded = [change + [0.0] * (longest - len(change)) for change in changes]
-            self.sink.put("run/fem/change_by_degree", np.array(padded))
+            self._sink.put("run/fem/change_by_degree", np.array(padded))

@@ -1,41 +1,36 @@
 """The verdict on a run."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from galinx.app.plan.plan import has_closed_form
+from galinx.app.plan.plan import own_pressure
 from galinx.app.scene.scene import Scene
-from galinx.postprocess import compare
-
-#: A balance of nodal forces further off than this, over N, is a fault whatever the tolerance.
-BALANCE_LIMIT = 1e-9
-
-#: In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement and
-#: so has about half the digits of the moments that the tolerance speaks of.
-SLOPE_FACTOR = 10.0
+from galinx.postprocess.compare import Comparison, Rule
 
 
 class Judge:
     """Watches parts of results and says PASS or FAIL; keeps the worst of every comparison.
+
+    Args:
+        scene: sets the tolerance.
+        rules: of the comparisons that may come.
 
     Attributes:
         worst: largest value by the comparison's text, dimensionless.
         failures: what could not be solved, and why.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, rules: Iterable[Rule]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
-        tolerance = scene.solve.tolerance
-        self._limits = {compare.BALANCE: BALANCE_LIMIT, compare.K_I: tolerance}
-        self._limits[compare.ESTIMATE] = tolerance
-        if scene.solve.mode == "traction":
-            self._limits[compare.SLOPE] = SLOPE_FACTOR * tolerance
-        if not has_closed_form(scene):
-            self._limits = {}
-        self._limits[compare.TENSION] = 0.0
+        own, mode = own_pressure(scene), scene.solve.mode
+        judged = {rule for rule in rules if rule.mode in ("", mode) and (rule.own_pressure or not own)}
+        limits = {rule.name: rule.allowed(scene.solve.tolerance) for rule in judged}
+        self._limits = {name: limit for name, limit in limits.items() if limit is not None}
         self._judged: dict[str, float] = {}
 
-    def see(self, comparisons: list[compare.Comparison]) -> None:
+    def see(self, comparisons: list[Comparison]) -> None:
         """Take a part's comparisons into account; NaN is worse than any number."""
         for found in comparisons:
             value = float(np.max([self.worst.get(found.text, 0.0), found.value]))

@@ -1,13 +1,12 @@
 """Solids by name, with the source of their constants: the table of ``materials.toml``."""
 
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import attrs
 
-
-@attrs.frozen
+@dataclass(frozen=True)
 class Material:
     """A known isotropic solid.
 

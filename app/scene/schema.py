@@ -1,19 +1,15 @@
-"""JSON schema of scenes, for editors that complete and check TOML; made from the classes that check."""
+"""JSON schema of scenes, for editors that complete and check TOML; made from the keys that check."""
 
 from typing import Any
 
-import attrs
-from attrs import validators as is_
-
+from galinx.app.scene.keys import REQUIRED, Key
 from galinx.app.scene.sections import SECTIONS
-
-_BOUNDS = {">": "exclusiveMinimum", ">=": "minimum", "<": "exclusiveMaximum", "<=": "maximum"}
 
 
 def schema() -> dict[str, Any]:
     """JSON schema (draft 7) of a scene."""
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
-    properties |= {name: _section(name, kind) for name, kind in SECTIONS.items()}
+    properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "galinx scene",
@@ -24,39 +20,31 @@ def schema() -> dict[str, Any]:
     }
 
 
-def _section(name: str, kind: type) -> dict[str, Any]:
-    properties, required = {}, []
-    for field in attrs.fields(kind):
-        convert, about = field.metadata["convert"], field.metadata["doc"]
-        unit = getattr(convert, "unit", None)
-        about += "" if unit is None else f" [{unit or 'dimensionless'}]"
-        entry = convert.schema(_limits(field.validator)) | {"description": about}
-        if field.default is attrs.NOTHING:
-            required.append(field.name)
-        elif field.default is not None:
-            entry["default"] = list(field.default) if isinstance(field.default, tuple) else field.default
-        properties[field.name] = entry
-    section = {"type": "object", "properties": properties, "additionalProperties": False}
+def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, Any]:
+    """A section with the keys of all its alternatives; required are those that all of them require."""
+    keys = {key: known for one in alternatives.values() for key, known in one.items()}
+    needed = [
+        key
+        for key in keys
+        if all(key in one and one[key].default is REQUIRED for one in alternatives.values())
+    ]
+    section = {
+        "type": "object",
+        "properties": {key: entry(known) for key, known in keys.items()},
+        "additionalProperties": False,
+    }
     if name == "solid":  # a known material gives the constants
-        section["anyOf"] = [{"required": ["material"]}, {"required": required}]
-    elif required:
-        section["required"] = required
+        section["anyOf"] = [{"required": ["material"]}, {"required": needed}]
+    elif needed:
+        section["required"] = needed
     return section
 
 
-def _limits(check: Any) -> dict[str, Any]:
-    """What a validator of attrs asks for, in the words of JSON schema."""
-    if check is None:
-        return {}
-    for inner in ("validator", "member_validator"):  # optional, deep_iterable
-        if hasattr(check, inner):
-            return _limits(getattr(check, inner))
-    if hasattr(check, "_validators"):  # and_
-        return {key: value for part in check._validators for key, value in _limits(part).items()}
-    if hasattr(check, "options"):  # in_
-        return {"enum": list(check.options)}
-    if hasattr(check, "compare_op"):  # gt, ge, lt, le
-        return {_BOUNDS[check.compare_op]: check.bound}
-    if isinstance(check, type(is_.min_len(1))):
-        return {}  # the kinds of values know it
-    raise TypeError(f"no JSON schema for the validator {check!r}")
+def entry(key: Key) -> dict[str, Any]:
+    """JSON schema of a key's value."""
+    unit = getattr(key.kind, "unit", None)
+    about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
+    found = key.kind.schema() | {"description": about}
+    if key.default is not REQUIRED and key.default is not None:
+        found["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
+    return found

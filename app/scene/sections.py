@@ -1,138 +1,138 @@
-"""Sections of a scene: every key with its type, unit, limits, default and meaning."""
+"""Sections of a scene: every key with its kind, default and meaning."""
 
-from collections.abc import Callable
 from typing import Any
 
-import attrs
-import numpy as np
-from attrs import validators as is_
-
+from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
-from galinx.app.scene.values import Map, Names, Number, Numbers, Points, Pressure, Range, Text, Whole
+from galinx.app.scene.scene import Friction, Motion, Output, Punch, Solve
+from galinx.app.scene.values import (
+    Choice,
+    Choices,
+    Map,
+    Number,
+    Numbers,
+    Points,
+    Pressure,
+    Whole,
+)
+from galinx.meshes import MESHES
+from galinx.postprocess.quantities import WORDS
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.integrate import INTEGRATORS
+from galinx.solvers.friction.strokes import DIRECTION
+from galinx.solvers.parameters import Range, made
+from galinx.solvers.profiles import PROFILES, Profile
+from galinx.solvers.solids import SOLIDS, Solid
 
+#: Ways to solve the contact, and what the finite elements may be given.
 METHODS = ("closed_form", "fem")
-QUANTITIES = ("friction", "sif", "surface", "interior")
+MODES = ("contact", "traction")
+
+_POSITIVE = Range(above=0.0)
 
 
-def _each(*checks: Any) -> Any:
-    return is_.and_(is_.min_len(1), is_.deep_iterable(is_.and_(*checks)))
+def _solid(kind: type[Solid], values: dict[str, Any], material: str | None) -> Solid:
+    return made(kind, values)
 
 
-def _key(convert: Callable, check: Any, doc: str, default: Any = attrs.NOTHING) -> Any:
-    return attrs.field(default=default, validator=check, metadata={"doc": doc, "convert": convert})
+def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
+    return Punch(made(kind, values), load)
 
 
-_positive = is_.gt(0.0)
+_SOLID_KEYS = {
+    "material": Key(
+        Choice(LIBRARY), "name of a known solid, gives E, nu and rho", None,
+        "E, nu or rho written beside it replace the material's",
+    ),
+}  # fmt: skip
 
+_PUNCH_KEYS = {
+    "load": Key(
+        Number("N/m", _POSITIVE), "normal load N per depth", 55.3e3,
+        "dimensionless results do not depend on it",
+    ),
+}  # fmt: skip
 
-@attrs.frozen
-class Solid:
-    """[solid]"""
+_FRICTION_KEYS = {
+    "pre_sliding": Key(
+        Number("m", _POSITIVE), "pre-sliding displacement L", 1e-4, "the length of a stroke",
+    ),
+    "integrator": Key(
+        Choice(INTEGRATORS), "integrator", "exact",
+        '`"exact"`: to the last digits; `"rk4"`: Runge-Kutta with 20 steps a stroke, refused where it is '
+        "unstable",
+    ),
+    "sign": Key(
+        Choice(("physical", "eq25")), "sign of σ_XY", "physical",
+        '`"physical"`: σ_XY = -f σ_YY; `"eq25"`: σ_XY = f σ_YY, the mirror image',
+    ),
+}  # fmt: skip
 
-    E: float = _key(Number("Pa"), _positive, "Young's modulus")
-    nu: float = _key(Number(), is_.and_(is_.gt(-1.0), is_.le(0.5)), "Poisson's ratio")
-    rho: float = _key(Number("kg/m^3"), _positive, "density")
-    plane: str = _key(Text(), is_.in_(("strain", "stress")), "plane strain or stress", "strain")
-    material: str | None = _key(
-        Text(), is_.optional(is_.in_(tuple(LIBRARY))), "name of a known solid, gives E, nu and rho", None
-    )
+_MOTION_KEYS = {
+    "c": Key(
+        Numbers("", Range(at_least=0.0, below=1.0)), "speed over c_s", None,
+        "finite elements want it below the Rayleigh speed", without="one of `c` and `speed`",
+    ),
+    "speed": Key(
+        Numbers("m/s", Range(at_least=0.0)), "speed V", None,
+        "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
+    ),
+    "strokes": Key(
+        Choices(DIRECTION), "directions in order of time", ("forward", "backward", "forward")
+    ),
+    "X_over_L": Key(
+        Numbers("", Range(at_least=0.0, at_most=1.0)), "positions on the stroke", (0.2, 0.8),
+        "on the same axis in both directions",
+    ),
+}  # fmt: skip
 
+_SOLVE_KEYS = {
+    "methods": Key(
+        Choices(METHODS, at_least=0), "what solves the contact", METHODS,
+        "an empty list where only friction is asked for",
+    ),
+    "tolerance": Key(
+        Number("", Range(at_least=1e-10, at_most=0.1)),
+        "wanted relative accuracy of K_I and pressure moments", 1e-6,
+        "the polynomial degree rises until the measured error is below it",
+    ),
+    "mesh": Key(
+        Choice(MESHES), "mesh", "confocal", '`"box"` is the block of the study, with walls at 100 a'
+    ),
+    "mode": Key(
+        Choice(MODES), "pressure unknown or put in", "contact",
+        '`"traction"`: pressure put in, see [Theory](theory.md)',
+    ),
+    "degree": Key(
+        Whole(Range(at_least=1, at_most=12)), "polynomial degree, if not found by tolerance", None,
+        without="found by tolerance",
+    ),
+    "cuts": Key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1),
+    "solver": Key(
+        Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
+    ),
+    "pressure": Key(Pressure(), "σ_YY of the traction mode", "closed_form", "for the mode traction"),
+}  # fmt: skip
 
-@attrs.frozen
-class Punch:
-    """[punch]"""
-
-    half_width: float = _key(Number("m"), _positive, "half-width a", 1e-3)
-    load: float = _key(Number("N/m"), _positive, "normal load N per depth", 55.3e3)
-
-
-@attrs.frozen
-class Friction:
-    """[friction]"""
-
-    mu_c: tuple[float, ...] = _key(Numbers(), _each(_positive), "Coulomb's coefficient μ_C")
-    sigma0_over_load: tuple[float, ...] = _key(Numbers("1/m"), _each(_positive), "σ₀ l/N")
-    model: str = _key(Text(), is_.in_(("dahl",)), "friction law", "dahl")
-    delta: tuple[float, ...] = _key(Numbers(), _each(_positive), "Dahl's exponent", (1.0,))
-    pre_sliding: float = _key(Number("m"), _positive, "pre-sliding displacement L", 1e-4)
-    integrator: str = _key(Text(), is_.in_(("exact", "rk4")), "integrator", "exact")
-    sign: str = _key(Text(), is_.in_(("physical", "eq25")), "sign of σ_XY", "physical")
-
-
-@attrs.frozen
-class Motion:
-    """[motion]"""
-
-    c: tuple[float, ...] | None = _key(
-        Numbers(), is_.optional(_each(is_.ge(0.0), is_.lt(1.0))), "speed over c_s", None
-    )
-    speed: tuple[float, ...] | None = _key(
-        Numbers("m/s"), is_.optional(_each(is_.ge(0.0))), "speed V", None
-    )
-    strokes: tuple[str, ...] = _key(
-        Names(),
-        _each(is_.in_(("forward", "backward"))),
-        "directions in order of time",
-        ("forward", "backward", "forward"),
-    )
-    X_over_L: tuple[float, ...] = _key(
-        Numbers(), _each(is_.ge(0.0), is_.le(1.0)), "positions on the stroke", (0.2, 0.8)
-    )
-
-
-@attrs.frozen
-class Solve:
-    """[solve]"""
-
-    methods: tuple[str, ...] = _key(
-        Names(), is_.deep_iterable(is_.in_(METHODS)), "what solves the contact", METHODS
-    )
-    tolerance: float = _key(
-        Number(),
-        is_.and_(is_.ge(1e-10), is_.le(0.1)),
-        "wanted relative accuracy of K_I and pressure moments",
-        1e-6,
-    )
-    mesh: str = _key(Text(), is_.in_(("confocal", "graded", "box", "uniform")), "mesh", "confocal")
-    mode: str = _key(Text(), is_.in_(("contact", "traction")), "pressure unknown or put in", "contact")
-    degree: int | None = _key(
-        Whole(),
-        is_.optional(is_.and_(is_.ge(1), is_.le(12))),
-        "polynomial degree, if not found by tolerance",
-        None,
-    )
-    cuts: int = _key(Whole(), is_.and_(is_.ge(1), is_.le(256)), "cuts of every cell's sides", 1)
-    solver: str = _key(
-        Text(), is_.in_(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
-    )
-    pressure: Any = _key(Pressure(), None, "σ_YY of the traction mode", "closed_form")
-
-
-@attrs.frozen
-class Output:
-    """[output]"""
-
-    quantities: tuple[str, ...] = _key(
-        Names(), _each(is_.in_(QUANTITIES)), "what is asked for", QUANTITIES[:3]
-    )
-    points: tuple[tuple[float, float], ...] = _key(Points(), None, "points inside, [X/a, Y/a]", ())
-    map: tuple[Range, Range] | None = _key(Map(), None, "points inside on a grid, over a", None)
-
-    @property
-    def inside(self) -> tuple[tuple[float, float], ...]:
-        """All points inside: first the map's, by rows of Y, then the single ones."""
-        if self.map is None:
-            return self.points
-        X, Y = (np.linspace(axis.first, axis.last, axis.count) for axis in self.map)
-        return (*((x, y) for y in Y.tolist() for x in X.tolist()), *self.points)
-
+_OUTPUT_KEYS = {
+    "quantities": Key(
+        Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
+        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside",
+    ),
+    "points": Key(
+        Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
+    ),
+    "map": Key(
+        Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'
+    ),
+}  # fmt: skip
 
 #: Sections of a scene, by name.
-SECTIONS: dict[str, type] = {
-    "solid": Solid,
-    "punch": Punch,
-    "friction": Friction,
-    "motion": Motion,
-    "solve": Solve,
-    "output": Output,
+SECTIONS: dict[str, Section] = {
+    "solid": ModelSection("kind", SOLIDS, _solid, _SOLID_KEYS, or_else=", or solid.material"),
+    "punch": ModelSection("profile", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}),
+    "friction": ModelSection("model", LAWS, Friction, _FRICTION_KEYS, several=True),
+    "motion": Section(Motion, _MOTION_KEYS),
+    "solve": Section(Solve, _SOLVE_KEYS),
+    "output": Section(Output, _OUTPUT_KEYS),
 }

@@ -1,11 +1,44 @@
 """Values of a scene: each kind turns what TOML gives into what is computed with."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from galinx.app.scene.units import to_si
+from galinx.solvers.parameters import Range
 
 _TEXT = {"type": "string"}
+_NO_BOUNDS = Range()
+
+
+class Kind(Protocol):
+    """A kind of values; its docstring says what a scene writes."""
+
+    def __call__(self, value: Any) -> Any:
+        """The checked value.
+
+        Raises:
+            ValueError: what was found, and what was expected.
+        """
+
+    def schema(self) -> dict[str, Any]:
+        """JSON schema of what a scene writes."""
+
+
+def _within(value: float, bounds: Range) -> float:
+    if value not in bounds:
+        raise ValueError(f"found {value:g}, expected {bounds}")
+    return value
+
+
+def _limits(bounds: Range) -> dict[str, float]:
+    named = {
+        "exclusiveMinimum": bounds.above,
+        "minimum": bounds.at_least,
+        "exclusiveMaximum": bounds.below,
+        "maximum": bounds.at_most,
+    }
+    return {name: bound for name, bound in named.items() if bound is not None}
 
 
 @dataclass(frozen=True)
@@ -13,25 +46,29 @@ class Number:
     """A number in ``unit``, or a text with a unit."""
 
     unit: str = ""
+    bounds: Range = _NO_BOUNDS
 
     def __call__(self, value: Any) -> float:
-        return to_si(value, self.unit)
+        return _within(to_si(value, self.unit), self.bounds)
 
-    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
-        """``limits`` hold for plain numbers; those with units are checked by the program."""
-        return {"anyOf": [{"type": "number"} | limits, _TEXT]}
+    def schema(self) -> dict[str, Any]:
+        """Bounds hold for plain numbers; those with units are checked by the program."""
+        return {"anyOf": [{"type": "number"} | _limits(self.bounds), _TEXT]}
 
 
+@dataclass(frozen=True)
 class Whole:
     """A whole number."""
+
+    bounds: Range = _NO_BOUNDS
 
     def __call__(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int):
             raise ValueError(f"found {value!r}, expected a whole number")
-        return int(value)
+        return int(_within(value, self.bounds))
 
-    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
-        return {"type": "integer"} | limits
+    def schema(self) -> dict[str, Any]:
+        return {"type": "integer"} | _limits(self.bounds)
 
 
 @dataclass(frozen=True)
@@ -39,25 +76,18 @@ class Numbers:
     """One number or a list of them."""
 
     unit: str = ""
+    bounds: Range = _NO_BOUNDS
 
     def __call__(self, value: Any) -> tuple[float, ...]:
-        return tuple(to_si(entry, self.unit) for entry in (value if isinstance(value, list) else [value]))
+        one = Number(self.unit, self.bounds)
+        found = tuple(one(entry) for entry in (value if isinstance(value, list) else [value]))
+        if not found:
+            raise ValueError("found an empty list, expected at least one number")
+        return found
 
-    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
-        one = Number(self.unit).schema(limits)
+    def schema(self) -> dict[str, Any]:
+        one = Number(self.unit, self.bounds).schema()
         return {"anyOf": [*one["anyOf"], {"type": "array", "items": one, "minItems": 1}]}
-
-
-class Names:
-    """A list of names."""
-
-    def __call__(self, value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, list):
-            raise ValueError(f"found {value!r}, expected a list of names")
-        return tuple(value)
-
-    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
-        return {"type": "array", "items": _TEXT | limits}
 
 
 class Text:
@@ -68,12 +98,50 @@ class Text:
             raise ValueError(f"found {value!r}, expected a text")
         return value
 
-    def schema(self, limits: dict[str, Any]) -> dict[str, Any]:
-        return _TEXT | limits
+    def schema(self) -> dict[str, Any]:
+        return dict(_TEXT)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A text."""
+
+    options: Collection[str]
+
+    def __call__(self, value: Any) -> str:
+        if not isinstance(value, str) or value not in self.options:
+            raise ValueError(f"found {value!r}, expected {_one_of(self.options)}")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        return _TEXT | {"enum": list(self.options)}
+
+
+@dataclass(frozen=True)
+class Choices:
+    """A list of names."""
+
+    options: Collection[str]
+    at_least: int = 1
+
+    def __call__(self, value: Any) -> tuple[str, ...]:
+        if not isinstance(value, list):
+            raise ValueError(f"found {value!r}, expected a list of names")
+        if len(value) < self.at_least:
+            raise ValueError(f"found an empty list, expected {_one_of(self.options)}")
+        one = Choice(self.options)
+        return tuple(one(entry) for entry in value)
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "array", "items": Choice(self.options).schema()}
+
+
+def _one_of(options: Collection[str]) -> str:
+    return " or ".join(filter(None, (", ".join(list(options)[:-1]), list(options)[-1])))
 
 
 def _pairs(count: int) -> dict[str, Any]:
-    pair = {"type": "array", "items": Number().schema({}), "minItems": 2, "maxItems": 2}
+    pair = {"type": "array", "items": Number().schema(), "minItems": 2, "maxItems": 2}
     return {"type": "array", "items": pair, "minItems": count}
 
 
@@ -95,7 +163,7 @@ class Pressure:
             raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
         return pairs
 
-    def schema(self, _: dict[str, Any]) -> dict[str, Any]:
+    def schema(self) -> dict[str, Any]:
         return {"anyOf": [{"const": "closed_form"}, _pairs(2)]}
 
 
@@ -113,12 +181,12 @@ class Points:
             raise ValueError(f"found {value!r}, expected a list of pairs [X/a, Y/a]")
         return tuple((to_si(X, ""), _below(to_si(Y, ""))) for X, Y in value)
 
-    def schema(self, _: dict[str, Any]) -> dict[str, Any]:
+    def schema(self) -> dict[str, Any]:
         return _pairs(0)
 
 
 @dataclass(frozen=True)
-class Range:
+class Spread:
     """Evenly spaced positions: ``count`` of them from ``first`` to ``last``, over a."""
 
     first: float
@@ -129,7 +197,7 @@ class Range:
 class Map:
     """``{X = [from, to, number], Y = [from, to, number]}``, over a, Y below the surface."""
 
-    def __call__(self, value: Any) -> tuple[Range, Range]:
+    def __call__(self, value: Any) -> tuple[Spread, Spread]:
         if not isinstance(value, dict) or set(value) != {"X", "Y"}:
             raise ValueError(
                 f"found {value!r}, expected {{X = [from, to, number], Y = [from, to, number]}}, over a"
@@ -139,7 +207,7 @@ class Map:
         return X, Y
 
     @staticmethod
-    def _range(axis: str, value: Any) -> Range:
+    def _range(axis: str, value: Any) -> Spread:
         if not isinstance(value, list) or len(value) != 3:
             raise ValueError(f"{axis}: found {value!r}, expected [from, to, number]")
         first, last, count = (to_si(entry, "") for entry in value)
@@ -147,10 +215,10 @@ class Map:
             raise ValueError(
                 f"{axis}: found {value!r}, expected [from, to, number], from < to, 2 ... 2000"
             )
-        return Range(first, last, int(count))
+        return Spread(first, last, int(count))
 
-    def schema(self, _: dict[str, Any]) -> dict[str, Any]:
-        axis = {"type": "array", "items": Number().schema({}), "minItems": 3, "maxItems": 3}
+    def schema(self) -> dict[str, Any]:
+        axis = {"type": "array", "items": Number().schema(), "minItems": 3, "maxItems": 3}
         return {
             "type": "object",
             "properties": {"X": axis, "Y": axis},

@@ -8,9 +8,8 @@ from typing import Any
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import colours, say
-from galinx.app.plan.states import solid_of
-from galinx.app.run.compute import compute
-from galinx.app.scene import scene as scenes
+from galinx.app.run.flow import compute
+from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.templates import SCENES
 from galinx.app.study.published import INTENSITIES, intensities, intensity_rows, table1, table3
@@ -24,8 +23,9 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
         compute(study), compute(inside)
         return True  # the verdict is rank 0's
     from galinx.app.results.drawings import inside as draw_inside
-    from galinx.app.results.drawings import mesh, of_study
+    from galinx.app.results.drawings import mesh
     from galinx.app.results.report import Report, write_report
+    from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
     from galinx.postprocess.hdf5 import archive
 
@@ -38,7 +38,7 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)
-    for drawing in (*of_study(data, study), draw_inside(below, inside), mesh(study)):
+    for drawing in (*of_study(data), draw_inside(below, inside), mesh(study)):
         progress.say(f"figure: {drawing.name}")
         report.add(drawing)
         save(drawing.figure, folder, drawing.name)
@@ -68,7 +68,7 @@ def _print(folder: Path, sheets: list[Sheet], attributes: dict[str, Any], quiet:
 def _tables(data: dict[str, Any], attributes: dict[str, Any], study: Scene) -> tuple[bool, list[Sheet]]:
     """Whether all agrees, and the tables that show it."""
     rows = {name: intensity_rows(name, data) for name in INTENSITIES}
-    sheets = [table1(), table3(solid_of(study), study.friction.pre_sliding)]
+    sheets = [table1(), table3(study.solid, study.friction.pre_sliding)]
     sheets += [intensities(name, found) for name, found in rows.items()]
     agree = all(row.agrees for found in rows.values() for row in found) and all(rows.values())
     return attributes["verdict"] == "PASS" and agree, sheets

@@ -8,14 +8,24 @@ from typing import Any
 import numpy as np
 
 from galinx.postprocess.tables import Sheet
-from galinx.solvers.friction.dahl import Dahl, runge_kutta
-from galinx.solvers.solids.isotropic import Solid
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.integrate import runge_kutta
+from galinx.solvers.solids import Solid
 
 #: The parameters of the study's Tables 4 and 5.
 REFERENCE = {"mu_c": 0.7, "sigma0_over_load": 25000.0, "delta": 1.0}
 
 #: The tables of stress intensity factors, and what they show.
 INTENSITIES = {"table4": "Table 4. Slow speed", "table5": "Table 5. High speed"}
+
+
+#: Kolosov's constant of the study's solid, on which alone dimensionless results depend.
+_KOLOSOV = 2.0
+
+
+def like_the_studys(solid: Solid) -> bool:
+    """Do results in this solid have the study's digits?"""
+    return getattr(solid, "κ", None) == _KOLOSOV
 
 
 def published() -> dict[str, Any]:
@@ -71,10 +81,10 @@ def table1_rows() -> list[tuple[list[float], list[float]]]:
     table = published()["table1"]
     steps = table["steps"]
     law = Dahl(table["mu_c"], table["sigma0_l_over_N"], table["delta_D"])
-    computed = runge_kutta(law, 0.0, 1, table["L_m"], steps)
+    computed = runge_kutta(law, law.rest(), 1, 0.0, table["L_m"], steps)
     stride = steps // (len(table["rows"]) - 1)
     return [
-        (row, [float(computed.f[i]), float(computed.d[i]), *map(float, computed.k[i])])
+        (row, [float(computed.z[i, 0]), float(computed.d[i]), *(computed.k[i, :, 0] / law.λ).tolist()])
         for row, i in zip(table["rows"], range(0, steps + 1, stride))
     ]
 

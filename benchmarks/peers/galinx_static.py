@@ -9,11 +9,11 @@ import time
 from statistics import median
 
 import numpy as np
+from galinx.meshes.halfplane import MESHES, check_cells
 from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
 from galinx.meshes.gmsh_model import through_gmsh
-from galinx.meshes.halfplane import MESHES, check_cells
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.pressure import contact_recovery
 from galinx.solvers.fem.distributed import distribute

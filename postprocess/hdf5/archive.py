@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.postprocess.hdf5.patient import PatientFile
-from galinx.postprocess.quantities import FIELDS
+from galinx.postprocess.quantities import declared
 
 #: Version of the layout; a reader refuses a newer one.
 SCHEMA_VERSION = 1
@@ -37,7 +37,7 @@ class Writer:
 
     Raises:
         UnwritableArchive: the file system refused, or what was read back differs.
-        KeyError: the path of a dataset is not in ``FIELDS``.
+        KeyError: the path of a dataset is not in the table of quantities.
     """
 
     def __init__(self, path: Path, folder: Path | None = None) -> None:
@@ -63,7 +63,7 @@ class Writer:
         Args:
             name: path of the dataset.
             value: what it holds.
-            about: unit and long name; those of ``FIELDS`` if not given.
+            about: unit and long name; those of the table of quantities if not given.
         """
         with self._told():
             text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind in "UO"
@@ -112,7 +112,10 @@ class Writer:
             _synchronise(self.path.parent)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
-        dataset.attrs["units"], dataset.attrs["long_name"] = about or FIELDS[name]
+        if about is None:
+            row = declared(name)
+            about = row.unit, row.about
+        dataset.attrs["units"], dataset.attrs["long_name"] = about
 
     def _compare(self) -> None:
         """A full disk can leave a file that opens and lists its datasets: compare the content."""

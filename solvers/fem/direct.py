@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 from petsc4py import PETSc
 
+from galinx.clock import Clock
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.clock import Clock
 
 #: Prefix of the options database, so that ``-galinx_ksp_view`` and the like work.
 PREFIX = "galinx_"

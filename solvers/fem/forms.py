@@ -1,10 +1,28 @@
-"""Weak form of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it."""
+"""Weak forms of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import ufl
 
+from galinx.registry import Registry
 from galinx.solvers.fem.chart import Chart
+
+
+@dataclass(frozen=True)
+class Form:
+    """A weak form.
+
+    Attributes:
+        stiffness: the form from trial and test functions, chart, its coordinates, constants and degree.
+        constants: what these are called in a solid's response.
+        pressure: with an unknown pressure in each cell besides the displacement.
+    """
+
+    stiffness: Callable[..., Any]
+    constants: tuple[str, ...]
+    pressure: bool = False
 
 
 def gradient(u: Any, chart: Chart, x: Any) -> Any:
@@ -21,27 +39,39 @@ def stress(G: Any, κ: Any) -> Any:
     return 2 * ε + λ * ufl.tr(ε) * ufl.Identity(2)
 
 
-def moving_stiffness(u: Any, w: Any, chart: Chart, x: Any, κ: Any, c: Any, degree: int) -> Any:
-    """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed.
+def moving_stiffness(u: Any, w: Any, chart: Chart, x: Any, constants: Any, degree: int) -> Any:
+    """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed; constants κ and c.
 
-    On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial on a conformal
-    plane; two degrees above the product of gradients integrate it as well as the space can tell.
+    On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial in a conformal
+    chart; two degrees above the product of gradients integrate it as well as the space can tell.
     """
+    κ, c = constants
     Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
     energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
 
 
 def mixed_stiffness(
-    u: Any, p: Any, w: Any, q: Any, chart: Chart, x: Any, κ: Any, c: Any, degree: int
+    trial: tuple[Any, Any], test: tuple[Any, Any], chart: Chart, x: Any, constants: Any, degree: int
 ) -> Any:
     """The same with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
 
     ∫ 2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
     displacement alone carries λ, rounding grows with it.
     """
+    (u, p), (w, q), (κ, c) = trial, test, constants
     Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
     compliance = (κ - 1) / (3 - κ)  # μ/λ
     energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q
     return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
+
+
+#: Forms by the name that a solid gives.
+FORMS: Registry[Form] = Registry(
+    "weak form",
+    {
+        "isotropic": Form(moving_stiffness, ("κ", "c")),
+        "nearly incompressible": Form(mixed_stiffness, ("κ", "c"), pressure=True),
+    },
+)

@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
 from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.solid import Response
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
@@ -30,7 +31,7 @@ class InteriorGradients:
 
     Args:
         space: the finite element space.
-        κ, c: Kolosov's constant and the speed of the fields.
+        response: that the fields are solutions for.
         fields: displacements over N/(2μ), condensed.
         points: positions over a with Y <= 0, (n, 2).
 
@@ -39,7 +40,7 @@ class InteriorGradients:
     """
 
     def __init__(
-        self, space: Space, κ: float, c: float, fields: Sequence[PETSc.Vec], points: NDArray
+        self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
         x = space.chart.from_physical(points)
         vertices = space.vertices[..., :2]
@@ -49,7 +50,7 @@ class InteriorGradients:
             X, Y = points[np.argmin(found)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
         cells = np.unique(held.cell)
-        values = space.cell_values(fields, κ, c, cells)
+        values = space.cell_values(fields, response, cells)
         gradients = np.zeros((len(points), 2, 2, len(fields)))
         grid, nodes = tensor_order(space.reference_nodes)
         for cell, u in zip(cells, values[:, grid]):

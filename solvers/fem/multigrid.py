@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.clock import Clock
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.clock import Clock
 from galinx.solvers.fem.direct import PREFIX, defaults
 
 #: |b - Ax|/|b| that is asked for. Contact forces need more; refinement gives it.

@@ -20,6 +20,7 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.solid import Response
 
 #: Contact forces are found to this relative residual; the last digits are rounding.
 KRYLOV_TOLERANCE = 1e-13
@@ -50,19 +51,18 @@ class SlidingPunch:
 
     Args:
         space: the finite element space.
-        κ: Kolosov's constant.
-        c: speed over shear wave speed, below the Rayleigh speed.
+        response: of the half-plane, at a speed below its limit.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case and tells what that does to the others.
     """
 
     def __init__(
-        self, space: Space, κ: float, c: float, solver: str = "direct", negligible: float = 0.0
+        self, space: Space, response: Response, solver: str = "direct", negligible: float = 0.0
     ) -> None:
-        self.space, self.κ, self.c = space, κ, c
+        self.space, self.response = space, response
         nodes = space.contact
-        A = space.assemble(κ, c)
+        A = space.assemble(response)
         comm = A.comm
         self._rows = [
             A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=comm)) for i in (0, 1)

@@ -22,6 +22,7 @@ from galinx.solvers.fem.cells import (
 from galinx.solvers.fem.chart import Chart
 from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.solid import Response
 
 #: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
 _VANISHING = 1e-6
@@ -51,8 +52,7 @@ class SampledField:
 
 def sample(
     space: Space,
-    κ: float,
-    c: float,
+    response: Response,
     fields: Sequence[PETSc.Vec],
     weights: NDArray,
     extent: float,
@@ -64,13 +64,13 @@ def sample(
 
     Args:
         space: the finite element space.
-        κ, c: Kolosov's constant and the speed of the fields.
+        response: that the fields are solutions for.
         fields: displacements over N/(2μ), condensed.
         weights: of the first of the fields, or of all.
         extent: half the width, and the depth, of what is sampled, over a.
         n: quadrilaterals along each side of a cell, about the degree.
     """
-    t, corners = _cut(n)
+    t, corners = _split(n)
     vertices = space.vertices[..., :2]
     X = space.chart.to_physical(image(vertices, t))
     low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
@@ -83,7 +83,7 @@ def sample(
     pieces = []
     for start in range(0, space.comm.allreduce(len(cells), MPI.MAX), CHUNK):
         some = cells[start : start + CHUNK]
-        for cell, u in zip(some, space.cell_values([field], κ, c, some)[:, grid]):
+        for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
             quads = corners[wanted[cell]]  # counterclockwise, as every mesh's cells are
             displacement = reference_values(nodes, t, u)[..., 0]
             gradient = _gradients(space.chart, vertices[cell], nodes, t, u, n)
@@ -92,7 +92,7 @@ def sample(
     return _joined(pieces)
 
 
-def _cut(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The unit square cut into n x n: its (n+1)² points, and the corners of each part in turn."""
     side = np.linspace(0.0, 1.0, n + 1)
     t = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -12,14 +12,15 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.clock import Clock
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import adapter
 from galinx.solvers.fem.chart import Chart
-from galinx.solvers.fem.clock import Clock
 from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
-from galinx.solvers.fem.forms import mixed_stiffness, moving_stiffness
+from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
+from galinx.solvers.solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Space:
         tags: number of the tag of each of the parts "contact", "free surface" and "far".
         chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
-        mixed: with an unknown pressure in each cell, for nearly and fully incompressible solids.
+        form: name of the weak form that a solid asks for.
         clock: takes the time of what is done with the space.
 
     Raises:
@@ -63,10 +64,11 @@ class Space:
         tags: dict[str, int],
         chart: Chart,
         degree: int,
-        mixed: bool = False,
+        form: str = "isotropic",
         clock: Clock | None = None,
     ) -> None:
-        self.mesh, self.chart, self.degree, self.mixed = mesh, chart, degree, mixed
+        self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
+        self.mixed = self.form.pressure
         self.clock = Clock() if clock is None else clock
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
@@ -135,23 +137,24 @@ class Space:
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
 
     @cached_property
-    def _form(self) -> tuple[Any, fem.Constant, fem.Constant]:
-        """The compiled form with its constants κ and c, which are set before each assembly."""
+    def _compiled(self) -> tuple[Any, list[fem.Constant]]:
+        """The compiled form with its constants, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
-        κ, c = fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 0.0)
+        constants = [fem.Constant(self.mesh, 0.0) for _ in self.form.constants]
+        trial: Any
+        test: Any
         if self.mixed:
             # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
             with self.clock("forms"), compiling(self.comm) as options:
                 W = adapter.mixed_space(self.mesh, self.degree, self.degree - 2, options)
-            (u, p), (w, q) = ufl.TrialFunctions(W), ufl.TestFunctions(W)
-            form = mixed_stiffness(u, p, w, q, self.chart, x, κ, c, self.degree)
+            trial, test = ufl.TrialFunctions(W), ufl.TestFunctions(W)
         else:
-            u, w = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-            form = moving_stiffness(u, w, self.chart, x, κ, c, self.degree)
+            trial, test = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
+        form = self.form.stiffness(trial, test, self.chart, x, constants, self.degree)
         with self.clock("forms"), compiling(self.comm) as options:
-            return adapter.compile_form(form, options), κ, c
+            return adapter.compile_form(form, options), constants
 
-    def assemble(self, κ: float, c: float) -> PETSc.Mat:
+    def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
@@ -161,7 +164,7 @@ class Space:
             A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
                 cells = slice(start, start + CHUNK)
-                condensed, _ = self._condensed(κ, c, cells)
+                condensed, _ = self._condensed(response, cells)
                 for rows, S in zip(numbers[cells], condensed):
                     A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
@@ -185,18 +188,18 @@ class Space:
         return u
 
     def cell_values(
-        self, fields: Sequence[PETSc.Vec], κ: float, c: float, cells: NDArray[np.int64]
+        self, fields: Sequence[PETSc.Vec], response: Response, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
         """Values of condensed fields at all nodes of some of this rank's cells.
 
-        Collective. Inner values follow from the outer ones by the form that gave the fields, with
-        these κ and c.
+        Collective. Inner values follow from the outer ones by the form that gave the fields, at
+        this response.
 
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
         outer = self.fetch(fields, self._outer_numbers[cells])
-        _, E = self._condensed(κ, c, cells)
+        _, E = self._condensed(response, cells)
         u = np.empty((len(cells), self._kernel.nodes, 2, len(fields)))
         kernel = self._kernel
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
@@ -221,7 +224,7 @@ class Space:
         layout = self.V.dofmap.dof_layout
         pressures = (self.degree - 1) ** 2 * self.mixed
         inner = np.array(layout.entity_dofs(2, 0))
-        return CellMatrices(adapter.kernel(self._form[0]), layout.num_dofs, inner, pressures)
+        return CellMatrices(adapter.kernel(self._compiled[0]), layout.num_dofs, inner, pressures)
 
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
@@ -240,9 +243,10 @@ class Space:
         cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
-    def _condensed(self, κ: float, c: float, cells: Any) -> tuple[NDArray, NDArray]:
-        form, κ_, c_ = self._form
-        κ_.value, c_.value = κ, c
+    def _condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+        form, constants = self._compiled
+        for name, constant in zip(self.form.constants, constants):
+            constant.value = getattr(response, name)
         return self._kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:

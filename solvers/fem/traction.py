@@ -10,6 +10,7 @@ from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import surface_facets
+from galinx.solvers.solids.solid import Response
 
 #: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
 #: because next to an edge X/a itself no longer tells the distance.
@@ -25,13 +26,12 @@ class LoadedHalfPlane:
 
     Args:
         space: the finite element space.
-        κ: Kolosov's constant.
-        c: speed over shear wave speed, below the Rayleigh speed.
+        response: of the half-plane, at a speed below its limit.
     """
 
-    def __init__(self, space: Space, κ: float, c: float) -> None:
-        self.space = space
-        A = space.assemble(κ, c)
+    def __init__(self, space: Space, response: Response) -> None:
+        self.space, self.response = space, response
+        A = space.assemble(response)
         A.zeroRowsColumns(space.far_dofs, 1.0)
         self.factor = Factor(A, space.clock, definite=not space.mixed)
         #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.

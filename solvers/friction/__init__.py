@@ -1,1 +1,7 @@
-"""Friction laws; a law is a callable of start value, direction and slip."""
+"""Friction laws, by the name that scenes use, and how they advance along strokes."""
+
+from galinx.registry import Registry
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.law import FrictionLaw
+
+LAWS: Registry[type[FrictionLaw]] = Registry("friction law", {"dahl": Dahl})

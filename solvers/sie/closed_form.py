@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from galinx.solvers.solids.isotropic import MovingFrame
+from galinx.solvers.contact import from_edge, under_punch
+from galinx.solvers.solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -20,26 +21,27 @@ class FlatPunch:
     Properties are numbers, or arrays of the shape of ``g``.
 
     Args:
-        frame: constants of the moving frame.
+        response: of the half-plane at that speed.
         g: σ_XY/σ_YY under the punch, dimensionless and signed; an array broadcasts against positions.
     """
 
-    frame: MovingFrame
+    response: Response
     g: float | NDArray[np.float64]
+
+    @property
+    def _cot(self) -> Any:
+        """cot(πα) = g q/(n + g n₁₂) (Eq 42)."""
+        return self.g * self.response.q / (self.response.n + self.g * self.response.n12)
 
     @property
     def α(self) -> Any:
         """Exponent of the pressure at X = a, in (-1, 0): cot(πα) = g q/n (Eq 42)."""
-        return -0.5 - np.arctan(self.g * self.frame.q / self.frame.n) / np.pi
+        return -0.5 - np.arctan(self._cot) / np.pi
 
     @property
     def β(self) -> Any:
         """Exponent of the pressure at X = -a: β = -1 - α (Eq 43)."""
-        return -0.5 + np.arctan(self.g * self.frame.q / self.frame.n) / np.pi
-
-    @property
-    def _cot(self) -> Any:
-        return self.g * self.frame.q / self.frame.n
+        return -0.5 + np.arctan(self._cot) / np.pi
 
     @property
     def _sin(self) -> Any:
@@ -63,7 +65,7 @@ class FlatPunch:
         r = np.asarray(r, dtype=float)
         with np.errstate(invalid="ignore", divide="ignore"):
             inside = 2.0 * self._sin / np.pi * self._weight(r)
-        return np.where(np.abs(r) < 1.0, inside, np.where(np.abs(r) > 1.0, 0.0, np.nan))
+        return np.where(under_punch(r), inside, np.where(from_edge(r) > 0.0, 0.0, np.nan))
 
     def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
@@ -75,14 +77,18 @@ class FlatPunch:
         r = np.asarray(r, dtype=float)
         with np.errstate(invalid="ignore", divide="ignore"):
             outside = np.abs(r - 1.0) ** self.α * np.abs(r + 1.0) ** self.β / self._sin
-            F = np.where(np.abs(r) < 1.0, self._cot * self._weight(r), np.sign(r) * outside)
-        return np.where(np.abs(r) == 1.0, np.nan, 2.0 * self._sin / np.pi * F)
+            F = np.where(under_punch(r), self._cot * self._weight(r), np.sign(r) * outside)
+        return np.where(from_edge(r) == 0.0, np.nan, 2.0 * self._sin / np.pi * F)
 
     def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
         """In-plane stress over N/(2a) on the whole surface Y = 0; NaN at |r| = 1 (Eq 32)."""
-        κ, frame = self.frame.κ, self.frame
-        own = (3.0 - κ) / (κ + 1.0) + 8.0 * frame.q / (κ + 1.0)
-        return own * self.σ_YY(r) + 8.0 * frame.m / (κ + 1.0) * self.g * self.hilbert(r)
+        answer, σ_YY = self.response, self.σ_YY(r)
+        u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.hilbert(r)
+        return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
+
+    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
+        return self.response.inside(self.α, self.β, self.g, np.asarray(X), np.asarray(Y))
 
     def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
         """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""

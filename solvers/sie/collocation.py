@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import eval_jacobi, roots_jacobi
 
-from galinx.solvers.solids.isotropic import MovingFrame
+from galinx.solvers.solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Expansion:
 
 
 def solve(
-    frame: MovingFrame,
+    response: Response,
     g: float,
     terms: int,
     slope: Callable[[NDArray], NDArray] = np.zeros_like,
@@ -41,7 +41,7 @@ def solve(
     """Coefficients of the contact pressure under a punch with two sharp edges.
 
     Args:
-        frame: constants of the moving frame.
+        response: of the half-plane at that speed.
         g: σ_XY/σ_YY under the punch, dimensionless.
         terms: number of Jacobi polynomials, at least 2.
         slope: μ v,X under the punch over N/(2a) at given r; 0 for a flat punch.
@@ -49,15 +49,16 @@ def solve(
     Returns:
         The expansion; for a flat punch all but its first coefficient vanish.
     """
+    n = response.n + g * response.n12
     # The exponents solve cot(πα) = g q/n: the dominant part's index is 1, both ends singular.
-    α = -0.5 - np.arctan2(g * frame.q, frame.n) / np.pi
+    α = -0.5 - np.arctan2(g * response.q, n) / np.pi
     β = -1.0 - α
     with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
         t, w = roots_jacobi(terms, α, β)
         r, _ = roots_jacobi(terms - 1, -α, -β)
     P = eval_jacobi(np.arange(terms), α, β, t[:, None])
     A = np.empty((terms, terms))
-    A[:-1] = frame.n / np.pi * (w / (t[None, :] - r[:, None])) @ P
+    A[:-1] = n / np.pi * (w / (t[None, :] - r[:, None])) @ P
     A[-1] = w @ P
     b = np.append(slope(r), -2.0)
     return Expansion(float(α), float(β), np.linalg.solve(A, b))

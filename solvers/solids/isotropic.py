@@ -7,36 +7,36 @@ speed, β_s and β_d the contraction factors of shear and dilatational waves.
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.parameters import check, choice, parameter
+
+#: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
+INCOMPRESSIBLE = 0.04
 
 
 @dataclass(frozen=True)
-class Solid:
+class Isotropic:
     """An isotropic elastic solid in plane strain or plane stress.
-
-    Args:
-        E: Young's modulus [Pa], positive.
-        ν: Poisson's ratio, dimensionless, -1 < ν <= 1/2.
-        ρ: density [kg/m³], positive.
-        plane: ``"strain"`` or ``"stress"``.
 
     Raises:
         ValueError: a constant is outside its range; the message names value and range.
     """
 
-    E: float
-    ν: float
-    ρ: float
-    plane: str = "strain"
+    about: ClassVar[str] = "isotropic"
+
+    E: float = parameter("E", "Young's modulus", "Pa", above=0.0, usual=(1e3, 2e12))
+    ν: float = parameter("nu", "Poisson's ratio", symbol=r"\nu", above=-1.0, at_most=0.5)
+    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
+    plane: str = choice(
+        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
+    )
 
     def __post_init__(self) -> None:
-        for name in ("E", "ρ"):
-            value = getattr(self, name)
-            if not 0.0 < value < float("inf"):
-                raise ValueError(f"{name} = {value!r}: expected a finite positive number")
-        if not -1.0 < self.ν <= 0.5:
-            raise ValueError(f"ν = {self.ν!r}: expected -1 < ν <= 0.5")
-        if self.plane not in ("strain", "stress"):
-            raise ValueError(f"plane = {self.plane!r}: expected 'strain' or 'stress'")
+        check(self)
 
     @property
     def μ(self) -> float:
@@ -54,6 +54,31 @@ class Solid:
     def c_s(self) -> float:
         """Shear wave speed [m/s]."""
         return sqrt(self.μ / self.ρ)
+
+    @property
+    def nearly_incompressible(self) -> bool:
+        """Near ν = 1/2 in plane strain."""
+        return self.κ - 1.0 < INCOMPRESSIBLE
+
+    @property
+    def form(self) -> str:
+        """The weak form that finite elements solve."""
+        return "nearly incompressible" if self.nearly_incompressible else "isotropic"
+
+    def limit(self) -> float:
+        """Rayleigh speed over the shear wave speed."""
+        return rayleigh_speed(self.κ)
+
+    def response(self, c: float) -> "MovingFrame":
+        """The half-plane at a speed over the shear wave speed."""
+        return MovingFrame(self.κ, c)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane: ν(σ_XX + σ_YY), or 0 in plane stress."""
+        return (self.ν if self.plane == "strain" else 0.0) * (σ_XX + σ_YY)
+
+    def words(self) -> str:
+        return f"E = {self.E:.6g} Pa, ν = {self.ν:g}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
 
 
 @dataclass(frozen=True)
@@ -129,6 +154,33 @@ class MovingFrame:
     def m(self) -> float:
         """Strain u,X by the Hilbert transform of σ_XY; (κ+1)/4 at rest."""
         return self.β_s / self.r
+
+    @property
+    def n12(self) -> float:
+        """Slope v,X by the Hilbert transform of σ_XY: none, by symmetry."""
+        return 0.0
+
+    @property
+    def margin(self) -> float:
+        """Rayleigh function over its value at rest; 0 at the Rayleigh speed."""
+        return self.r / MovingFrame(self.κ, 0.0).r
+
+    def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
+        """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""
+        κ = self.κ
+        return 8.0 / (κ + 1.0) * u_X + (3.0 - κ) / (κ + 1.0) * σ_YY
+
+    def stresses(self, G: NDArray) -> NDArray[np.float64]:
+        """Hooke's law (Eqs 6-8), κ > 1: σ_XX, σ_YY, σ_XY over μ of displacement gradients (..., 2, 2)."""
+        u_X, v_Y = G[..., 0, 0], G[..., 1, 1]
+        λ_div = (3.0 - self.κ) / (self.κ - 1.0) * (u_X + v_Y)
+        return np.array([2.0 * u_X + λ_div, 2.0 * v_Y + λ_div, G[..., 0, 1] + G[..., 1, 0]])
+
+    def inside(self, α: Any, β: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Stresses below a flat punch from the two potentials."""
+        from galinx.solvers.solids.potentials import stresses  # SciPy's special functions, a slow import
+
+        return stresses(self, α, β, g, X, Y)
 
     @property
     def ω(self) -> tuple[float, float, float, float]:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 
-from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.fem import surface
 from galinx.solvers.fem.distributed import distribute

@@ -4,11 +4,11 @@ import h5py
 import numpy as np
 import pytest
 from conftest import HOME
+from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
 
 from galinx.app.results.paraview import state_field, write_field
 from galinx.app.scene.scene import read
-from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch

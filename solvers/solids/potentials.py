@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
-from galinx.solvers.sie.closed_form import FlatPunch
 
-
-def stresses(punch: FlatPunch, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
     """σ_XX, σ_YY, σ_XY over N/(2a) at points below the surface.
 
     Args:
-        punch: the exact solution of the contact.
+        frame: constants of the moving frame, :class:`galinx.solvers.solids.isotropic.MovingFrame`.
+        α, β: exponents of the pressure at X = a and X = -a; like g they broadcast against points.
+        g: σ_XY/σ_YY under the punch.
         X, Y: coordinates over a, of one shape; Y < 0.
 
     Returns:
@@ -29,11 +29,10 @@ def stresses(punch: FlatPunch, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64
     X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
     if np.any(Y >= 0.0):
         raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use FlatPunch on the surface")
-    frame, g = punch.frame, punch.g
     k, β_s, β_d, e, r, q, κ = (
         frame.k, frame.β_s, frame.β_d, frame.e, frame.r, frame.q, frame.κ
     )  # fmt: skip
-    Φ_s, d = _potentials(punch, X, Y)
+    Φ_s, d = _potentials(frame, α, β, X, Y)
     s_s, h_s, s, h = -Φ_s.imag, Φ_s.real, -d.imag, d.real
 
     u_X = (e * s + β_s * g * (2.0 * h + h_s)) / r + q * s_s
@@ -53,10 +52,10 @@ def stresses(punch: FlatPunch, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64
 
 
 def _potentials(
-    punch: FlatPunch, X: NDArray[np.float64], Y: NDArray[np.float64]
+    frame: Any, α: Any, β: Any, X: NDArray[np.float64], Y: NDArray[np.float64]
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Φ(z_s) and (Φ(z_d) - Φ(z_s))/c² with Φ(z) = (2/π)(z - 1)^α (z + 1)^β."""
-    frame, α, β, c2 = punch.frame, punch.α, punch.β, punch.frame.c**2
+    c2 = frame.c**2
     z = X + 1j * frame.β_s * Y
     Φ: Any = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
     δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²

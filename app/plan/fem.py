@@ -1,0 +1,124 @@
+"""What finite elements of a scene need: mesh, degrees, solver, memory."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from galinx.app import ranks
+from galinx.app.errors import BadInput
+from galinx.app.plan import cost
+from galinx.app.scene.scene import Scene
+from galinx.meshes import MESHES, MeshKind
+from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.solvers.solids.solid import Response
+
+#: Unknowns up to which a rank solves a speed alone faster than two ranks together.
+SMALL = 200_000
+
+
+@dataclass(frozen=True)
+class FemPlan:
+    """Finite element work of a scene.
+
+    Attributes:
+        mesh, kind: name and kind of the mesh.
+        refinement: of the one mesh all speeds share, before it is cut.
+        cuts: of every cell's sides.
+        form: name of the weak form.
+        solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
+        degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
+        fixed: the scene fixes the degree.
+        tolerance: wanted relative accuracy of K_I and of the pressure's moments.
+        mode: ``"contact"`` or ``"traction"``.
+        pressure: of the traction mode: ``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)].
+        shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
+            all ranks share one mesh.
+    """
+
+    mesh: str
+    kind: MeshKind
+    refinement: Refinement
+    cuts: int
+    form: str
+    solver: str
+    degrees: tuple[int, ...]
+    fixed: bool
+    tolerance: float
+    mode: str
+    pressure: Any
+    shared_speeds: bool
+
+    @property
+    def pattern(self) -> QuadMesh:
+        """The mesh before it is cut."""
+        return self.kind.build(self.refinement)
+
+    @property
+    def size(self) -> int:
+        """Unknowns of the largest system, about the same without building the mesh."""
+        return _size(self.refinement, self.cuts * max(self.degrees))
+
+    @property
+    def memory(self) -> float:
+        """Bytes of the linear systems on all ranks together."""
+        systems = ranks.size() if self.shared_speeds else 1
+        return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
+
+
+def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
+    """Plan the finite elements at some speeds; builds no mesh.
+
+    Args:
+        scene: the scene.
+        responses: of its solid, one a speed.
+
+    Raises:
+        BadInput: a degree or solver is asked for that the weak form does not allow.
+    """
+    solve, kind = scene.solve, MESHES[scene.solve.mesh]
+    _check_degree_and_solver(scene)
+    mixed = scene.solid.nearly_incompressible
+    refinement = kind.refinement(solve.tolerance, min(response.β_s for response in responses))
+    degrees = tuple(
+        solve.degree or max(kind.degree(solve.tolerance, response.margin), 4 + mixed)
+        for response in responses
+    )
+    size = _size(refinement, solve.cuts * max(degrees))
+    shared = 1 < ranks.size() <= len(responses) and size < SMALL
+    solver = solve.solver
+    if mixed or solver == "auto":
+        needed = cost.bytes_of_levels(size, direct=True) * (ranks.size() if shared else 1)
+        solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
+    return FemPlan(
+        solve.mesh, kind, refinement, solve.cuts, scene.solid.form, solver, degrees, solve.degree is not None,
+        solve.tolerance, solve.mode, solve.pressure, shared,
+    )  # fmt: skip
+
+
+def _check_degree_and_solver(scene: Scene) -> None:
+    solve, mixed = scene.solve, scene.solid.nearly_incompressible
+    if mixed and solve.degree and solve.degree < 3:
+        raise BadInput(
+            f"solve.degree: found {solve.degree} with {scene.solid.words()}, expected at least 3: "
+            "the pressure, an unknown of its own there, has two degrees less"
+        )
+    if mixed and solve.solver in ("boomeramg", "gamg"):
+        raise BadInput(
+            f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
+            "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def _size(refinement: Refinement, p: int) -> int:
+    """A cell of degree p cut k times has the nodes of one of degree k p."""
+    cells = 2 * refinement.sectors * (
+        2 * refinement.levels + refinement.sectors + len(refinement.columns)
+    )  # fmt: skip
+    return 2 * p**2 * cells
+
+
+def unknowns(mesh: QuadMesh, p: int) -> int:
+    """Unknowns at degree ``p``: two a vertex, p - 1 an edge, (p - 1)² a cell, by Euler's formula."""
+    cells, vertices = len(mesh.cells), len(mesh.points)
+    edges = cells + vertices - 1
+    return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)

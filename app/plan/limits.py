@@ -1,0 +1,94 @@
+"""Where a scene asks for what has no answer, or for one that will cost accuracy."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from galinx.app.errors import BadInput
+from galinx.app.plan import cost
+from galinx.app.plan.fem import FemPlan
+from galinx.app.scene.scene import Scene
+from galinx.meshes import MESHES
+from galinx.solvers.solution import Places
+
+#: Share of the far boundary's distance up to which points inside are asked for.
+_INNER = 0.6
+
+
+def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
+    """Warnings about speeds.
+
+    Raises:
+        BadInput: finite elements are asked for where their form is indefinite.
+    """
+
+    def beyond_limit(c: float) -> bool:
+        return c >= 1.0 or scene.solid.response(c).margin <= 0.0
+
+    beyond = [c for c in speeds if beyond_limit(c)]
+    near = [c for c in speeds if c not in beyond and beyond_limit(c / 0.99)]
+    c_R = scene.solid.limit() if beyond or near else None
+    if fem and beyond:
+        raise BadInput(
+            f"motion: c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): the finite element form is indefinite there and does not "
+            'converge; take lower speeds, or methods = ["closed_form"]'
+        )
+    warnings = []
+    if beyond:
+        warnings.append(
+            f"c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): the closed form is formal there"
+        )
+    if near:
+        warnings.append(
+            f"c = {', '.join(f'{c:g}' for c in near)} is within 1 % of the Rayleigh speed "
+            f"c_R = {c_R:.6g} (over c_s): displacements grow without bound and errors with them"
+        )
+    return warnings
+
+
+def check_places(scene: Scene, places: Places) -> None:
+    """Can finite elements tell the stresses inside there?
+
+    Raises:
+        BadInput: they cannot.
+    """
+    if not len(places.points):
+        return
+    check_distance(scene, "output.points", "a coordinate of ", float(np.abs(places.points).max()))
+    if scene.solid.nearly_incompressible:
+        raise BadInput(
+            f"output.points: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
+            'finite elements; use methods = ["closed_form"]'
+        )
+
+
+def check_distance(scene: Scene, key: str, what: str, found: float) -> None:
+    """Is a distance over a well inside the scene's mesh?
+
+    Raises:
+        BadInput: it is not positive, or too large.
+    """
+    limit = _INNER * MESHES[scene.solve.mesh].reach(scene.solve.tolerance)
+    if not 0.0 < found <= limit:
+        raise BadInput(
+            f"{key}: found {what}{found:g} a, expected more than 0 and at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
+
+
+def warnings_of(fem: FemPlan) -> Iterator[str]:
+    """What finite elements will not reach, or not fit into."""
+    cut_off = fem.kind.truncation(fem.tolerance)
+    if cut_off > fem.tolerance:
+        yield (
+            f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
+            f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
+        )
+    needed, free = fem.memory, cost.free_memory()
+    if needed > free:
+        yield (
+            f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
+            f"{free / 1e9:.2g} GB free: use fewer cuts, a larger tolerance, or more machines"
+        )

@@ -1,0 +1,119 @@
+"""Run a scene: plan, solve, judge, archive."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from galinx import __version__
+from galinx.app import ranks
+from galinx.app.console.progress import Progress
+from galinx.app.plan.plan import Plan, make_plan
+from galinx.app.plan.states import States, enumerate_states
+from galinx.app.plan.words import lines
+from galinx.app.run.collector import Collector
+from galinx.app.run.judge import Judge
+from galinx.app.run.methods import METHODS
+from galinx.app.run.sinks import Nowhere, Sink
+from galinx.app.run.solve import Work
+from galinx.app.run.versions import libraries, machine
+from galinx.app.scene.scene import Scene
+from galinx.clock import Clock
+from galinx.postprocess.journal import Journal, Part
+
+
+def compute(
+    scene: Scene,
+    sink: Sink | None = None,
+    progress: Progress | None = None,
+    journal: Journal | None = None,
+) -> dict[str, Any]:
+    """Compute what a scene asks for, into ``sink``.
+
+    Under MPI this is collective; results reach the sink of rank 0.
+
+    Args:
+        scene: what is asked for.
+        sink: takes the datasets.
+        progress: is told what is being done.
+        journal: keeps finished parts; what it already has is not computed again.
+
+    Returns:
+        Root attributes of the archive, verdict among them.
+
+    Raises:
+        BadInput: the scene asks for what has no answer.
+        SolveError: no speed could be solved.
+    """
+    if sink is None or not ranks.is_root():
+        sink = Nowhere()
+    progress, clock = progress or Progress(), Clock()
+    with clock("friction"):
+        plan, states = make_plan(scene), enumerate_states(scene)
+        _put_states(sink, scene, plan, states)
+    judge = Judge(scene, (rule for quantity in plan.quantities for rule in quantity.compared))
+    if plan.methods:
+        collector = Collector(sink, judge, progress, journal, plan)
+        for part in _parts(plan, states, collector.earlier(), progress, clock):
+            collector.take(part)
+        collector.finish()
+        clock["archive"] = collector.seconds
+    _put_work(sink, scene, plan, clock)
+    return _attributes(scene, plan, judge)
+
+
+def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
+    sink.put("scene/text", scene.text)
+    for name, values in states.columns.items():
+        sink.put(f"states/{name}", values)
+    sink.put("loops/X_over_L", states.travel)
+    sink.put("loops/f", states.loops)
+    if plan.asks("surface"):
+        sink.put("surface/X_over_a", plan.places.X)
+    if plan.asks("interior"):
+        for i, name in enumerate(("X_over_a", "Y_over_a")):
+            sink.put(f"interior/{name}", plan.places.points[:, i])
+        if scene.output.map:
+            sink.put("interior/map", np.array([axis.count for axis in reversed(scene.output.map)]))
+
+
+def _parts(
+    plan: Plan, states: States, finished: frozenset[int], progress: Progress, clock: Clock
+) -> Iterator[Part]:
+    """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
+    methods = {name: METHODS[name](plan, progress, clock) for name in plan.methods}
+    if ranks.size() > 1 and plan.fem:
+        from galinx.app.run.share import same_on_all, shared_out
+
+        finished = same_on_all(finished)
+    work = Work(plan, states.g, methods, clock, finished)
+    tasks = [task for task in plan.tasks if work.to_do(task)]
+    if plan.fem and plan.fem.shared_speeds:
+        yield from shared_out(tasks, work.parts)
+    else:
+        for task in tasks:
+            yield from work.parts(task)
+
+
+def _put_work(sink: Sink, scene: Scene, plan: Plan, clock: Clock) -> None:
+    sink.put("run/done", lines(scene, plan))
+    sink.put("run/skipped", list(plan.skipped))
+    sink.put("run/steps", list(clock))
+    sink.put("run/seconds", np.array(list(clock.values()), dtype=float))
+
+
+def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
+    verdict, reasons = judge.verdict()
+    return {
+        "version": __version__,
+        "versions": json.dumps(libraries()),
+        "machine": machine(),
+        "scene_sha256": scene.sha256,
+        "title": scene.title,
+        "load": scene.punch.load,
+        "verdict": verdict,
+        "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
+        "comparisons": json.dumps(judge.worst, ensure_ascii=False),
+        "warnings": json.dumps(plan.warnings, ensure_ascii=False),
+    }

@@ -1,0 +1,56 @@
+"""Tasks shared out over the ranks: who is free takes the next."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from mpi4py import MPI
+
+from galinx.app.plan.plan import Task
+from galinx.app.run.counter import Counter
+from galinx.postprocess.journal import Part
+
+#: Parts that a rank may have computed and rank 0 not yet taken in.
+AHEAD = 4
+
+
+def shared_out(tasks: Sequence[Task], solve: Callable[[Task], Iterator[Part]]) -> Iterator[Part]:
+    """Parts of all tasks, on rank 0 only, which works too and takes in the others' results.
+
+    Collective over MPI's world. Nobody is more than ``AHEAD`` parts ahead of rank 0, so memory stays
+    bounded.
+    """
+    world = MPI.COMM_WORLD
+    counter = Counter(world)
+    # The fastest are the dearest: begun last, they would leave the other ranks waiting.
+    order = sorted(tasks, key=lambda task: -task.response.c)
+    mine = (part for i in counter.until(len(order)) for part in solve(order[i]))
+    if world.rank > 0:
+        pending: list[MPI.Request] = []
+        for part in mine:
+            pending.append(world.issend(part, 0))
+            if len(pending) > AHEAD:
+                pending.pop(0).wait()
+        MPI.Request.waitall([*pending, world.isend(None, 0)])
+    else:
+        yield from _taken_in(world, mine)
+    counter.free()
+
+
+def _taken_in(world: MPI.Comm, mine: Iterator[Part]) -> Iterator[Part]:
+    working, busy = world.size - 1, True
+    while working or busy:
+        if busy:
+            part = next(mine, None)
+            busy = part is not None
+            if part:
+                yield part
+        while working and (not busy or world.iprobe()):
+            message = world.recv()
+            if message is None:  # the last that a rank sends
+                working -= 1
+            else:
+                yield message
+
+
+def same_on_all(finished: frozenset[int]) -> frozenset[int]:
+    """What rank 0 says, on every rank."""
+    return MPI.COMM_WORLD.bcast(finished)

@@ -1,0 +1,77 @@
+"""Scenes are read: TOML with units, checked before any work starts."""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from galinx.app.errors import BadInput
+from galinx.app.scene.keys import nearest
+from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.scene import Scene
+from galinx.app.scene.sections import SECTIONS
+from galinx.app.scene.sense import contradictions
+
+
+def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
+    """Read and check a scene file.
+
+    Args:
+        path: the file.
+        changes: new values by ``"section.key"``; they stand in the scene's text.
+
+    Raises:
+        BadInput: the file cannot be read, or the scene has faults; all are listed.
+    """
+    try:
+        data = path.read_bytes()
+    except IsADirectoryError:
+        raise BadInput(f"{path} is a folder, expected a scene (TOML file)") from None
+    except OSError as error:
+        raise BadInput(f"cannot read {path}: {error.strerror}") from None
+    try:
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+    if not text.strip():
+        raise BadInput(f"{path} is empty, expected a scene; scenes/ holds examples")
+    if changes:
+        from galinx.app.scene.changes import changed  # an import that only changes pay for
+
+        text = changed(text, changes, str(path))
+    return parse(text, str(path))
+
+
+def parse(text: str, name: str = "scene") -> Scene:
+    """Check a scene's text; ``name`` stands in messages.
+
+    Raises:
+        BadInput: with all faults of the scene in one message.
+    """
+    try:
+        tree = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise BadInput(f"{name} is not TOML: {error}") from None
+    faults: list[str] = []
+    _fill_in_material(tree)
+    title = tree.pop("title", "")
+    if not isinstance(title, str):
+        faults.append(f"title: found {title!r}, expected a text")
+    for key in tree.keys() - SECTIONS.keys():
+        faults.append(f"[{key}]: no such section{nearest(key, [*SECTIONS, 'title'])}")
+    read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
+    if not faults:
+        scene = Scene(title, text, **read)
+        faults = contradictions(scene)
+        if not faults:
+            return scene
+    lines = "\n".join(f"  {fault}" for fault in faults)
+    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{lines}")
+
+
+def _fill_in_material(tree: dict[str, Any]) -> None:
+    """Values of a known solid; those that the scene gives itself stay."""
+    solid = tree.get("solid")
+    name = solid.get("material") if isinstance(solid, dict) else None
+    if isinstance(name, str) and name in LIBRARY:
+        tree["solid"] = LIBRARY[name].constants | solid

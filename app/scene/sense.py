@@ -1,0 +1,67 @@
+"""Does a scene make sense? Keys that contradict each other, and values that look unusual."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from galinx.app.scene.scene import Scene
+from galinx.solvers.parameters import parameters, values
+
+#: Usual lengths of a stroke [m].
+_STROKE = (1e-10, 1.0)
+
+
+def contradictions(scene: Scene) -> list[str]:
+    """Faults that no key has alone, one sentence each."""
+    faults = []
+    asked, solve = set(scene.output.quantities), scene.solve
+    if scene.motion.c is not None and scene.motion.speed is not None:
+        faults.append("motion: c and speed exclude each other; keep one")
+    if scene.motion.c is None and scene.motion.speed is None:
+        faults.append("motion: expected c (over the shear wave speed) or speed (m/s)")
+    if asked - {"friction"} and not solve.methods:
+        faults.append(
+            "solve.methods is empty, but output.quantities asks for "
+            f"{', '.join(sorted(asked - {'friction'}))}; name closed_form, fem or both"
+        )
+    if ("interior" in asked) != bool(scene.output.points or scene.output.map):
+        faults.append(
+            'output: the quantity "interior" and output.points or output.map go together, as in points = '
+            "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
+            "to, number)"
+        )
+    fixed = solve.degree is not None
+    if (fixed and solve.cuts % 4) or (not fixed and solve.cuts != 1):
+        faults.append(
+            f"solve.degree and solve.cuts: found {solve.degree} and {solve.cuts}, expected neither, or a "
+            "degree and a multiple of 4: the error is measured with half and a quarter of the cuts"
+        )
+    if fixed and solve.mode == "traction":
+        faults.append('solve.degree needs solve.mode = "contact"')
+    if solve.pressure != "closed_form" and solve.mode != "traction":
+        faults.append('solve.pressure needs solve.mode = "traction"')
+    return faults
+
+
+def oddities(scene: Scene) -> list[str]:
+    """What looks unusual, one sentence each: the unit may be another than meant."""
+    return [
+        f"{path} = {value:g} {unit} is unusual; is its unit as meant?"
+        for path, value, unit, (low, high) in _usual(scene)
+        if not low <= value <= high
+    ]
+
+
+def _usual(scene: Scene) -> Iterator[tuple[str, float, str, tuple[float, float]]]:
+    """Numbers of a scene with their path, unit and where they usually lie."""
+    yield "friction.pre_sliding", scene.friction.pre_sliding, "m", _STROKE
+    one = {"solid": scene.solid, "punch": scene.punch.profile}
+    given = [
+        *((name, parameters(model), values(model)) for name, model in one.items()),
+        ("friction", parameters(scene.friction.law), scene.friction.parameters),
+    ]
+    for section, known, found in given:
+        for key, parameter in known.items():
+            if parameter.usual:
+                for value in np.atleast_1d(found[key]).tolist():
+                    yield f"{section}.{key}", value, parameter.unit, parameter.usual

@@ -1,0 +1,29 @@
+"""Models by the name that scenes use."""
+
+from typing import TypeVar
+
+Model = TypeVar("Model")
+
+
+class Registry(dict[str, Model]):
+    """Models by name, to which anybody may add.
+
+    Args:
+        noun: what a model is, for messages.
+        models: those that are built in.
+    """
+
+    def __init__(self, noun: str, models: dict[str, Model]) -> None:
+        super().__init__(models)
+        self.noun = noun
+
+    def register(self, name: str, model: Model) -> Model:
+        """Add a model of one's own, and return it.
+
+        Raises:
+            ValueError: the name is taken: two models of one name could not be told apart in archives.
+        """
+        if self.get(name, model) is not model:
+            raise ValueError(f"the {self.noun} {name!r} exists; give yours another name")
+        self[name] = model
+        return model

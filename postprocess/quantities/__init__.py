@@ -1,0 +1,70 @@
+"""The one table of archived quantities: archives, checks, comparisons, plans and pages follow from it."""
+
+from collections.abc import Collection, Iterator
+from difflib import get_close_matches
+
+from galinx.postprocess.quantities import runs, states, stresses
+from galinx.postprocess.quantities.quantity import FRICTION, INTENSITIES, STATE, Quantity
+from galinx.postprocess.quantities.runs import RECORD
+from galinx.registry import Registry
+from galinx.solvers.friction import LAWS
+from galinx.solvers.parameters import parameters
+
+__all__ = ["FRICTION", "QUANTITIES", "RECORD", "STATE", "WORDS", "Quantity", "add", "declared", "table"]
+
+#: Quantities by their path, but for the parameters of friction laws.
+QUANTITIES: Registry[Quantity] = Registry(
+    "quantity", {row.path: row for part in (states, stresses, runs) for row in part.ROWS}
+)
+
+
+def add(quantity: Quantity) -> Quantity:
+    """Add a quantity of one's own.
+
+    Raises:
+        ValueError: its path is taken.
+    """
+    return QUANTITIES.register(quantity.path, quantity)
+
+
+def table() -> dict[str, Quantity]:
+    """Every quantity by its path, the parameters of all known friction laws among them."""
+    of_laws = {
+        f"states/{key}": Quantity(
+            f"states/{key}", known.unit or "1", known.about, (STATE,), symbol=known.symbol
+        )
+        for law in LAWS.values()
+        for key, known in parameters(law).items()
+    }
+    return of_laws | QUANTITIES
+
+
+def declared(path: str) -> Quantity:
+    """The quantity of a path.
+
+    Raises:
+        KeyError: there is none; the message names the nearest.
+    """
+    known = table()
+    if path not in known:
+        close = get_close_matches(path, known, 1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        raise KeyError(f"{path} is in no row of the table of quantities{hint}")
+    return known[path]
+
+
+class _Words(Collection[str]):
+    """Words of a scene's output.quantities, those of users' quantities among them."""
+
+    def __iter__(self) -> Iterator[str]:
+        asked = (quantity.asked_by for quantity in QUANTITIES.values() if quantity.asked_by)
+        return iter(dict.fromkeys([FRICTION, INTENSITIES, *asked]))
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def __contains__(self, word: object) -> bool:
+        return word in list(iter(self))
+
+
+WORDS = _Words()

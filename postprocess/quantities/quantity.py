@@ -1,0 +1,61 @@
+"""What is known of an archived quantity."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from galinx.postprocess.compare import Rule
+
+#: Dimensions of datasets, in words.
+STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
+    "states", "points", "points inside", "speeds", "loops", "positions",
+)  # fmt: skip
+
+#: Method of what is known without solving: the local analysis of the punch's edges.
+LOCAL = "local"
+
+#: Words of a scene's output.quantities that ask for no dataset of their own.
+FRICTION, INTENSITIES = "friction", "sif"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity: what it is, when it is computed, how it is read off a solution, how it is judged.
+
+    Attributes:
+        path: of its dataset in an archive.
+        unit: "1" for dimensionless, "none" for texts.
+        about: what it is; the dataset's long name.
+        over: its dimensions.
+        of: reads it off a solution (see :mod:`galinx.solvers.solution`) of a body, one value a state; None
+            where the run itself puts it in.
+        method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
+        mode: of the finite elements, where only one gives it.
+        asked_by: word of output.quantities; "" where every solution gives it.
+        of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
+        needs: paths.
+        nan_allowed: "never", "beside" the punch, or "anywhere".
+        compared: what it is held against, and how.
+        symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
+    """
+
+    path: str
+    unit: str
+    about: str
+    over: tuple[str, ...] = ()
+    of: Callable[[Any, Any], NDArray] | None = None
+    method: str = ""
+    mode: str = ""
+    asked_by: str = ""
+    of_data: Callable[[dict[str, Any]], NDArray] | None = None
+    needs: tuple[str, ...] = ()
+    nan_allowed: str = "never"
+    compared: tuple[Rule, ...] = ()
+    symbol: str = ""
+
+    @property
+    def solved(self) -> bool:
+        """Does it come from a solution, part by part?"""
+        return self.of is not None or self.of_data is not None

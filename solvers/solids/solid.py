@@ -1,0 +1,99 @@
+"""What solvers ask of an elastic solid, at rest and at speed."""
+
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Response(Protocol):
+    """A half-plane of a solid seen from a load that moves over it, lengths over a, stresses over N/(2a).
+
+    Its surface answers tractions with (H is the Hilbert transform over the contact)::
+
+        μ v,X = n H[σ_YY] + n₁₂ H[σ_XY] - q σ_XY
+        μ u,X = q σ_YY + n₁₂ H[σ_YY] + m H[σ_XY]
+
+    Attributes:
+        c: speed over the solid's wave speed, dimensionless.
+        n, m, n12, q: of the surface, dimensionless.
+        margin: 1 at rest, 0 at the highest speed that finite elements can do, negative beyond; displacements
+            grow as it falls.
+        β_s: how much the slowest field is flattened: fields turn within an angle of that size.
+    """
+
+    @property
+    def c(self) -> float: ...
+    @property
+    def n(self) -> float: ...
+    @property
+    def m(self) -> float: ...
+    @property
+    def n12(self) -> float: ...
+    @property
+    def q(self) -> float: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def β_s(self) -> float: ...
+
+    def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""
+
+    def stresses(self, G: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
+
+    def inside(self, α: NDArray, β: NDArray, g: NDArray, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, ...), below a flat punch.
+
+        Args:
+            α, β: exponents of its pressure at X = a and X = -a.
+            g: σ_XY/σ_YY under it.
+            X, Y: positions, Y < 0.
+        """
+
+
+class Solid(Protocol):
+    """An elastic solid: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
+
+    Attributes:
+        about: what kind of solid it is.
+        form: name of the weak form that finite elements solve, see :mod:`galinx.solvers.fem.forms`; its
+            constants are attributes of the response.
+        nearly_incompressible: displacements alone would lose digits; the weak form has an unknown pressure.
+        plane: ``"strain"`` or ``"stress"``.
+        μ: modulus that stresses are divided by [Pa].
+        ρ: density [kg/m³].
+        c_s: wave speed that c refers to [m/s].
+    """
+
+    about: ClassVar[str]
+
+    @property
+    def form(self) -> str: ...
+    @property
+    def nearly_incompressible(self) -> bool: ...
+    @property
+    def plane(self) -> str: ...
+    @property
+    def μ(self) -> float: ...
+    @property
+    def ρ(self) -> float: ...
+    @property
+    def c_s(self) -> float: ...
+
+    def limit(self) -> float:
+        """Highest speed over ``c_s``: that of a wave along the surface."""
+
+    def response(self, c: float) -> Response:
+        """The half-plane at a speed over ``c_s``.
+
+        Raises:
+            ValueError: waves in the solid are not faster.
+        """
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane, of one shape and unit with the others."""
+
+    def words(self) -> str:
+        """The solid in a sentence's middle, with units."""

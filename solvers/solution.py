@@ -1,0 +1,99 @@
+"""What every method gives: friction states at one speed; lengths over a, stresses over N/(2a)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.contact import under_punch
+from galinx.solvers.profiles import Profile
+from galinx.solvers.solids import Solid
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where stresses are wanted, over a.
+
+    Attributes:
+        X: positions on the surface, (n,).
+        points: positions X, Y inside, (m, 2).
+    """
+
+    X: NDArray[np.float64]
+    points: NDArray[np.float64]
+
+    @cached_property
+    def under(self) -> NDArray[np.bool_]:
+        """Which positions on the surface lie under the punch, (n,)."""
+        return under_punch(self.X)
+
+
+@dataclass(frozen=True)
+class Body:
+    """What slides over what, in SI.
+
+    Attributes:
+        solid: the half-plane.
+        profile: the punch.
+        load: N per depth [N/m].
+    """
+
+    solid: Solid
+    profile: Profile
+    load: float
+
+    @property
+    def force(self) -> float:
+        """Unit of nodal forces [N/m]: stresses over N/(2a), lengths over a."""
+        return self.load / 2.0
+
+    @property
+    def displacement(self) -> float:
+        """Unit of displacements [m]."""
+        return self.load / (2.0 * self.solid.μ)
+
+    @property
+    def stress(self) -> float:
+        """Unit of stresses [Pa]."""
+        return self.load / (2.0 * self.profile.half_width)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Stresses on the surface Y = 0.
+
+    Attributes:
+        places: where.
+        σ_YY: contact stress, NaN beside the punch, (states, n).
+        σ_XX: in-plane stress, (states, n).
+        raw: contact stress by which no exponent is assumed; finite elements alone have it.
+        v_X: slopes μ v,X; finite elements alone have them.
+    """
+
+    places: Places
+    σ_YY: NDArray[np.float64]
+    σ_XX: NDArray[np.float64]
+    raw: NDArray[np.float64] | None = None
+    v_X: NDArray[np.float64] | None = None
+
+
+class Solution(Protocol):
+    """Friction states at one speed, from any method; what is not asked for is not computed.
+
+    Attributes:
+        g: σ_XY/σ_YY under the punch, (states,).
+        local: the local analysis of the punch's edges, with exponents α at X = a and β at X = -a, (states,).
+        surface: stresses on the surface.
+        inside: σ_XX, σ_YY, σ_XY at points inside, (3, states, m).
+    """
+
+    @property
+    def g(self) -> NDArray[np.float64]: ...
+    @property
+    def local(self) -> Any: ...
+    @property
+    def surface(self) -> Surface: ...
+    @property
+    def inside(self) -> NDArray[np.float64]: ...

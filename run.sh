@@ -26,10 +26,9 @@ test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath py
 missing() { # the packages of the arguments that are not installed
   local installed package
   # dpkg-query fails where it knows a package by no name.
-  installed=$({ dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true; } |
-    sed -n 's/ install ok installed$//p')
+  installed=$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true)
   for package in "$@"; do
-    grep -qx "$package" <<<"$installed" || echo "$package"
+    [[ $'\n'$installed$'\n' == *$'\n'"$package install ok installed"$'\n'* ]] || echo "$package"
   done
 }
 

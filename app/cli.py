@@ -4,13 +4,15 @@ import os
 import sys
 import time
 import traceback
+from pathlib import Path
 from typing import NoReturn
 
 import click
 
 from galinx import __version__
 from galinx.app import errors, ranks
-from galinx.app.commands import begin, compute, look
+from galinx.app.commands import begin, compute, look, options
+from galinx.app.console.program import program
 from galinx.app.errors import BadInput, MachineFailure
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
@@ -31,21 +33,30 @@ _CUT_OFF = 141
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="galinx")
-def cli() -> None:
+@click.option(
+    "-x", "--extend", "extensions", multiple=True, type=options.FILE,
+    help="Python file that registers models of your own; may be repeated.",
+)  # fmt: skip
+def cli(extensions: tuple[Path, ...]) -> None:
     """Sliding contact of a rigid punch, from rest to wave speed.
 
     Exit status: 0 good, 1 verdict FAIL, 2 bad input, 3 failure of program or machine.
     """
+    for path in extensions:
+        from galinx.app.extend import extend
+
+        extend(path)
 
 
 for _command in (*begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS):
+    _command.help = _command.help.replace("./run.sh", program())
     cli.add_command(_command)
 
 
 def run_from_shell() -> None:
     """Run the command line; every failure ends with one readable message and its status."""
     try:
-        status = cli.main(standalone_mode=False, prog_name="run.sh") or errors.GOOD
+        status = cli.main(standalone_mode=False, prog_name=program()) or errors.GOOD
         sys.stdout.flush()
     except (click.ClickException, BadInput, UnreadableArchive) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)

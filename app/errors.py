@@ -24,7 +24,7 @@ def finite_elements_installed() -> Iterator[None]:
     except ImportError as error:
         raise MachineFailure(
             f"finite elements need {error.name}, which is not installed; "
-            "run ./run.sh once, it installs what is missing"
+            "run.sh installs what is missing, or see the page on installation"
         ) from error
 
 

@@ -16,7 +16,17 @@ from typing import Any
 __version__ = "0.1.0"
 
 #: Where each public name comes from; imported when it is asked for.
-_NAMES = dict.fromkeys(("Result", "compute", "load", "read_scene", "template"), "app.results.result")
+_NAMES = {
+    **dict.fromkeys(("Result", "compute", "load", "read_scene", "template"), "app.results.result"),
+    # What a model of one's own is made of, and where it is registered.
+    **dict.fromkeys(("FrictionLaw", "LAWS"), "solvers.friction"),
+    **dict.fromkeys(("SOLIDS", "Solid"), "solvers.solids"),
+    **dict.fromkeys(("PROFILES", "Profile"), "solvers.profiles"),
+    **dict.fromkeys(("MESHES", "MeshKind"), "meshes"),
+    **dict.fromkeys(("QUANTITIES", "Quantity"), "postprocess.quantities"),
+    **dict.fromkeys(("METHODS",), "app.run.methods"),
+    **dict.fromkeys(("choice", "parameter"), "solvers.parameters"),
+}
 
 __all__ = [*_NAMES, "__version__"]
 

@@ -8,6 +8,7 @@ import click
 
 from galinx.app import errors, ranks
 from galinx.app.commands import options
+from galinx.app.console.program import program
 from galinx.app.console.terminal import say
 from galinx.app.errors import BadInput, MachineFailure
 
@@ -40,7 +41,7 @@ def init(name: str | None, output: Path | None) -> int:
     except OSError as error:
         raise MachineFailure(f"cannot write {target}: {error.strerror}") from None
     print(f"scene: {target}")
-    print(f"next: edit it, then ./run.sh plan {target}")
+    print(f"next: edit it, then {program()} plan {target}")
     return errors.GOOD
 
 

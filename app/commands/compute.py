@@ -10,11 +10,10 @@ import click
 from galinx import __version__
 from galinx.app import errors, ranks
 from galinx.app.commands import options
+from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import print_summary, print_times, say
 from galinx.app.errors import MachineFailure
-from galinx.app.scene import read as scenes
-from galinx.app.scene.changes import from_words
 
 
 @click.command()
@@ -32,45 +31,66 @@ def run(
 
     Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
     """
-    from galinx.app.plan import plan as planning
+    from galinx.app.plan.plan import make_plan
     from galinx.app.run.flow import compute
     from galinx.app.run.output import check_output
 
     target = output or Path(scene.stem + ".h5")
-    checked = scenes.read(scene, from_words(changes))
-    if not ranks.is_root() and not planning.make_plan(checked).fem:
+    checked = _read(scene, changes)
+    if not ranks.is_root() and not make_plan(checked).fem:
         return errors.GOOD  # nothing to share
     check_output(target, overwrite)
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from galinx.postprocess.hdf5 import archive
+    from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
 
     journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
+    with progress:
+        progress.note(f"scene: {scene}")
+        verdict = _archived(checked, journal, progress)
+    data, attributes = read(target, stresses=False)
+    print_summary(data, attributes, quiet)
+    if not quiet:
+        print_times(data)
+        print(f"archive: {target}")
+        print(f"next: {program()} report {target}")
+    return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
+
+
+def _read(path: Path, changes: tuple[str, ...]) -> Any:
+    """The scene with its changes, whose reader only those who change something pay for."""
+    from galinx.app.scene.read import read
+
+    if not changes:
+        return read(path)
+    from galinx.app.scene.changes import from_words
+
+    return read(path, from_words(changes))
+
+
+def _archived(scene: Any, journal: Any, progress: Progress) -> str:
+    """Compute a scene into its archive, keeping finished parts on the way; the verdict."""
+    from galinx.app.run.flow import compute
+    from galinx.postprocess.hdf5 import archive
+
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, journal.stop)
     try:
-        with journal, archive.Writer(target, journal.folder) as writer, progress:
-            progress.note(f"scene: {scene}")
-            attributes = compute(checked, writer, progress, journal)
+        with journal, archive.Writer(journal.target, journal.folder) as writer:
+            attributes = compute(scene, writer, progress, journal)
             progress.say("checking the archive")
             writer.finish(attributes)
             journal.complete()
-            progress.note(f"verdict: {attributes['verdict']}; archive: {target}")
+            progress.note(f"verdict: {attributes['verdict']}; archive: {journal.target}")
     except KeyboardInterrupt:
         kept = journal.states
         go_on = (
             f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
         )
         raise MachineFailure(f"interrupted; {go_on}") from None
-    data, attributes = archive.read(target, stresses=False)
-    print_summary(data, attributes, quiet)
-    if not quiet:
-        print_times(data)
-        print(f"archive: {target}")
-        print(f"next: ./run.sh report {target}")
-    return errors.FAILED_VERDICT if attributes["verdict"] == "FAIL" else errors.GOOD
+    return attributes["verdict"]
 
 
 @click.command()
@@ -84,7 +104,7 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
     from galinx.app.plan.plan import make_plan
     from galinx.app.plan.words import expense, lines
 
-    checked = scenes.read(scene, from_words(changes))
+    checked = _read(scene, changes)
     planned = make_plan(checked)
     if ranks.is_root():
         for text in lines(checked, planned):

@@ -8,6 +8,7 @@ import click
 
 from galinx.app import errors, ranks
 from galinx.app.commands import options
+from galinx.app.console.program import program
 from galinx.app.console.terminal import print_summary
 from galinx.app.errors import BadInput
 
@@ -63,7 +64,7 @@ def report(archive: Path, output: Path | None) -> int:
     if ranks.is_root():
         result.report(target)
         print(f"report: {target}")
-        print(f"next: open it in a browser, or ./run.sh plot {archive} for PDF figures")
+        print(f"next: open it in a browser, or {program()} plot {archive} for PDF figures")
     return errors.GOOD
 
 

@@ -23,9 +23,14 @@ def colours() -> bool:
 
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
     """States, comparisons and verdict unless quiet; warnings go to the error stream."""
-    from galinx.postprocess.tables import new_console, print_sheet, print_verdict, states_sheet
-
     if not quiet:
+        from galinx.postprocess.tables import (
+            new_console,
+            print_sheet,
+            print_verdict,
+            states_sheet,
+        )
+
         console = new_console(colours=colours())
         print_sheet(console, states_sheet(data, attributes["title"]))
         print_verdict(console, attributes)

@@ -22,13 +22,14 @@ class States:
 
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
-            speed), the law's parameters, f = F/N signed, g = σ_XY/σ_YY under the punch, and loop, the row
-            of ``loops``.
+            speed), the law's parameters, f = F/N signed, and g = σ_XY/σ_YY under the punch.
+        loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
     """
 
     columns: dict[str, NDArray]
+    loop: NDArray[np.int64]
     travel: NDArray[np.float64]
     loops: NDArray[np.float64]
 
@@ -97,10 +98,10 @@ def enumerate_states(scene: Scene) -> States:
         **values,
         "f": f.ravel(),
         "g": friction.stress_ratio * f.ravel() + 0.0,
-        "loop": np.repeat(loop, per_law),
     }
     loops = np.array([_joined([stroke.f for stroke in strokes]) for strokes in drawn])
-    return States(columns, _joined([stroke.X_over_L for stroke in drawn[0]]), loops)
+    travel = _joined([stroke.X_over_L for stroke in drawn[0]])
+    return States(columns, np.repeat(loop, per_law), travel, loops)
 
 
 def _strokes(

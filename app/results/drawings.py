@@ -108,7 +108,7 @@ class Loops:
 
     def of(self, state: int) -> Loop | None:
         """The loop that a state lies on, None where the archive has too many to hold it."""
-        row = int(self._data["states/loop"][state])
+        row = int(self._data["loops/of_state"][state])
         if row < 0:
             return None
         if row not in self._known:
@@ -123,7 +123,7 @@ class Loops:
 
     def distinct(self) -> list[Loop]:
         """The first loops, of different laws."""
-        _, first = np.unique(self._data["states/loop"], return_index=True)
+        _, first = np.unique(self._data["loops/of_state"], return_index=True)
         return [loop for state in first.tolist() if (loop := self.of(state))][:_CURVES]
 
 

@@ -67,6 +67,7 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
     sink.put("scene/text", scene.text)
     for name, values in states.columns.items():
         sink.put(f"states/{name}", values)
+    sink.put("loops/of_state", states.loop)
     sink.put("loops/X_over_L", states.travel)
     sink.put("loops/f", states.loops)
     if plan.asks("surface"):

@@ -12,9 +12,34 @@ _FORM = re.compile(
 )
 
 
-@lru_cache(maxsize=1)
-def _registry() -> Any:
-    return _pint().UnitRegistry()
+#: What the units that most scenes use are made of, as pint defines them: all that it knows would take
+#: longer to read than a friction loop to compute.
+_COMMON = """
+giga- = 1e9 = G-
+mega- = 1e6 = M-
+kilo- = 1e3 = k-
+milli- = 1e-3 = m-
+micro- = 1e-6 = µ- = μ-
+meter = [length] = m
+second = [time] = s
+gram = [mass] = g
+newton = kilogram * meter / second ** 2 = N
+pascal = newton / meter ** 2 = Pa
+"""
+_COMMON_NAMES = frozenset("m mm µm μm km s ms kg g N mN kN MN Pa kPa MPa GPa".split())
+
+#: Names of units in a text; an exponent's e belongs to its number.
+_NAMES = re.compile(r"(?<![\w.])[^\W\d]\w*")
+
+
+@lru_cache(maxsize=2)
+def _registry(common: bool) -> Any:
+    """pint's registry of all units, or of those that most scenes use."""
+    if not common:
+        return _pint().UnitRegistry()
+    registry = _pint().UnitRegistry(None)
+    registry.load_definitions(_COMMON.strip().splitlines())
+    return registry
 
 
 def _pint() -> Any:
@@ -64,7 +89,8 @@ def _parse(text: str, unit: str, wanted: str) -> float:
 
     pint = _pint()
     try:
-        quantity = _registry().Quantity(text)
+        names = _NAMES.findall(text) + _NAMES.findall(unit)
+        quantity = _registry(_COMMON_NAMES.issuperset(names)).Quantity(text)
         if not unit and not quantity.unitless and quantity.dimensionless:
             return float(quantity.to("").magnitude)
         return float(quantity.to(unit).magnitude)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from galinx.app import ranks
+from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import colours, say
 from galinx.app.run.flow import compute
@@ -48,7 +49,7 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
         figures = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
         say(f"written to {folder}: study.h5, inside.h5, tables.txt, report.html, {figures}")
         print(f"verdict: {'PASS' if good else 'FAIL'}")
-        print(f"next: open {folder / 'report.html'} in a browser, or ./run.sh init")
+        print(f"next: open {folder / 'report.html'} in a browser, or {program()} init")
     return good
 
 

@@ -1,9 +1,10 @@
 """What a run says of itself, and the friction loops that its states lie on."""
 
-from galinx.postprocess.quantities.quantity import LOOP, SPEED, STEP, Quantity
+from galinx.postprocess.quantities.quantity import LOOP, SPEED, STATE, STEP, Quantity
 
 _LOOPS = (
     Quantity("loops/X_over_L", "1", "positions along all strokes, in the order of travel", (STEP,)),
+    Quantity("loops/of_state", "1", "row of loops/f that each state lies on, -1 for none", (STATE,)),
     Quantity("loops/f", "1", "friction coefficient there, a row for each law and speed", (LOOP, STEP)),
 )
 

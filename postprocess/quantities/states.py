@@ -12,7 +12,6 @@ _WHICH = (
     Quantity("states/c", "1", "speed over shear wave speed", (STATE,), symbol="c"),
     Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,)),
     Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,)),
-    Quantity("states/loop", "1", "row of loops/f that the state lies on, -1 for none", (STATE,)),
 )  # fmt: skip
 
 _LOCAL = (

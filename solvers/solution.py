@@ -44,6 +44,20 @@ class Body:
     profile: Profile
     load: float
 
+    def height(self, X: NDArray) -> NDArray[np.float64]:
+        """The profile's height over N/(2μ) at X over a."""
+        return self.profile.height(self.profile.half_width * X) / self.displacement
+
+    def slope(self, X: NDArray) -> NDArray[np.float64]:
+        """Its derivative: μ v,X under the punch over N/(2a)."""
+        a = self.profile.half_width
+        return self.profile.slope(a * X) * a / self.displacement
+
+    @cached_property
+    def flat(self) -> bool:
+        """Is the punch flat? Its slope vanishes then wherever it is looked at."""
+        return not np.any(self.slope(np.linspace(-1.0, 1.0, 101)))
+
     @property
     def force(self) -> float:
         """Unit of nodal forces [N/m]: stresses over N/(2a), lengths over a."""
@@ -84,7 +98,7 @@ class Solution(Protocol):
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).
-        local: the local analysis of the punch's edges, with exponents α at X = a and β at X = -a, (states,).
+        local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
         surface: stresses on the surface.
         inside: σ_XX, σ_YY, σ_XY at points inside, (3, states, m).
     """

@@ -9,7 +9,7 @@ from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES
-from galinx.solvers.solution import Places
+from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
 _INNER = 0.6
@@ -46,6 +46,19 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
             f"c_R = {c_R:.6g} (over c_s): displacements grow without bound and errors with them"
         )
     return warnings
+
+
+def check_mode(scene: Scene, body: Body) -> None:
+    """Is there a pressure that could be put in?
+
+    Raises:
+        BadInput: there is none.
+    """
+    if scene.solve.mode == "traction" and not scene.solve.own_pressure and not body.flat:
+        raise BadInput(
+            'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
+            'give solve.pressure, or take mode = "contact"'
+        )
 
 
 def check_places(scene: Scene, places: Places) -> None:

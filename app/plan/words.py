@@ -3,7 +3,7 @@
 from galinx.app import ranks
 from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan, unknowns
-from galinx.app.plan.plan import CHUNK_NUMBERS, Plan
+from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.scene.scene import Scene
 
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
 from galinx.app.plan.limits import check_distance
-from galinx.app.plan.plan import Plan, Task, make_plan, own_pressure
+from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Output, Scene
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
@@ -136,7 +137,7 @@ def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _Sta
     if degree is None:
         # Given tractions are solved one degree above the rule, as in a run.
         degree = plan.fem.degrees[task.number] + (scene.solve.mode == "traction")
-    exact = "closed_form" in scene.solve.methods and not own_pressure(scene)
+    exact = "closed_form" in scene.solve.methods and not scene.solve.own_pressure
     return _State(plan, task, float(states.g[number]), degree, exact)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
-from galinx.app.plan.plan import Plan
+from galinx.app.plan.task import Plan
 from galinx.app.run.judge import Judge
 from galinx.app.run.sinks import Sink
 from galinx.postprocess.journal import Journal, Part

@@ -9,8 +9,9 @@ import numpy as np
 from galinx import __version__
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
-from galinx.app.plan.plan import Plan, make_plan
+from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import States, enumerate_states
+from galinx.app.plan.task import Plan
 from galinx.app.plan.words import lines
 from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
@@ -83,7 +84,7 @@ def _parts(
     plan: Plan, states: States, finished: frozenset[int], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
-    methods = {name: METHODS[name](plan, progress, clock) for name in plan.methods}
+    methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
     if ranks.size() > 1 and plan.fem:
         from galinx.app.run.share import same_on_all, shared_out
 

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from galinx.app.plan.plan import own_pressure
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.compare import Comparison, Rule
 
@@ -24,7 +23,7 @@ class Judge:
     def __init__(self, scene: Scene, rules: Iterable[Rule]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
-        own, mode = own_pressure(scene), scene.solve.mode
+        own, mode = scene.solve.own_pressure, scene.solve.mode
         judged = {rule for rule in rules if rule.mode in ("", mode) and (rule.own_pressure or not own)}
         limits = {rule.name: rule.allowed(scene.solve.tolerance) for rule in judged}
         self._limits = {name: limit for name, limit in limits.items() if limit is not None}

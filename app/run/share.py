@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from mpi4py import MPI
 
-from galinx.app.plan.plan import Task
+from galinx.app.plan.task import Task
 from galinx.app.run.counter import Counter
 from galinx.postprocess.journal import Part
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.plan import Plan, Task
+from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare

@@ -75,6 +75,11 @@ class Solve:
     solver: str
     pressure: Any
 
+    @property
+    def own_pressure(self) -> bool:
+        """Is a pressure of the user's own put in?"""
+        return self.mode == "traction" and self.pressure != "closed_form"
+
 
 @dataclass(frozen=True)
 class Output:

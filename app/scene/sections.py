@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from galinx.app.run.methods import METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Friction, Motion, Output, Punch, Solve
@@ -23,10 +24,6 @@ from galinx.solvers.friction.strokes import DIRECTION
 from galinx.solvers.parameters import Range, made
 from galinx.solvers.profiles import PROFILES, Profile
 from galinx.solvers.solids import SOLIDS, Solid
-
-#: Ways to solve the contact, and what the finite elements may be given.
-METHODS = ("closed_form", "fem")
-MODES = ("contact", "traction")
 
 _POSITIVE = Range(above=0.0)
 
@@ -88,7 +85,7 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "what solves the contact", METHODS,
+        Choices(METHODS, at_least=0), "what solves the contact", ("closed_form", "fem"),
         "an empty list where only friction is asked for",
     ),
     "tolerance": Key(

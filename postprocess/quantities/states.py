@@ -23,7 +23,11 @@ _LOCAL = (
 
 _CLOSED_FORM = (
     Quantity("states/closed_form/K_I", "1", "normalised stress intensity factor, both ends (Eq 58)",
-             (STATE,), lambda s, _: s.K_I, "closed_form"),
+             (STATE,), lambda s, _: s.K_I[:, 0], "closed_form"),
+    Quantity("states/closed_form/K_I_left", "1", "normalised stress intensity factor at X = -a",
+             (STATE,), lambda s, _: s.K_I[:, 0], "closed_form"),
+    Quantity("states/closed_form/K_I_right", "1", "normalised stress intensity factor at X = a",
+             (STATE,), lambda s, _: s.K_I[:, 1], "closed_form"),
 )  # fmt: skip
 
 _FINITE_ELEMENTS = (

@@ -1,13 +1,13 @@
-"""Rigid flat punch with friction on the finite element half-plane: the pressure is an unknown.
+"""Rigid punch with friction and two sharp edges on the finite element half-plane, its pressure unknown.
 
-Trial functions have v = -v₀ on the contact nodes, test functions w_Y + g w_X = 0 there. Nodal reactions
-are then the consistent contact forces and no penalty or multiplier is met. With the normal
+Trial functions have v = -v₀ + P on the contact nodes, test functions w_Y + g w_X = 0 there. Nodal
+reactions are then the consistent contact forces and no penalty or multiplier is met. With the normal
 displacement held and the tangential free, the matrix is symmetric and does not know g: if T r are
 the normal reactions caused by tangential forces r, friction asks for
 
     (I - g T) R = R₀.
 
-The Krylov space of (T, R₀) serves every g at that speed.
+The Krylov space of (T, R₀) serves every g at that speed; a profile P that is not flat has one of its own.
 """
 
 from dataclasses import dataclass
@@ -18,13 +18,10 @@ from petsc4py import PETSc
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.krylov import LIMIT, TOLERANCE, KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
-
-#: Contact forces are found to this relative residual; the last digits are rounding.
-KRYLOV_TOLERANCE = 1e-13
-KRYLOV_LIMIT = 120
 
 
 @dataclass(frozen=True)
@@ -55,10 +52,16 @@ class SlidingPunch:
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case and tells what that does to the others.
+        height: of the punch's profile over N/(2μ) at the contact nodes; None for a flat punch.
     """
 
     def __init__(
-        self, space: Space, response: Response, solver: str = "direct", negligible: float = 0.0
+        self,
+        space: Space,
+        response: Response,
+        solver: str = "direct",
+        negligible: float = 0.0,
+        height: NDArray[np.float64] | None = None,
     ) -> None:
         self.space, self.response = space, response
         nodes = space.contact
@@ -70,41 +73,53 @@ class SlidingPunch:
         self._motions = [_ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
         self._far = [_product(A, _ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
+        shaped = None if height is None else _forces_of_profile(A, space, height)
         b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
             self.factor = Factor(A, space.clock, definite=not space.mixed)
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions)
-        #: Displacements of the basis: first the frictionless punch, then the tangential loads.
-        self.fields = [self._displacement(b)]
-        rough = self._reactions(self.fields[0])
-        self._refine(self.fields[0], None, -1.0)
-        self._forces = [self._reactions(self.fields[0])]
-        change = np.linalg.norm(self._forces[0] - rough) / np.linalg.norm(rough)
-        self._refines = change > negligible
-        R0 = self._forces[0][1]
-        self._size = np.linalg.norm(R0)
-        self._V = [R0 / self._size]
-        self._H = np.zeros((KRYLOV_LIMIT + 1, KRYLOV_LIMIT))
-        self._complete = False
-        b.destroy()
+        #: Of the flat punch, and of the profile.
+        self._spaces = [self._krylov_space(b, None, -1.0, negligible)]
+        if shaped:
+            self._spaces.append(self._krylov_space(shaped, shaped, 0.0, negligible))
 
-    def states(self, g: ArrayLike) -> ContactStates:
-        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N."""
+    @property
+    def fields(self) -> list[PETSc.Vec]:
+        """Displacements of the basis: the punches without friction, each before its tangential loads."""
+        return [field for space in self._spaces for field in space.fields]
+
+    def states(self, g: ArrayLike, flat: bool = False) -> ContactStates:
+        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
+
+        Args:
+            g: values of σ_XY/σ_YY.
+            flat: of a flat punch, whatever the profile is.
+        """
         g = np.atleast_1d(np.asarray(g, dtype=float))
-        y = self._contact_forces(g)
-        weights = np.zeros((len(g), len(self.fields)))
+        level, *shaped = [self._combined(space, g) for space in self._spaces[: 1 if flat else None]]
+        # ∫ σ_YY d(X/a) = -2 over N/(2a)
+        v0 = (-2.0 - sum(part.normal.sum(axis=1) for part in shaped)) / level.normal.sum(axis=1)
+        scale = v0[:, None]
+        weights = [scale * level.weights, *(part.weights for part in shaped)]
+        normal = scale * level.normal + sum(part.normal for part in shaped)
+        tangential = scale * level.tangential + sum(part.tangential for part in shaped)
+        return ContactStates(g, np.concatenate(weights, axis=1), normal, tangential, v0)
+
+    def _combined(self, space: KrylovSpace, g: NDArray[np.float64]) -> "_Part":
+        """What a Krylov space makes of friction."""
+        y = self._contact_forces(space, g)
+        weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
-        tangential, normal = np.einsum("sk,kin->isn", weights, np.array(self._forces))
-        v0 = -2.0 / normal.sum(axis=1)  # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        scale = v0[:, None]
-        return ContactStates(g, scale * weights, scale * normal, scale * tangential, v0)
+        tangential, normal = np.einsum("sk,kin->isn", weights, np.array(space.forces))
+        return _Part(weights, normal, tangential)
 
     def release(self) -> None:
         """Free factor and fields; states that were asked for before can be asked for again."""
-        self._complete = True
+        for space in self._spaces:
+            space.complete = True
         self.destroy()
 
     def destroy(self) -> None:
@@ -112,49 +127,53 @@ class SlidingPunch:
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
 
-    def _contact_forces(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _krylov_space(
+        self, b: PETSc.Vec, load: PETSc.Vec | None, v: float, negligible: float
+    ) -> KrylovSpace:
+        """That of a punch without friction.
+
+        Args:
+            b: forces of what is held; it is no longer needed afterwards.
+            load, v: see :meth:`_refine`.
+            negligible: see the class.
+        """
+        field = self._displacement(b)
+        rough = self._reactions(field)
+        self._refine(field, load, v)
+        forces = self._reactions(field)
+        change = np.linalg.norm(forces - rough) / np.linalg.norm(rough)
+        b.destroy()
+        return KrylovSpace(field, forces, bool(change > negligible))
+
+    def _contact_forces(self, space: KrylovSpace, g: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coefficients y of R = V y for every g, (states, m); the Krylov space grows as they need."""
         if not np.any(g):
             return np.zeros((len(g), 0))
         while True:
-            m = len(self.fields) - 1
+            m = len(space.fields) - 1
             if m:
-                e1 = np.zeros((1, m, 1))
-                e1[:, 0] = self._size
-                y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)[..., 0]
-                left = np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1)
+                y, left = space.solve(g)
                 worst = int(np.argmax(left))
-                if self._complete or left[worst] <= KRYLOV_TOLERANCE:
+                if space.complete or left[worst] <= TOLERANCE:
                     return y
-            if m == KRYLOV_LIMIT:
+            if m == LIMIT:
                 raise SolveError(
                     f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                    f"{KRYLOV_LIMIT} steps: residual {left[worst]:.3g}, wanted {KRYLOV_TOLERANCE:g}"
+                    f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {TOLERANCE:g}"
                 )
-            self._extend()
+            self._extend(space)
 
-    def _extend(self) -> None:
-        """One Arnoldi step."""
-        j = len(self.fields) - 1
+    def _extend(self, space: KrylovSpace) -> None:
+        """The displacement and the forces of one more tangential load."""
         nodes = self.space.contact
         b = self.factor.A.createVecLeft()
-        b.setValues(nodes.dofs(0), self._V[j][nodes.owned])
+        b.setValues(nodes.dofs(0), space.last[nodes.owned])
         b.assemble()
-        self.fields.append(self._displacement(b))
-        if self._refines:
-            self._refine(self.fields[-1], b, 0.0)
+        field = self._displacement(b)
+        if space.refines:
+            self._refine(field, b, 0.0)
         b.destroy()
-        self._forces.append(self._reactions(self.fields[-1]))
-        w = self._forces[-1][1]
-        for _ in range(2):  # twice is enough
-            h = np.array(self._V) @ w
-            self._H[: j + 1, j] += h
-            w = w - np.array(self._V).T @ h
-        self._H[j + 1, j] = np.linalg.norm(w)
-        # A happy breakdown: the space holds every answer.
-        self._complete = self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j])
-        if not self._complete:
-            self._V.append(w / self._H[j + 1, j])
+        space.take(field, self._reactions(field))
 
     def _displacement(self, b: PETSc.Vec) -> PETSc.Vec:
         """The displacement for nodal forces b, with what the held displacements cause."""
@@ -169,12 +188,12 @@ class SlidingPunch:
 
         The contact moves far before the body deforms, the farther the nearer the Rayleigh speed, and what
         forces that motion seems to need is rounding. The residual is taken without it: what is left of
-        the displacement is zero under the punch, and the far boundary moves instead.
+        the displacement is zero under a flat punch, and the far boundary moves instead.
 
         Args:
             u: the displacement, in place.
-            load: nodal forces.
-            v: normal displacement of the contact.
+            load: nodal forces, those of a profile's held displacements among them.
+            v: normal displacement of the contact where all of it moves alike.
         """
         held = self.space.held_dofs
         t = (self._contact_motion(u)[0], v)
@@ -216,6 +235,28 @@ class SlidingPunch:
             force.destroy()
         w.destroy()
         return comm.allreduce(mine)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Weights of a Krylov space's fields, (states, fields), and nodal forces, (states, nodes)."""
+
+    weights: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    tangential: NDArray[np.float64]
+
+
+def _forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -> PETSc.Vec:
+    """Forces of a contact held at the profile's height, which stands where it is held."""
+    held = A.createVecRight()
+    held.setValues(space.contact.dofs(1), height[space.contact.owned])
+    held.assemble()
+    b = _product(A, held)
+    b.scale(-1.0)
+    _set_zero(b, space.held_dofs)
+    b.axpy(1.0, held)
+    held.destroy()
+    return b
 
 
 def hold(A: PETSc.Mat, space: Space) -> PETSc.Vec:

@@ -6,16 +6,19 @@ What only one method needs is imported when that is made.
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.plan import Plan, Task
+from galinx.app.plan.task import Plan, Task
+from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
+from galinx.postprocess.quantities import Quantity
 from galinx.registry import Registry
-from galinx.solvers.solution import Solution
+from galinx.solvers.solution import Body, Solution
 
 
 class Solver(Protocol):
@@ -47,10 +50,36 @@ class Method(Protocol):
         """
 
 
+@dataclass(frozen=True)
+class MethodKind:
+    """A method that scenes can name.
+
+    Attributes:
+        about: what a plan calls it.
+        made: makes it for a plan.
+        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
+            None: why it gives none at all.
+    """
+
+    about: str
+    made: Callable[[Plan, Progress, Clock], Method]
+    refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+
+
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
     from galinx.app.run.methods.closed_form import ClosedForm
 
     return ClosedForm()
+
+
+def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if scene.solve.own_pressure:
+        return "the pressure is given"
+    if quantity and not body.flat and quantity.asked_by == "interior":
+        return "known below flat punches only"
+    if quantity and not body.flat and quantity.path == "states/closed_form/K_I":
+        return "the two ends differ"
+    return ""
 
 
 def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
@@ -60,7 +89,19 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
         return FiniteElements(plan, progress, clock)
 
 
-#: What makes a method for a plan, by the method's name.
-METHODS: Registry[Callable[[Plan, Progress, Clock], Method]] = Registry(
-    "method", {"closed_form": _closed_form, "fem": _finite_elements}
+def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if quantity and not body.flat and quantity.path == "states/fem/slope_under_punch":
+        return "the punch is not flat"
+    return ""
+
+
+METHODS: Registry[MethodKind] = Registry(
+    "method",
+    {
+        "closed_form": MethodKind("closed form", _closed_form, _closed_form_refusal),
+        "fem": MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
+    },
 )
+
+#: What the finite elements may be given: a punch, or the pressure under it.
+MODES = ("contact", "traction")

@@ -1,4 +1,4 @@
-"""The closed form of the singular integral equation."""
+"""The singular integral equation: its closed form, or its collocation where the punch is not flat."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,27 +9,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.plan import Task
+from galinx.app.plan.task import Task
+from galinx.app.run.methods import Solver
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Surface
+
+#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
+TERMS = 40
 
 
 class ClosedForm:
     """Every task has its solution at once."""
 
     @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator["FlatPunchAtSpeed"]:
-        yield FlatPunchAtSpeed(task)
+    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
+        yield _AtSpeed(task)
 
 
 @dataclass(frozen=True)
-class FlatPunchAtSpeed:
-    """Flat punches at one speed."""
-
+class _AtSpeed:
     task: Task
 
-    def states(self, g: NDArray) -> "FlatPunches":
-        return FlatPunches(self.task, g)
+    def states(self, g: NDArray) -> "FlatPunches | ShapedPunches":
+        return (FlatPunches if self.task.body.flat else ShapedPunches)(self.task, g)
 
     def record(self) -> dict[str, Any]:
         return {}
@@ -54,8 +56,8 @@ class FlatPunches:
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """Stress intensity factor of both ends, (states,)."""
-        return self.local.K_I
+        """At X = -a and X = a, the same number, (states, 2)."""
+        return np.column_stack([self.local.K_I] * 2)
 
     @cached_property
     def _over_places(self) -> FlatPunch:
@@ -70,3 +72,46 @@ class FlatPunches:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self._over_places.inside(*self.task.places.points.T)
+
+
+@dataclass(frozen=True)
+class ShapedPunches:
+    """Punches with a profile and two sharp edges, by collocation.
+
+    Attributes:
+        task: their speed.
+        g: σ_XY/σ_YY, (states,).
+    """
+
+    task: Task
+    g: NDArray[np.float64]
+
+    @cached_property
+    def _expansions(self) -> list[Any]:
+        from galinx.solvers.sie.collocation import solve  # SciPy's special functions, a slow import
+
+        body, response = self.task.body, self.task.response
+        return [solve(response, value, TERMS, body.slope) for value in self.g.tolist()]
+
+    @property
+    def local(self) -> FlatPunch:
+        return FlatPunch(self.task.response, self.g)
+
+    @cached_property
+    def K_I(self) -> NDArray[np.float64]:
+        """At X = -a and X = a, (states, 2)."""
+        return np.array([expansion.K_I for expansion in self._expansions])
+
+    @cached_property
+    def surface(self) -> Surface:
+        places, response, g = self.task.places, self.task.response, self.g[:, None]
+        σ_YY = np.full((len(self.g), len(places.X)), np.nan)
+        σ_YY[:, places.under] = [e.σ_YY(places.X[places.under]) for e in self._expansions]
+        σ, H = np.nan_to_num(σ_YY), np.array([e.hilbert(places.X) for e in self._expansions])
+        u_X = response.q * σ + (response.n12 + response.m * g) * H
+        return Surface(places, σ_YY, response.σ_XX(u_X, σ, g * σ))
+
+    @property
+    def inside(self) -> NDArray[np.float64]:
+        """Not known: finite elements are."""
+        raise NotImplementedError("stresses inside below a profile come from finite elements only")

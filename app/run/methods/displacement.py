@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.plan import Task
+from galinx.app.plan.task import Task
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
 from galinx.app.plan.fem import FemPlan
-from galinx.app.plan.plan import Plan, Task
+from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import Solver
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells

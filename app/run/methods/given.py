@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.plan import Task
+from galinx.app.plan.task import Task
 from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.fem import FiniteElements
 from galinx.solvers.fem.space import Space

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.plan import Task
+from galinx.app.plan.task import Task
 from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.fem import FiniteElements
 from galinx.meshes.kind import DEGREES
@@ -23,7 +23,7 @@ from galinx.postprocess.pressure import (
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Body, Surface
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
 #: most keeps results on any number of ranks equal to 1e-9.
@@ -53,12 +53,17 @@ def one_state(
 ) -> Iterator[tuple[Space, Any, NDArray]]:
     """Space, fields and weights of one state."""
     space = work.space(degree, work.plan.cuts)
-    punch = SlidingPunch(space, task.response, work.plan.solver)
+    punch = SlidingPunch(space, task.response, work.plan.solver, height=profile_on(space, task.body))
     try:
         weights = punch.states(g).weights[0]  # the fields are complete after this
         yield space, punch.fields, weights
     finally:
         punch.destroy()
+
+
+def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
+    """The punch's height over N/(2μ) at the contact nodes; None for a flat punch, which needs none."""
+    return None if body.flat else body.height(space.chart.surface_position(space.contact.s))
 
 
 @dataclass(frozen=True)
@@ -97,7 +102,8 @@ class Ladder:
         plan, response = self.work.plan, self.task.response
         space = self.work.space(degree, cuts)
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        punch = SlidingPunch(space, response, plan.solver, negligible)
+        height = profile_on(space, self.task.body)
+        punch = SlidingPunch(space, response, plan.solver, negligible, height)
         recovery = contact_recovery(space.contact.s, degree, space.chart, self.task.places.X)
         # The basis is complete before traces are taken, and the same whatever states are still to do.
         for first in range(0, len(g), self.work.chunk):
@@ -209,10 +215,13 @@ class MeasuredError:
         return np.column_stack([K_I * np.pi, moments / 2.0])
 
     def _asymmetry(self, g: NDArray) -> float:
-        """Largest relative difference of K_I left at g and right at -g, which only rounding makes."""
+        """Largest relative difference of K_I left at g and right at -g, which only rounding makes.
+
+        Of a flat punch, since a profile need not be its own mirror image.
+        """
         level, response = self._ladder.levels[-1], self._ladder.task.response
         K_I, mirrored = (
-            level.pressure(level.punch.states(sign * g), FlatPunch(response, sign * g)).K_I
+            level.pressure(level.punch.states(sign * g, flat=True), FlatPunch(response, sign * g)).K_I
             for sign in (1.0, -1.0)
         )
         return float(np.abs(K_I - mirrored[:, ::-1]).max() * np.pi)

@@ -1,0 +1,83 @@
+"""A plan: what is to be done, speed by speed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from galinx.app.plan.fem import FemPlan
+from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities.quantity import INSIDE, POINT
+from galinx.solvers.solids.solid import Response
+from galinx.solvers.solution import Body, Places
+
+#: Floating-point numbers that the states of a chunk may have at once.
+CHUNK_NUMBERS = 1_200_000
+
+
+@dataclass(frozen=True)
+class Task:
+    """One speed: what every method is asked.
+
+    Attributes:
+        number: of the speed, from 0.
+        body: what slides over what.
+        response: of the half-plane at that speed.
+        places: where stresses are wanted.
+        rows: of the states at that speed.
+    """
+
+    number: int
+    body: Body
+    response: Response
+    places: Places
+    rows: slice
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Work of a scene.
+
+    Attributes:
+        body: what slides over what.
+        places: where stresses are wanted.
+        methods: names of those that solve, none where only friction is asked for.
+        quantities: read off their solutions, in the order of the table.
+        tasks: one a speed.
+        fem: finite element work, None without.
+        skipped: what is not done, and why.
+        warnings: what the user should know before starting.
+    """
+
+    body: Body
+    places: Places
+    methods: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
+    tasks: tuple[Task, ...]
+    fem: FemPlan | None
+    skipped: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def states(self) -> int:
+        """Number of states."""
+        return self.tasks[-1].rows.stop
+
+    def asks(self, word: str) -> bool:
+        """Is a quantity computed that this word of output.quantities asks for?"""
+        return any(quantity.asked_by == word for quantity in self.quantities)
+
+    def shape(self, quantity: Quantity) -> tuple[int, ...]:
+        """Shape of a state's entry."""
+        sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}
+        return tuple(sizes[dimension] for dimension in quantity.over[1:])
+
+    @property
+    def chunk(self) -> int:
+        """States treated at once: what they hold in memory is bounded."""
+        numbers = sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
+        return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
+
+    def chunks(self, task: Task) -> list[slice]:
+        """A task's rows, so many at a time."""
+        rows = range(task.rows.start, task.rows.stop, self.chunk)
+        return [slice(first, min(first + self.chunk, task.rows.stop)) for first in rows]

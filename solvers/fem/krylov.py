@@ -1,0 +1,59 @@
+"""The Krylov space in which the contact forces of every friction lie, made by Arnoldi's method."""
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+#: Contact forces are found to this relative residual; the last digits are rounding.
+TOLERANCE = 1e-13
+LIMIT = 120
+
+
+class KrylovSpace:
+    """The space of (T, R₀), by Arnoldi's method.
+
+    Args:
+        field: the punch without friction.
+        forces: its forces in X and Y at the contact nodes, (2, n).
+        refines: solutions are refined.
+
+    Attributes:
+        fields, forces: the first, then those of each tangential load.
+        complete: the space holds every answer.
+    """
+
+    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool) -> None:
+        self.fields, self.forces, self.refines = [field], [forces], refines
+        self._size = np.linalg.norm(forces[1])
+        self._V = [forces[1] / self._size]
+        self._H = np.zeros((LIMIT + 1, LIMIT))
+        self.complete = False
+
+    @property
+    def last(self) -> NDArray[np.float64]:
+        """The load that is not yet applied, (n,)."""
+        return self._V[len(self.fields) - 1]
+
+    def take(self, field: PETSc.Vec, forces: NDArray) -> None:
+        """One Arnoldi step: the field and the forces that the last load causes."""
+        j = len(self.fields) - 1
+        self.fields.append(field)
+        self.forces.append(forces)
+        w = forces[1]
+        for _ in range(2):  # twice is enough
+            h = np.array(self._V) @ w
+            self._H[: j + 1, j] += h
+            w = w - np.array(self._V).T @ h
+        self._H[j + 1, j] = np.linalg.norm(w)
+        # A happy breakdown: the space holds every answer.
+        self.complete = bool(self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j]))
+        if not self.complete:
+            self._V.append(w / self._H[j + 1, j])
+
+    def solve(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
+        m = len(self.fields) - 1
+        e1 = np.zeros((1, m, 1))
+        e1[:, 0] = self._size
+        y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)[..., 0]
+        return y, np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1)

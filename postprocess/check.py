@@ -10,7 +10,11 @@ import numpy as np
 
 from galinx.postprocess import compare
 from galinx.postprocess.hdf5 import archive
-from galinx.postprocess.quantities import STATE, Quantity, table
+from galinx.postprocess.quantities import Quantity, table
+from galinx.postprocess.quantities.quantity import ANYWHERE, BESIDE, FEM, NEVER, STATE
+from galinx.postprocess.quantities.runs import FAILURES, SCENE
+from galinx.postprocess.quantities.states import NORMAL_FORCE, RATIO
+from galinx.postprocess.quantities.stresses import SURFACE_X
 from galinx.solvers.contact import under_punch
 
 #: States looked at together.
@@ -28,12 +32,12 @@ def faults(path: Path) -> list[str]:
     found = []
     if not attributes.get("complete"):
         found.append("it does not say that it is complete")
-    if hashlib.sha256(data["scene/text"].encode()).hexdigest() != attributes["scene_sha256"]:
-        found.append("scene/text has another hash than scene_sha256 says")
-    states = len(data["states/g"])
+    if hashlib.sha256(data[SCENE.path].encode()).hexdigest() != attributes["scene_sha256"]:
+        found.append(f"{SCENE.path} has another hash than scene_sha256 says")
+    states = len(data[RATIO.path])
     found += _layout(path, states, known)
     worst: dict[str, float] = {}
-    failed = data.get("run/failures", [])
+    failed = data.get(FAILURES.path, [])
     for start in range(0, states, _ROWS):
         rows = archive.read_rows(path, slice(start, start + _ROWS))
         found += _not_finite(rows, start, bool(len(failed)), known)
@@ -66,14 +70,15 @@ def _not_finite(
 ) -> Iterator[str]:
     """Datasets with a NaN or an infinity that is not an answer."""
     for name, values in rows.items():
-        if np.asarray(values).dtype.kind != "f" or (failures and "/fem/" in name):
+        unsolved = failures and name in known and known[name].method == FEM
+        if np.asarray(values).dtype.kind != "f" or unsolved:
             continue
-        allowed = known[name].nan_allowed if name in known else "never"
+        allowed = known[name].nan_allowed if name in known else NEVER
         bad = ~np.isfinite(values)
-        if allowed == "anywhere":
+        if allowed == ANYWHERE:
             bad = np.isinf(values)
-        elif allowed == "beside":
-            bad &= np.isinf(values) | under_punch(rows["surface/X_over_a"])
+        elif allowed == BESIDE:
+            bad &= np.isinf(values) | under_punch(rows[SURFACE_X.path])
         if bad.any():
             yield f"{name} is not finite in states {start} ..."
 
@@ -82,14 +87,14 @@ def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]
     """Forces that do not balance are a fault, whatever the verdict."""
     limit = compare.BALANCE.limit
     assert limit is not None
-    if comparison.name == compare.BALANCE.name and not comparison.value <= limit:
+    if comparison.text == compare.BALANCE.text and not comparison.value <= limit:
         value = f"{comparison.value:.1e}, at most {limit:g}"
         yield f"{comparison.text} in states {start} ...: {value}"
 
 
 def _solved(rows: dict[str, Any]) -> dict[str, Any]:
     """The states whose speed could be solved."""
-    force = rows.get("states/fem/normal_force")
+    force = rows.get(NORMAL_FORCE.path)
     if force is None or np.isfinite(force).all():
         return rows
     good, count = np.isfinite(force), len(force)

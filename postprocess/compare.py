@@ -7,6 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import stresses as at
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.registry import Registry
 from galinx.solvers.contact import from_edge, under_punch
 
 
@@ -24,9 +28,8 @@ class Rule:
     """How quantities are compared, and what decides the verdict.
 
     Attributes:
-        name: short, as archives and tests refer to it.
         text: what the figure says.
-        needs: paths of the datasets that are compared.
+        needs: the quantities that are compared.
         measure: the figure (1) from datasets by path and the load N per depth [N/m]; None where there is
             nothing to say.
         limit: largest value of a PASS; None where it is no fixed one.
@@ -35,9 +38,8 @@ class Rule:
         own_pressure: judged also where the pressure is the user's own.
     """
 
-    name: str
     text: str
-    needs: tuple[str, ...]
+    needs: tuple[Quantity, ...]
     measure: Callable[[dict[str, Any], float], float | None]
     limit: float | None = None
     tolerances: float | None = None
@@ -49,113 +51,113 @@ class Rule:
         return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
-def comparisons(data: dict[str, Any], load: float, rules: Iterable[Rule]) -> list[Comparison]:
-    """Every comparison that some states' data allow, those of ``RULES`` first.
+def comparisons(data: dict[str, Any], load: float, names: Iterable[str]) -> list[Comparison]:
+    """Every comparison that some states' data allow, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
         load: N per depth [N/m].
-        rules: of the quantities that the data hold.
+        names: of the rules of the quantities that the data hold.
     """
-    found, wanted = [], dict.fromkeys(rules)
-    for rule in [*(rule for rule in RULES if rule in wanted), *(r for r in wanted if r not in RULES)]:
-        if all(path in data for path in rule.needs):
+    found, wanted = [], set(names)
+    for name, rule in RULES.items():
+        if name in wanted and all(row.path in data for row in rule.needs):
             value = rule.measure(data, load)
             if value is not None:
-                found.append(Comparison(rule.name, rule.text, float(value)))
+                found.append(Comparison(name, rule.text, float(value)))
     return found
 
 
-def K_I_error(data: dict[str, Any]) -> NDArray[np.float64]:
-    """Larger relative error of the two stress intensity factors against the integral equation, (states,)."""
-    left, right = (
-        data[f"states/fem/K_I_{side}"] / data[f"states/closed_form/K_I_{side}"] - 1.0
-        for side in ("left", "right")
-    )
-    return np.maximum(np.abs(left), np.abs(right))
-
-
 def _imbalance(data: dict[str, Any], load: float) -> float:
-    normal, tangential = (data[f"states/fem/{name}_force"] for name in ("normal", "tangential"))
-    off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data["states/g"]))
+    normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
+    off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
     return off.max()
 
 
 def _exponents(data: dict[str, Any], _: float) -> float:
-    off = [data[f"states/fem/{name}"] - data[f"states/{name}"] for name in ("alpha", "beta")]
-    return np.abs(off).max()
+    pairs = (of.FITTED_ALPHA, of.ALPHA), (of.FITTED_BETA, of.BETA)
+    return np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs]).max()
 
 
 def _tension(data: dict[str, Any], _: float) -> float | None:
     """A punch cannot pull; what was computed is not what would happen, and it is not clipped."""
-    largest = float(np.nanmax(data["surface/fem/sigma_YY"], initial=0.0))
+    largest = float(np.nanmax(data[at.PRESSURE[FEM].path], initial=0.0))
     return largest if largest > 0.0 else None
 
 
-def _both(data: dict[str, Any], path: str, where: NDArray) -> tuple[NDArray, NDArray]:
-    fem, exact = (data[f"surface/{method}/{path}"][:, where] for method in ("fem", "closed_form"))
-    return fem, exact
+def _both(data: dict[str, Any], rows: dict[str, Quantity], where: NDArray) -> tuple[NDArray, NDArray]:
+    return data[rows[FEM].path][:, where], data[rows[CLOSED_FORM].path][:, where]
 
 
 def _pressure(data: dict[str, Any], _: float) -> float:
-    X = data["surface/X_over_a"]
-    fem, exact = _both(data, "sigma_YY", under_punch(X) & (from_edge(X) >= 1e-4))
+    X = data[at.SURFACE_X.path]
+    fem, exact = _both(data, at.PRESSURE, under_punch(X) & (from_edge(X) >= 1e-4))
     return np.abs(fem / exact - 1.0).max()
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
-    fem, exact = _both(data, "sigma_XX", from_edge(data["surface/X_over_a"]) >= 1e-2)
+    fem, exact = _both(data, at.IN_PLANE, from_edge(data[at.SURFACE_X.path]) >= 1e-2)
     return (np.abs(fem - exact).max(axis=1) / np.abs(exact).max(axis=1)).max()
 
 
-_INSIDE = tuple(
-    tuple(f"interior/{method}/sigma_{ij}" for ij in ("XX", "YY", "XY"))
-    for method in ("fem", "closed_form")
-)
-
-
 def _inside(data: dict[str, Any], _: float) -> float:
-    fem, exact = (np.array([data[path] for path in paths]) for paths in _INSIDE)
+    fem, exact = (
+        np.array([data[row.path] for row in at.STRESSES_INSIDE[method]]) for method in (FEM, CLOSED_FORM)
+    )
     return (np.abs(fem - exact).max(axis=(0, 2)) / np.abs(exact).max(axis=(0, 2))).max()
 
 
-_FORCES = ("states/fem/normal_force", "states/fem/tangential_force")
-_INTENSITIES = tuple(
-    f"states/{method}/K_I_{side}" for method in ("fem", "closed_form") for side in ("left", "right")
-)
-_SURFACES = ("surface/fem/sigma_XX", "surface/closed_form/sigma_XX", "surface/X_over_a")
+def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
+    return lambda data, _: data[row.path].max()
+
 
 #: A balance of nodal forces further off than its limit, over N, is a fault whatever the tolerance.
 BALANCE = Rule(
-    "force balance",
     "nodal forces against the load, over N",
-    (*_FORCES, "states/g"),
-    _imbalance,
-    limit=1e-9,
-)
-K_I = Rule("K_I", "K_I at both ends, relative", _INTENSITIES,
-           lambda data, _: K_I_error(data).max(), tolerances=1.0)  # fmt: skip
-ESTIMATE = Rule("estimate", "estimated error of K_I and moments, relative", ("states/fem/estimate",),
-                lambda data, _: data["states/fem/estimate"].max(), tolerances=1.0)  # fmt: skip
-EXPONENTS = Rule("exponents", "fitted edge exponents, absolute",
-                 ("states/fem/alpha", "states/fem/beta", "states/alpha", "states/beta"),
-                 _exponents)  # fmt: skip
-TENSION = Rule("tension", "tension under the punch, over N/(2a)", ("surface/fem/sigma_YY",), _tension,
-               limit=0.0, own_pressure=True)  # fmt: skip
-#: Where the pressure was put in there is no raw one, and nothing to compare.
-PRESSURE = Rule("sigma_YY", "σ_YY pointwise for 1 - |X/a| >= 1e-4, relative",
-                ("surface/fem/sigma_YY_raw", "surface/closed_form/sigma_YY", "surface/X_over_a"),
-                _pressure)  # fmt: skip
-IN_PLANE = Rule("sigma_XX", "σ_XX for |1 - |X/a|| >= 1e-2, over its largest value there", _SURFACES,
-                _in_plane)  # fmt: skip
-INSIDE = Rule(
-    "stresses inside", "stresses inside, over the largest of a state", sum(_INSIDE, ()), _inside
-)
-#: In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement and so
-#: has about half the digits of the moments that the tolerance speaks of.
-SLOPE = Rule("slope under the punch", "v,X under the punch over that beside it",
-             ("states/fem/slope_under_punch",), lambda data, _: data["states/fem/slope_under_punch"].max(),
-             tolerances=10.0, mode="traction")  # fmt: skip
+    (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RATIO), _imbalance, limit=1e-9,
+)  # fmt: skip
 
-#: In the order in which they are told.
-RULES = (BALANCE, K_I, ESTIMATE, EXPONENTS, TENSION, PRESSURE, IN_PLANE, INSIDE, SLOPE)
+#: Rules by the name that quantities give, in the order in which they are told.
+RULES: Registry[Rule] = Registry(
+    "rule of comparison",
+    {
+        "force balance": BALANCE,
+        "K_I": Rule(
+            "K_I at both ends, relative",
+            (*of.K_I_LEFT.values(), *of.K_I_RIGHT.values()),
+            lambda data, _: of.K_I_error(data).max(),
+            tolerances=1.0,
+        ),
+        "estimate": Rule(
+            "estimated error of K_I and moments, relative",
+            (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
+        ),
+        "exponents": Rule(
+            "fitted edge exponents, absolute",
+            (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
+        ),
+        "tension": Rule(
+            "tension under the punch, over N/(2a)",
+            (at.PRESSURE[FEM],), _tension, limit=0.0, own_pressure=True,
+        ),
+        # Where the pressure was put in there is no raw one, and nothing to compare.
+        "sigma_YY": Rule(
+            "σ_YY pointwise for 1 - |X/a| >= 1e-4, relative",
+            (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure,
+        ),
+        "sigma_XX": Rule(
+            "σ_XX for |1 - |X/a|| >= 1e-2, over its largest value there",
+            (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane,
+        ),
+        "stresses inside": Rule(
+            "stresses inside, over the largest of a state",
+            (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM]), _inside,
+        ),
+        # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
+        # and so has about half the digits of the moments that the tolerance speaks of.
+        "slope under the punch": Rule(
+            "v,X under the punch over that beside it",
+            (of.SLOPE,), _largest(of.SLOPE), tolerances=10.0, mode="traction",
+        ),
+    },
+)  # fmt: skip

@@ -4,15 +4,17 @@ from typing import Any
 
 import xarray
 
-from galinx.postprocess.quantities import Quantity, table
+from galinx.postprocess.quantities import Quantity, of_states, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
+from galinx.postprocess.quantities.states import MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 
 #: Names of dimensions, and of the positions along them.
 _DIMENSIONS = {STATE: "state", POINT: "X_over_a", INSIDE: "point"}
 _POSITIONS = {
-    "surface/X_over_a": "X_over_a",
-    "interior/X_over_a": "inside_X_over_a",
-    "interior/Y_over_a": "inside_Y_over_a",
+    SURFACE_X.path: "X_over_a",
+    INSIDE_X.path: "inside_X_over_a",
+    INSIDE_Y.path: "inside_Y_over_a",
 }
 
 
@@ -23,7 +25,7 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
         data: datasets by path.
     """
     known = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = ["states/c"], ["states/motion", "states/X_over_L"]
+    first, last = [SPEED.path], [MOTION.path, POSITION.path]
     own = [path for path in known if path not in (*first, *last)]
     return {path: known[path] for path in (*first, *own, *last)}
 
@@ -40,7 +42,7 @@ def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
     coordinates: dict[str, Any] = dict.fromkeys(path.rpartition("/")[2] for path in apart)
     for path, values in data.items():
         row = known.get(path)
-        if row is None or not row.over or not set(row.over) <= _DIMENSIONS.keys():
+        if row is None or not of_states(path) or not row.over:
             continue
         dims = tuple(_DIMENSIONS[dimension] for dimension in row.over)
         about = {"units": row.unit, "long_name": row.about}

@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solveh_banded
 from scipy.special import gammaln
 
+from galinx.solvers.contact import under_punch
+
 #: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
 #: truncation or another profile adds, and the highest say how well they are resolved.
 MOMENTS = 9
@@ -37,7 +39,7 @@ class JacobiPressure:
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
         r = np.asarray(r, dtype=float)
-        inside = np.abs(r) < 1.0
+        inside = under_punch(r)
         left, right = np.log1p(r[inside]), np.log1p(-r[inside])
         result = np.full((len(self.c), len(r)), np.nan)
         weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
@@ -150,7 +152,7 @@ def contact_recovery(
     start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
     nodes = (s[facets[0]] - start[0]) / length[0]
 
-    inside = np.abs(r) < 1.0
+    inside = under_punch(r)
     at = chart.surface_coordinate(r[inside])
     facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
     values = _lagrange(nodes, (at - start[facet]) / length[facet])

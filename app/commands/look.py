@@ -117,7 +117,9 @@ def _beside(archive: Path, output: Path | None, default: str) -> Path:
 
 def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]:
     """States as a list of objects nested like the archive's paths; NaN becomes null."""
-    states: list[dict[str, Any]] = [{} for _ in data["states/f"]]
+    from galinx.postprocess.quantities.states import FRICTION
+
+    states: list[dict[str, Any]] = [{} for _ in data[FRICTION.path]]
     for name, values in data.items():
         section, *path, last = name.split("/")
         if section != "states":

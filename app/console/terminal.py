@@ -40,6 +40,8 @@ def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool 
 
 def print_times(data: dict[str, Any]) -> None:
     """Wall time of the steps that took some, longest first."""
-    steps = sorted(zip(data["run/seconds"].tolist(), data["run/steps"].tolist()), reverse=True)
+    from galinx.postprocess.quantities.runs import SECONDS, STEPS
+
+    steps = sorted(zip(data[SECONDS.path].tolist(), data[STEPS.path].tolist()), reverse=True)
     told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
     say(f"time: {sum(seconds for seconds, _ in steps):.2g} s{f' ({told})' if told else ''}")

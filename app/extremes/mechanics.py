@@ -9,6 +9,11 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS
+from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import stresses as at
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.runs import RECORD
+from galinx.solvers.contact import from_edge
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
@@ -26,11 +31,9 @@ def speeds() -> Row:
     shares = [0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999]
     c = [0.0, 1e-12, 4.786e-7, 1e-3, *(share * c_R for share in shares)]
     data = solved(c=c)
-    true, estimate = (
-        data[f"states/fem/{name}"].reshape(len(c), -1) for name in ("true_error", "estimate")
-    )
+    true, estimate = (data[row.path].reshape(len(c), -1) for row in (of.TRUE_ERROR, of.ESTIMATE))
     σ_XX = _in_plane_error(data).reshape(len(c), -1).max(axis=1)
-    v_X = np.array([_slope_error(κ, x, int(p)) for x, p in zip(c, data["run/fem/degree"])])
+    v_X = np.array([_slope_error(κ, x, int(p)) for x, p in zip(c, data[RECORD["degree"].path])])
     verdicts = [
         honest(true, estimate),
         reached(true, TOLERANCE, "up to 0.999 c_R"),
@@ -44,7 +47,7 @@ def speeds() -> Row:
         "σ_XX": σ_XX,
         "v,X beside": v_X,
     }
-    lines |= {"residual": data["run/fem/largest_residual"]}
+    lines |= {"residual": data[RECORD["largest_residual"].path]}
     x = 1.0 - np.array(c) / c_R
     return Row("speed", "speed, ν = 0.25 in plane strain", "1 - c/c_R (1)", x, "relative error (1)",
                lines, tuple(verdicts))  # fmt: skip
@@ -52,8 +55,8 @@ def speeds() -> Row:
 
 def _in_plane_error(data: dict[str, np.ndarray]) -> np.ndarray:
     """Error of σ_XX off the edges over its largest value there, (states,)."""
-    off = np.abs(1.0 - np.abs(data["surface/X_over_a"])) >= 1e-2
-    fem, exact = (data[f"surface/{method}/sigma_XX"][:, off] for method in ("fem", "closed_form"))
+    off = from_edge(data[at.SURFACE_X.path]) >= 1e-2
+    fem, exact = (data[at.IN_PLANE[method].path][:, off] for method in (FEM, CLOSED_FORM))
     return np.abs(fem - exact).max(axis=1) / np.abs(exact).max(axis=1)
 
 
@@ -98,8 +101,8 @@ def solids() -> Row:
     lines, true, estimate = {}, [], []
     for plane in ("strain", "stress"):
         runs = [solved(nu=float(value), plane=plane, c=_slow_and_fast(value, plane)) for value in ν]
-        errors = np.array([run["states/fem/true_error"] for run in runs])
-        estimates = np.array([run["states/fem/estimate"] for run in runs])
+        errors = np.array([run[of.TRUE_ERROR.path] for run in runs])
+        estimates = np.array([run[of.ESTIMATE.path] for run in runs])
         lines |= {f"K_I, plane {plane}": errors.max(axis=1), f"estimate, {plane}": estimates.max(axis=1)}
         lines[f"σ_XX, {plane}"] = np.array([_in_plane_error(run).max() for run in runs])
         true.append(errors), estimate.append(estimates)
@@ -120,14 +123,14 @@ def frictions() -> Row:
     # So stiff a law has reached μ_C at the end of the stroke: f = ±μ_C.
     f = [1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0]
     data = solved(mu_c=f, stiffness=1e9, X_over_L=[0.0, 1.0], c=[0.0, 0.6, 0.9])
-    g, true = np.abs(data["states/g"]), data["states/fem/true_error"]
-    estimate = data["states/fem/estimate"]
+    g, true = np.abs(data[of.RATIO.path]), data[of.TRUE_ERROR.path]
+    estimate = data[of.ESTIMATE.path]
     some = [np.isclose(g, value, rtol=1e-9, atol=0.0) for value in f]
     lines = {
         "K_I": np.array([true[at].max() for at in some]),
         "its estimate": np.array([estimate[at].max() for at in some]),
     }
-    exponents = data["states/alpha"]
+    exponents = data[of.ALPHA.path]
     verdicts = [
         honest(true, estimate),
         reached(true[g <= 1.0], TOLERANCE, "|g| <= 1"),
@@ -139,8 +142,8 @@ def frictions() -> Row:
 
 def units() -> Row:
     """The same problem in other units: no dimensionless digit may change."""
-    names = ("states/f", "states/closed_form/K_I", "states/fem/K_I_left", "states/fem/K_I_right",
-             "surface/fem/sigma_YY", "surface/fem/sigma_XX")  # fmt: skip
+    rows = (of.FRICTION, of.K_I_BOTH, of.K_I_LEFT[FEM], of.K_I_RIGHT[FEM], at.PRESSURE[FEM],
+            at.IN_PLANE[FEM])  # fmt: skip
     reference = solved(c=[0.0, 0.6])
     labels, differences = [], []
     for length in (1e-9, 1.0, 1e9):
@@ -149,7 +152,7 @@ def units() -> Row:
                 c=[0.0, 0.6], half_width=1e-3 * length, pre_sliding=1e-4 * length,
                 stiffness=25000.0 / length, E=193e9 * modulus, load=55.3e3 * modulus * length,
             )  # fmt: skip
-            pairs = [(run[name], reference[name]) for name in names]
+            pairs = [(run[row.path], reference[row.path]) for row in rows]
             differences.append(max(np.nanmax(np.abs(a - b)) / np.nanmax(np.abs(b)) for a, b in pairs))
             labels.append((length, modulus))
     worst = max(differences)

@@ -12,9 +12,12 @@ from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
 from galinx.meshes import store
-from galinx.postprocess.quantities import FRICTION, QUANTITIES, Quantity
-from galinx.postprocess.quantities.quantity import LOCAL
+from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE, LOCAL
 from galinx.solvers.solution import Body, Places
+
+#: What words of output.quantities ask for, where a plan says so.
+_PLACES = {stresses.ON_SURFACE: "stresses on the surface", stresses.BELOW: "stresses inside"}
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -46,7 +49,7 @@ def make_plan(scene: Scene) -> Plan:
 
 def _contact(scene: Scene) -> bool:
     """Does anything ask for contact mechanics?"""
-    return bool(set(scene.output.quantities) - {FRICTION})
+    return bool(set(scene.output.quantities) - {FRICTION_ALONE})
 
 
 def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
@@ -94,7 +97,7 @@ def _skipped(
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")
     words = {quantity.asked_by for quantity in asked}
-    for word, what in (("surface", "stresses on the surface"), ("interior", "stresses inside")):
+    for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
     return skipped

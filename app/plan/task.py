@@ -66,6 +66,11 @@ class Plan:
         """Is a quantity computed that this word of output.quantities asks for?"""
         return any(quantity.asked_by == word for quantity in self.quantities)
 
+    @property
+    def rules(self) -> frozenset[str]:
+        """Names of the rules by which what is computed is compared."""
+        return frozenset(rule for quantity in self.quantities for rule in quantity.compared)
+
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a state's entry."""
         sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}

@@ -5,19 +5,21 @@ from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan, unknowns
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
-    if "closed_form" in plan.methods:
+    if CLOSED_FORM in plan.methods:
         result.append(f"closed form: {plan.states} states")
     if plan.fem:
         result += _fem_lines(scene, plan, plan.fem)
-    if plan.asks("surface"):
+    if plan.asks(stresses.ON_SURFACE):
         result.append(f"stresses on the surface: {plan.states} x {len(plan.places.X)} points")
-    if plan.asks("interior"):
+    if plan.asks(stresses.BELOW):
         result.append(f"stresses inside: {plan.states} x {len(plan.places.points)} points")
     return result
 

@@ -18,7 +18,8 @@ from galinx.postprocess.figures.maps import Row, maps_figure
 from galinx.postprocess.figures.mesh import mesh_figure
 from galinx.postprocess.figures.surface import Column, surface_figure
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, column, runs, states, stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.stresses import maximum_shear, von_mises
 
 #: More curves than this in one column are no figure.
@@ -39,13 +40,13 @@ def of_archive(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Every figure that an archive's data allow, one after the other."""
     loops = Loops(data)
     yield Drawing("friction", "Friction along the strokes.", loops_figure([("", loops.distinct())]))
-    if "surface/X_over_a" in data:
+    if stresses.SURFACE_X.path in data:
         yield _surface(data, loops)
-    if "interior/map" in data:
+    if stresses.MAP.path in data:
         yield inside(data, scene)
-    if "run/fem/change_by_degree" in data:
+    if runs.CHANGES.path in data:
         yield _degrees(data)
-    if "run/fem/degree" in data:
+    if runs.RECORD["degree"].path in data:
         yield mesh(scene)
 
 
@@ -74,13 +75,13 @@ class Told:
         """Names of the friction law's parameters."""
         return [name for name in self.parameters if name not in ("c", "motion", "X_over_L")]
 
-    def varied(self, states: NDArray | slice = slice(None)) -> list[str]:
+    def varied(self, some: NDArray | slice = slice(None)) -> list[str]:
         """Parameters that differ between some states."""
-        return [name for name in self.parameters if len(np.unique(self.values(name)[states])) > 1]
+        return [name for name in self.parameters if len(np.unique(self.values(name)[some])) > 1]
 
     def values(self, name: str) -> NDArray:
         """A parameter of all states."""
-        return self._data[f"states/{name}"]
+        return self._data[column(name)]
 
     def label(self, state: int, names: Sequence[str]) -> str:
         """Some parameters of a state."""
@@ -108,39 +109,41 @@ class Loops:
 
     def of(self, state: int) -> Loop | None:
         """The loop that a state lies on, None where the archive has too many to hold it."""
-        row = int(self._data["loops/of_state"][state])
+        row = int(self._data[runs.LOOP_OF_STATE.path][state])
         if row < 0:
             return None
         if row not in self._known:
             label = self._told.label(state, self._names) or "the law"
-            self._known[row] = Loop(label, self._data["loops/X_over_L"], self._data["loops/f"][row])
+            self._known[row] = Loop(
+                label, self._data[runs.LOOP_X.path], self._data[runs.LOOP_F.path][row]
+            )
         return self._known[row]
 
-    def of_all(self, states: Sequence[int]) -> list[Loop]:
+    def of_all(self, some: Sequence[int]) -> list[Loop]:
         """The loops of some states, none at all where one is missing."""
-        found = [self.of(state) for state in states]
+        found = [self.of(state) for state in some]
         return [loop for loop in found if loop] if all(found) else []
 
     def distinct(self) -> list[Loop]:
         """The first loops, of different laws."""
-        _, first = np.unique(self._data["loops/of_state"], return_index=True)
+        _, first = np.unique(self._data[runs.LOOP_OF_STATE.path], return_index=True)
         return [loop for state in first.tolist() if (loop := self.of(state))][:_CURVES]
 
 
 def _surface(data: dict[str, Any], loops: Loops) -> Drawing:
     """A column for each speed, or else for each value of what varies most slowly."""
-    everything, told = np.arange(len(data["states/f"])), Told(data)
+    everything, told = np.arange(len(data[states.FRICTION.path])), Told(data)
     varied = told.varied()
     by = varied[0] if len(varied) > 1 or "c" in varied else None
     groups = (
-        [np.flatnonzero(data[f"states/{by}"] == value) for value in np.unique(data[f"states/{by}"])]
+        [np.flatnonzero(told.values(by) == value) for value in np.unique(told.values(by))]
         if by
         else [everything]
     )
     columns, hidden = [], 0
-    for states in groups[:_COLUMNS]:
-        shown = states[:_CURVES].tolist()
-        hidden += len(states) - len(shown)
+    for group in groups[:_COLUMNS]:
+        shown = group[:_CURVES].tolist()
+        hidden += len(group) - len(shown)
         names = [name for name in varied if name != by]
         title = told.label(shown[0], [by] if by else [])
         labels = [told.label(i, names) or "the state" for i in shown]
@@ -156,16 +159,18 @@ def _surface(data: dict[str, Any], loops: Loops) -> Drawing:
 
 def inside(data: dict[str, Any], scene: Scene) -> Drawing:
     """Stresses inside at the slowest and the fastest speed: both methods and their difference."""
-    shape = tuple(data["interior/map"].tolist())
-    X, Y = (data[f"interior/{name}_over_a"][: np.prod(shape)].reshape(shape) for name in ("X", "Y"))
-    speeds = np.unique(data["states/c"])
+    shape = tuple(data[stresses.MAP.path].tolist())
+    X, Y = (
+        data[row.path][: np.prod(shape)].reshape(shape) for row in (stresses.INSIDE_X, stresses.INSIDE_Y)
+    )
+    speeds = np.unique(data[states.SPEED.path])
     rows = []
     for c in speeds[[0, -1]] if len(speeds) > 1 else speeds:
-        state = int(np.argmax(data["states/c"] == c))
+        state = int(np.argmax(data[states.SPEED.path] == c))
         found = {
             label: _components(data, scene, method, state, shape)
-            for label, method in (("closed form", "closed_form"), ("finite elements", "fem"))
-            if f"interior/{method}/sigma_XX" in data
+            for label, method in (("closed form", CLOSED_FORM), ("finite elements", FEM))
+            if stresses.STRESSES_INSIDE[method][0].path in data
         }
         scale = next(iter(found.values()))
         rows += [Row(f"c = {c:g}\n{label}", values, scale) for label, values in found.items()]
@@ -184,25 +189,24 @@ def _components(
     data: dict[str, Any], scene: Scene, method: str, state: int, shape: tuple[int, ...]
 ) -> NDArray[np.float64]:
     XX, YY, XY = (
-        data[f"interior/{method}/sigma_{ij}"][state, : np.prod(shape)].reshape(shape)
-        for ij in ("XX", "YY", "XY")
+        data[row.path][state, : np.prod(shape)].reshape(shape) for row in stresses.STRESSES_INSIDE[method]
     )
     ZZ = scene.solid.σ_ZZ(XX, YY, XY)
     return np.array([XX, YY, XY, von_mises(XX, YY, XY, ZZ), maximum_shear(XX, YY, XY)])
 
 
 def _degrees(data: dict[str, Any]) -> Drawing:
-    c, c_of = data["run/fem/c"], data["states/c"]
+    c, c_of = data[runs.RECORD["c"].path], data[states.SPEED.path]
 
-    def largest(name: str) -> NDArray:
-        return np.array([data[name][c_of == speed].max() for speed in c])
+    def largest(row: Quantity) -> NDArray:
+        return np.array([data[row.path][c_of == speed].max() for speed in c])
 
-    known = "states/fem/true_error" in data
+    known = states.TRUE_ERROR.path in data
     figure = degrees_figure(
         c,
-        data["run/fem/change_by_degree"],
-        data["run/fem/degree"],
-        largest("states/fem/estimate"),
-        largest("states/fem/true_error") if known else None,
+        data[runs.CHANGES.path],
+        data[runs.RECORD["degree"].path],
+        largest(states.ESTIMATE),
+        largest(states.TRUE_ERROR) if known else None,
     )
     return Drawing("degrees", "How the numbers settle as the polynomial degree rises.", figure)

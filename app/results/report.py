@@ -17,6 +17,7 @@ from galinx.app.study.published import (
 )
 from galinx.postprocess.figures.canvas import in_a_page
 from galinx.postprocess.page import render
+from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.tables import Sheet, states_sheet
 
 
@@ -49,7 +50,7 @@ class Report:
         """The page."""
         attributes, data = self._attributes, self._data
         comparisons = json.loads(attributes["comparisons"])
-        seconds = data["run/seconds"]
+        seconds = data[runs.SECONDS.path]
         longest = max(float(seconds.max()), 1e-9)
         return render(
             {
@@ -63,30 +64,32 @@ class Report:
                 "pictures": self._pictures,
                 "times": [
                     (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
-                    for name, value in zip(data["run/steps"].tolist(), seconds.tolist())
+                    for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
                 ],
-                "done": data["run/done"].tolist(),
-                "skipped": data["run/skipped"].tolist(),
+                "done": data[runs.DONE.path].tolist(),
+                "skipped": data[runs.SKIPPED.path].tolist(),
                 "versions": _versions(attributes),
-                "scene": data["scene/text"],
+                "scene": data[runs.SCENE.path],
             }
         )
 
     def _summary(self) -> str:
         data, scene = self._data, self._scene
-        speeds = np.unique(data["states/c"])
+        speeds = np.unique(data[states.SPEED.path])
         moving = f"{speeds[0]:g}" if len(speeds) == 1 else f"{speeds[0]:g} to {speeds[-1]:g}"
-        count = len(data["states/f"])
+        count = len(data[states.FRICTION.path])
         text = (
             f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
             f"{scene.punch.load:g} N/m, that slides at c = {moving} (over the shear wave speed) on a "
             f"half-plane with {scene.solid.words()}."
         )
-        if "run/fem/unknowns" in data:
+        if runs.RECORD["unknowns"].path in data:
+            cells, degree, unknowns = (
+                int(data[runs.RECORD[name].path].max()) for name in ("cells", "degree", "unknowns")
+            )
             text += (
-                f" Finite elements: {scene.solve.mesh} mesh, {int(data['run/fem/cells'].max())} cells of "
-                f"degree up to {int(data['run/fem/degree'].max())}, "
-                f"{int(data['run/fem/unknowns'].max())} unknowns, tolerance {scene.solve.tolerance:g}."
+                f" Finite elements: {scene.solve.mesh} mesh, {cells} cells of degree up to {degree}, "
+                f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
             )
         return text
 

@@ -13,6 +13,7 @@ from galinx.app.run.output import check_output
 from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities import runs, states
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +35,7 @@ class Result:
     @cached_property
     def scene(self) -> Scene:
         """The scene that was computed."""
-        return scenes.parse(self.data["scene/text"], "the scene of the archive")
+        return scenes.parse(self.data[runs.SCENE.path], "the scene of the archive")
 
     @property
     def verdict(self) -> str:
@@ -119,10 +120,10 @@ class Result:
 
     def _degree(self, state: int) -> int | None:
         """Degree that was used at a state's speed, None without finite elements."""
-        c, used = self.data["states/c"], self.data.get("run/fem/degree")
+        c, used = self.data[states.SPEED.path], self.data.get(runs.RECORD["degree"].path)
         if used is None or not 0 <= state < len(c):
             return None
-        return int(used[self.data["run/fem/c"] == c[state]][0]) or None
+        return int(used[self.data[runs.RECORD["c"].path] == c[state]][0]) or None
 
 
 def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:

@@ -11,7 +11,7 @@ from galinx.app.plan.task import Plan
 from galinx.app.run.judge import Judge
 from galinx.app.run.sinks import Sink
 from galinx.postprocess.journal import Journal, Part
-from galinx.postprocess.quantities import RECORD
+from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.solvers.errors import SolveError
 
 
@@ -81,11 +81,10 @@ class Collector:
         if len(failures) == len(self._plan.tasks):
             raise SolveError(failures[0])
         self._judge.failures = failures
-        self._sink.put("run/failures", failures)
-        for quantity in RECORD:
-            name = quantity.path.rpartition("/")[2]
+        self._sink.put(FAILURES.path, failures)
+        for name, quantity in RECORD.items():
             self._sink.put(quantity.path, np.array([record[name] for record in records]))
         changes = [record.get("change_by_degree", []) for record in records]
         if longest := max(map(len, changes)):
             padded = [change + [0.0] * (longest - len(change)) for change in changes]
-            self._sink.put("run/fem/change_by_degree", np.array(padded))
+            self._sink.put(CHANGES.path, np.array(padded))

@@ -22,6 +22,7 @@ from galinx.app.run.versions import libraries, machine
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.journal import Journal, Part
+from galinx.postprocess.quantities import column, runs, stresses
 
 
 def compute(
@@ -53,7 +54,7 @@ def compute(
     with clock("friction"):
         plan, states = make_plan(scene), enumerate_states(scene)
         _put_states(sink, scene, plan, states)
-    judge = Judge(scene, (rule for quantity in plan.quantities for rule in quantity.compared))
+    judge = Judge(scene, plan.rules)
     if plan.methods:
         collector = Collector(sink, judge, progress, journal, plan)
         for part in _parts(plan, states, collector.earlier(), progress, clock):
@@ -65,19 +66,19 @@ def compute(
 
 
 def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
-    sink.put("scene/text", scene.text)
+    sink.put(runs.SCENE.path, scene.text)
     for name, values in states.columns.items():
-        sink.put(f"states/{name}", values)
-    sink.put("loops/of_state", states.loop)
-    sink.put("loops/X_over_L", states.travel)
-    sink.put("loops/f", states.loops)
-    if plan.asks("surface"):
-        sink.put("surface/X_over_a", plan.places.X)
-    if plan.asks("interior"):
-        for i, name in enumerate(("X_over_a", "Y_over_a")):
-            sink.put(f"interior/{name}", plan.places.points[:, i])
+        sink.put(column(name), values)
+    sink.put(runs.LOOP_OF_STATE.path, states.loop)
+    sink.put(runs.LOOP_X.path, states.travel)
+    sink.put(runs.LOOP_F.path, states.loops)
+    if plan.asks(stresses.ON_SURFACE):
+        sink.put(stresses.SURFACE_X.path, plan.places.X)
+    if plan.asks(stresses.BELOW):
+        for i, row in enumerate((stresses.INSIDE_X, stresses.INSIDE_Y)):
+            sink.put(row.path, plan.places.points[:, i])
         if scene.output.map:
-            sink.put("interior/map", np.array([axis.count for axis in reversed(scene.output.map)]))
+            sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
 
 
 def _parts(
@@ -99,10 +100,10 @@ def _parts(
 
 
 def _put_work(sink: Sink, scene: Scene, plan: Plan, clock: Clock) -> None:
-    sink.put("run/done", lines(scene, plan))
-    sink.put("run/skipped", list(plan.skipped))
-    sink.put("run/steps", list(clock))
-    sink.put("run/seconds", np.array(list(clock.values()), dtype=float))
+    sink.put(runs.DONE.path, lines(scene, plan))
+    sink.put(runs.SKIPPED.path, list(plan.skipped))
+    sink.put(runs.STEPS.path, list(clock))
+    sink.put(runs.SECONDS.path, np.array(list(clock.values()), dtype=float))
 
 
 def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from galinx.app.scene.scene import Scene
-from galinx.postprocess.compare import Comparison, Rule
+from galinx.postprocess.compare import RULES, Comparison
 
 
 class Judge:
@@ -13,19 +13,23 @@ class Judge:
 
     Args:
         scene: sets the tolerance.
-        rules: of the comparisons that may come.
+        names: of the rules by which results are compared.
 
     Attributes:
         worst: largest value by the comparison's text, dimensionless.
         failures: what could not be solved, and why.
     """
 
-    def __init__(self, scene: Scene, rules: Iterable[Rule]) -> None:
+    def __init__(self, scene: Scene, names: Iterable[str]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
         own, mode = scene.solve.own_pressure, scene.solve.mode
-        judged = {rule for rule in rules if rule.mode in ("", mode) and (rule.own_pressure or not own)}
-        limits = {rule.name: rule.allowed(scene.solve.tolerance) for rule in judged}
+        rules = {name: RULES[name] for name in names}
+        limits = {
+            name: rule.allowed(scene.solve.tolerance)
+            for name, rule in rules.items()
+            if rule.mode in ("", mode) and (rule.own_pressure or not own)
+        }
         self._limits = {name: limit for name, limit in limits.items() if limit is not None}
         self._judged: dict[str, float] = {}
 

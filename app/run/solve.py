@@ -13,8 +13,9 @@ from galinx.app.run.methods import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare
 from galinx.postprocess.journal import Part
-from galinx.postprocess.quantities import RECORD
+from galinx.postprocess.quantities import states, stresses
 from galinx.postprocess.quantities.quantity import LOCAL
+from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
 from galinx.solvers.sie.closed_form import FlatPunch
 
@@ -103,9 +104,8 @@ class Work:
         }
 
     def _compared(self, data: dict[str, NDArray], g: NDArray) -> list[compare.Comparison]:
-        rules = (rule for quantity in self.plan.quantities for rule in quantity.compared)
-        given = {"states/g": g, "surface/X_over_a": self.plan.places.X}
-        return compare.comparisons(data | given, self.plan.body.load, rules)
+        given = {states.RATIO.path: g, stresses.SURFACE_X.path: self.plan.places.X}
+        return compare.comparisons(data | given, self.plan.body.load, self.plan.rules)
 
 
 #: What the time to read a method's solutions is told as.
@@ -118,7 +118,7 @@ def _record(
     """Numbers of the work at a speed, None where no method has any."""
     speed = {"speed": task.number, "c": task.response.c}
     if failures:
-        nothing = {quantity.path.rpartition("/")[2]: 0.0 for quantity in RECORD}
+        nothing = dict.fromkeys(RECORD, 0.0)
         return nothing | speed | {"failure": "; ".join(failures.values())}
     done = {key: value for solver in solvers.values() for key, value in solver.record().items()}
     return done | speed if done else None

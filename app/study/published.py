@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from galinx.postprocess.quantities import column, states
+from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.tables import Sheet
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.integrate import runge_kutta
@@ -54,14 +56,14 @@ class IntensityRow:
 def intensity_rows(name: str, data: dict[str, Any]) -> list[IntensityRow]:
     """Rows of ``"table4"`` or ``"table5"`` from an archive; none where it lacks their states."""
     table = published()[name]
-    paths = [f"states/{path}" for path in ("closed_form/K_I", "fem/K_I_left", "fem/K_I_right")]
+    paths = [row.path for row in (states.K_I_BOTH, states.K_I_LEFT[FEM], states.K_I_RIGHT[FEM])]
     if any(path not in data for path in paths):
         return []
-    chosen = data["states/c"] == table["c"]
+    chosen = data[states.SPEED.path] == table["c"]
     for key, value in REFERENCE.items():
-        chosen = chosen & (data[f"states/{key}"] == value)
+        chosen = chosen & (data[column(key)] == value)
     found = {
-        (str(data["states/motion"][i]), float(data["states/X_over_L"][i])): [
+        (str(data[states.MOTION.path][i]), float(data[states.POSITION.path][i])): [
             data[path][i] for path in paths
         ]
         for i in np.flatnonzero(chosen)

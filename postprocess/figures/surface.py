@@ -11,8 +11,13 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.figures.canvas import COLOURS, MARKERS
 from galinx.postprocess.figures.loops import Loop
+from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.states import FRICTION, POSITION
+from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
+from galinx.solvers.contact import from_edge, under_punch
 
-_STRESSES = {"sigma_YY": r"$\sigma_{YY}/(N/2a)$", "sigma_XX": r"$\sigma_{XX}/(N/2a)$"}
+_STRESSES = ((PRESSURE, r"$\sigma_{YY}/(N/2a)$"), (IN_PLANE, r"$\sigma_{XX}/(N/2a)$"))
 
 
 @dataclass(frozen=True)
@@ -43,10 +48,10 @@ def surface_figure(data: dict[str, Any], columns: Sequence[Column]) -> Figure:
         2, len(columns), figsize=(3.6 * len(columns) + 0.6, 5.2), sharex=True, squeeze=False
     )
     for column, shown in enumerate(columns):
-        for row, (stress, label) in enumerate(_STRESSES.items()):
+        for row, (stress, label) in enumerate(_STRESSES):
             axis = axes[row, column]
             values = [_draw(axis, data, i, stress, n) for n, i in enumerate(shown.states)]
-            axis.set_ylim(*_limits(data["surface/X_over_a"], np.array(values)))
+            axis.set_ylim(*_limits(data[SURFACE_X.path], np.array(values)))
             axis.set_xlim(-2.0, 2.0)
             if column == 0:
                 axis.set_ylabel(label)
@@ -67,10 +72,17 @@ def surface_figure(data: dict[str, Any], columns: Sequence[Column]) -> Figure:
     return figure
 
 
-def _draw(axis: plt.Axes, data: dict[str, Any], state: int, stress: str, n: int) -> NDArray:
-    X, drawn = data["surface/X_over_a"], []
-    exact, found = (data.get(f"surface/{method}/{stress}") for method in ("closed_form", "fem"))
-    for part in (X < -1.0, np.abs(X) < 1.0, X > 1.0):  # a line across an edge would be a lie
+def _draw(
+    axis: plt.Axes, data: dict[str, Any], state: int, stress: dict[str, Quantity], n: int
+) -> NDArray:
+    X, drawn = data[SURFACE_X.path], []
+    beside = ~under_punch(X)
+    exact, found = (data.get(stress[method].path) for method in (CLOSED_FORM, FEM))
+    for part in (
+        beside & (X < 0.0),
+        under_punch(X),
+        beside & (X > 0.0),
+    ):  # a line across an edge would be a lie
         if exact is not None:
             drawn.append(exact[state])
             axis.plot(X[part], exact[state][part], color=COLOURS[n % 8])
@@ -88,7 +100,7 @@ def _draw(axis: plt.Axes, data: dict[str, Any], state: int, stress: str, n: int)
 
 def _limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for the regular part; the singular ends run out of the picture."""
-    regular = values[:, np.abs(1.0 - np.abs(X)) > 0.06]
+    regular = values[:, from_edge(X) > 0.06]
     low, high = np.nanmin(regular), np.nanmax(regular)
     margin = 0.08 * (high - low) or 1.0
     return low - margin, high + margin
@@ -103,7 +115,7 @@ def _inset(axis: plt.Axes, data: dict[str, Any], column: Column) -> None:
         if n == 0 or not shared:
             inset.plot(loop.X_over_L, loop.f, color=colour, linewidth=0.7)
         inset.plot(
-            data["states/X_over_L"][i], data["states/f"][i], MARKERS[n % 8], color=COLOURS[n % 8],
+            data[POSITION.path][i], data[FRICTION.path][i], MARKERS[n % 8], color=COLOURS[n % 8],
             markersize=4,
         )  # fmt: skip
     inset.tick_params(labelsize=5, length=2, pad=1)

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.postprocess.hdf5.patient import PatientFile
-from galinx.postprocess.quantities import declared
+from galinx.postprocess.quantities import declared, large, of_states
+from galinx.postprocess.quantities.states import RATIO
 
 #: Version of the layout; a reader refuses a newer one.
 SCHEMA_VERSION = 1
@@ -171,7 +172,7 @@ def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, A
         data = {
             name: _values(dataset, slice(None))
             for name, dataset in _datasets(file)
-            if stresses or not name.startswith(("surface/", "interior/"))
+            if stresses or not large(name)
         }
         return data, dict(file.attrs)
 
@@ -183,11 +184,11 @@ def read_rows(path: Path, rows: slice) -> dict[str, Any]:
         UnreadableArchive: no archive, a damaged one, or one of a newer layout.
     """
     with _opened(path) as file:
-        states = len(file["states/g"])
+        states = len(file[RATIO.path])
         return {
             name: _values(dataset, rows if dataset.shape[:1] == (states,) else slice(None))
             for name, dataset in _datasets(file)
-            if name.startswith(("states/", "surface/", "interior/"))
+            if of_states(name)
         }
 
 

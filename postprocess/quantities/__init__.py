@@ -4,13 +4,19 @@ from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
 from galinx.postprocess.quantities import runs, states, stresses
-from galinx.postprocess.quantities.quantity import FRICTION, INTENSITIES, STATE, Quantity
-from galinx.postprocess.quantities.runs import RECORD
+from galinx.postprocess.quantities.quantity import (
+    FRICTION_ALONE,
+    INSIDE,
+    INTENSITIES,
+    POINT,
+    STATE,
+    Quantity,
+)
 from galinx.registry import Registry
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 
-__all__ = ["FRICTION", "QUANTITIES", "RECORD", "STATE", "WORDS", "Quantity", "add", "declared", "table"]
+__all__ = ["QUANTITIES", "WORDS", "Quantity", "add", "column", "declared", "table"]
 
 #: Quantities by their path, but for the parameters of friction laws.
 QUANTITIES: Registry[Quantity] = Registry(
@@ -27,12 +33,15 @@ def add(quantity: Quantity) -> Quantity:
     return QUANTITIES.register(quantity.path, quantity)
 
 
+def column(name: str) -> str:
+    """Path of a column of the states: a parameter of the law, or what else tells states apart."""
+    return f"states/{name}"
+
+
 def table() -> dict[str, Quantity]:
     """Every quantity by its path, the parameters of all known friction laws among them."""
     of_laws = {
-        f"states/{key}": Quantity(
-            f"states/{key}", known.unit or "1", known.about, (STATE,), symbol=known.symbol
-        )
+        column(key): Quantity(column(key), known.unit or "1", known.about, (STATE,), symbol=known.symbol)
         for law in LAWS.values()
         for key, known in parameters(law).items()
     }
@@ -53,12 +62,23 @@ def declared(path: str) -> Quantity:
     return known[path]
 
 
+def of_states(path: str) -> bool:
+    """Does a dataset hold values of states, or the positions of some?"""
+    return path.split("/")[0] in ("states", "surface", "interior")
+
+
+def large(path: str) -> bool:
+    """Does it hold a value at every point of every state?"""
+    row = table().get(path)
+    return row is not None and bool({POINT, INSIDE} & set(row.over))
+
+
 class _Words(Collection[str]):
     """Words of a scene's output.quantities, those of users' quantities among them."""
 
     def __iter__(self) -> Iterator[str]:
         asked = (quantity.asked_by for quantity in QUANTITIES.values() if quantity.asked_by)
-        return iter(dict.fromkeys([FRICTION, INTENSITIES, *asked]))
+        return iter(dict.fromkeys([FRICTION_ALONE, INTENSITIES, *asked]))
 
     def __len__(self) -> int:
         return len(list(iter(self)))

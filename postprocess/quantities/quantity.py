@@ -1,23 +1,24 @@
 """What is known of an archived quantity."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import NDArray
-
-from galinx.postprocess.compare import Rule
 
 #: Dimensions of datasets, in words.
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
 
-#: Method of what is known without solving: the local analysis of the punch's edges.
-LOCAL = "local"
+#: Methods, and what is known without solving: the local analysis of the punch's edges.
+CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
+
+#: Where NaN is an answer.
+NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"
 
 #: Words of a scene's output.quantities that ask for no dataset of their own.
-FRICTION, INTENSITIES = "friction", "sif"
+FRICTION_ALONE, INTENSITIES = "friction", "sif"
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,8 @@ class Quantity:
         asked_by: word of output.quantities; "" where every solution gives it.
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.
-        nan_allowed: "never", "beside" the punch, or "anywhere".
-        compared: what it is held against, and how.
+        nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
+        compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
     """
 
@@ -51,11 +52,27 @@ class Quantity:
     asked_by: str = ""
     of_data: Callable[[dict[str, Any]], NDArray] | None = None
     needs: tuple[str, ...] = ()
-    nan_allowed: str = "never"
-    compared: tuple[Rule, ...] = ()
+    nan_allowed: str = NEVER
+    compared: tuple[str, ...] = ()
     symbol: str = ""
 
     @property
     def solved(self) -> bool:
         """Does it come from a solution, part by part?"""
         return self.of is not None or self.of_data is not None
+
+
+def rows(names: Mapping[str, Any]) -> tuple[Quantity, ...]:
+    """All quantities among a module's names, single ones and those by method."""
+    found: list[Quantity] = []
+    for value in names.values():
+        if isinstance(value, Quantity):
+            found.append(value)
+        elif isinstance(value, dict):
+            for entry in value.values():
+                found += [q for q in (entry if isinstance(entry, tuple) else (entry,)) if _is(q)]
+    return tuple(found)
+
+
+def _is(value: Any) -> bool:
+    return isinstance(value, Quantity)

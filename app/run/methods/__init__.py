@@ -16,7 +16,8 @@ from galinx.app.errors import finite_elements_installed
 from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, states, stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.registry import Registry
 from galinx.solvers.solution import Body, Solution
 
@@ -75,9 +76,9 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if scene.solve.own_pressure:
         return "the pressure is given"
-    if quantity and not body.flat and quantity.asked_by == "interior":
+    if quantity and not body.flat and quantity.asked_by == stresses.BELOW:
         return "known below flat punches only"
-    if quantity and not body.flat and quantity.path == "states/closed_form/K_I":
+    if quantity and not body.flat and quantity is states.K_I_BOTH:
         return "the two ends differ"
     return ""
 
@@ -90,7 +91,7 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if quantity and not body.flat and quantity.path == "states/fem/slope_under_punch":
+    if quantity and not body.flat and quantity is states.SLOPE:
         return "the punch is not flat"
     return ""
 
@@ -98,8 +99,8 @@ def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None
 METHODS: Registry[MethodKind] = Registry(
     "method",
     {
-        "closed_form": MethodKind("closed form", _closed_form, _closed_form_refusal),
-        "fem": MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
+        CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal),
+        FEM: MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
     },
 )
 

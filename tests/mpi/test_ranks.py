@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
+from support import space_on
 
-from galinx.meshes.halfplane import MESHES
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.fem import surface
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -18,18 +16,12 @@ from galinx.solvers.solids.isotropic import MovingFrame
 REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 
 
-def on(comm, mesh, mixed=False):
-    kind = MESHES[mesh]
-    piece = kind.build(REFINEMENT, 1, comm.rank, comm.size)
-    return Space(*distribute(piece, comm), TAGS, kind.chart, 5, mixed)
-
-
 @pytest.mark.parametrize("mesh, mixed", [("confocal", False), ("graded", False), ("confocal", True)])
 def test_a_shared_mesh_gives_what_one_rank_gives(mesh, mixed):
     states, traces, gradients = [], [], []
     points = np.array([[0.3, -0.2], [-1.5, -0.7], [1.0, -0.01], [4.0, -40.0], [0.0, -1.0]])
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        space = on(comm, mesh, mixed)
+        space = space_on(mesh, REFINEMENT, 5, comm, mixed)
         punch = SlidingPunch(space, 2.0, 0.6)
         states.append(punch.states(-0.66))
         trace = surface.gather(space, punch.fields[:3])
@@ -48,7 +40,7 @@ def test_shared_tractions_give_what_one_rank_gives():
     load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).σ_YY_by_distance
     slopes = []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        solver = LoadedHalfPlane(on(comm, "confocal"), 2.0, 0.6)
+        solver = LoadedHalfPlane(space_on("confocal", REFINEMENT, 5, comm), 2.0, 0.6)
         solver.load(load)
         assert solver.resultants[0] == pytest.approx(-2.0, rel=1e-12)
         slopes.append(surface.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))

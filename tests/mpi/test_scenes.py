@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from conftest import HOME
 from mpi4py import MPI
+from support import HOME
 
 from galinx.app.plan import plan
 from galinx.app.plan.plan import make_plan

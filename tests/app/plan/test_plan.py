@@ -1,0 +1,91 @@
+"""What is planned of a scene, skipped, warned of and refused."""
+
+import pytest
+from support import HOME
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.words import lines
+from galinx.app.scene.scene import read
+
+
+def test_runge_kutta_beyond_its_stability_names_the_exact_integrator():
+    changes = {"friction.mu_c": 0.1, "friction.sigma0_over_load": 6e4, "friction.integrator": "rk4"}
+    scene = template("tables4_5", changes)
+    with pytest.raises(BadInput, match="exact"):
+        enumerate_states(scene)
+
+
+def test_a_value_off_by_its_unit_is_warned_of():
+    scene = template("tables4_5", {"solid.E": 193})
+    assert any("solid.E = 193 Pa" in text for text in make_plan(scene).warnings)
+
+
+def test_speed_in_metres_per_second():
+    changes = {"motion.c": None, "motion.speed": ["1.5 mm/s", "1880.4 m/s"]}
+    scene = template("tables4_5", changes)
+    assert speeds(scene) == pytest.approx((4.786e-7, 0.6), rel=1e-4)
+
+
+def test_lists_mean_their_product():
+    changes = {"friction.mu_c": [0.3, 0.7], "friction.delta": [1.0, 1.5, 2.0]}
+    scene = template("tables4_5", changes)
+    states = enumerate_states(scene)
+    assert len(states) == 2 * 2 * 3 * 3 * 2 == make_plan(scene).states
+    assert len({(c, m, d) for c, m, d in zip(states.c, states.mu_c, states.delta)}) == 12
+
+
+def test_the_plan_skips_what_is_not_asked_for():
+    friction = make_plan(template("tables4_5", {"output.quantities": ["friction"]}))
+    assert not (friction.fem or friction.closed_form or friction.surface)
+    closed = make_plan(template("tables4_5", {"solve.methods": ["closed_form"]}))
+    assert closed.closed_form and not closed.fem and closed.refinement is None
+    assert any("mesh and finite elements" in text for text in closed.skipped)
+    scene = template("tables4_5", {"output.quantities": ["friction", "sif"]})
+    assert not make_plan(scene).surface
+    assert not any("surface" in text for text in lines(scene, make_plan(scene)))
+
+
+def test_the_closed_form_beyond_the_rayleigh_speed_is_formal():
+    scene = template("tables4_5", {"motion.c": 0.95, "solve.methods": ["closed_form"]})
+    assert any("formal" in warning for warning in make_plan(scene).warnings)
+
+
+def test_all_scenes_of_the_project_are_good():
+    scenes = sorted((HOME / "scenes").glob("*.toml"))
+    assert len(scenes) >= 5
+    for path in scenes:
+        assert make_plan(read(path)).states > 0
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"motion.c": 0.918}, "within 1 % of the Rayleigh speed c_R = 0.919402"),
+        ({"solve.mesh": "box"}, "boundary of the box mesh alone costs about 0.01"),
+    ],
+)
+def test_what_will_cost_accuracy_is_warned_of(changes, message):
+    (warning,) = make_plan(template("tables4_5", changes)).warnings
+    assert message in warning
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"solve.degree": 2}, "multiple of 4"),
+        ({"solve.cuts": 4}, "multiple of 4"),
+        ({"solve.degree": 2, "solve.cuts": 6}, "multiple of 4"),
+        ({"solve.degree": 2.5, "solve.cuts": 4}, "whole number"),
+        ({"solve.degree": 13, "solve.cuts": 4}, "13"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solve.mode": "traction"}, "contact"),
+        ({"solve.solver": "jacobi"}, "jacobi"),
+        ({"solve.solver": "gamg", "solid.nu": 0.5}, "indefinite"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solid.nu": 0.5}, "two degrees less"),
+    ],
+)
+def test_what_cannot_be_is_refused(changes, message):
+    with pytest.raises(BadInput, match=message):
+        make_plan(template("tables4_5", changes))

@@ -1,0 +1,26 @@
+import numpy as np
+import pytest
+
+from galinx.meshes.charts import Confocal
+from galinx.meshes.halfplane import MESHES
+
+
+@pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))
+def test_charts_invert_themselves(chart):
+    X = np.array([[-3.0, -0.5], [0.2, -1e-6], [0.999, -0.1], [50.0, -70.0], [0.3, 0.0], [-2.0, 0.0]])
+    np.testing.assert_allclose(chart.to_physical(chart.from_physical(X)), X, rtol=1e-12, atol=1e-15)
+    surface = np.array([-5.0, -1.001, -0.99, 0.0, 0.5, 1.5])
+    s = chart.surface_coordinate(surface)
+    np.testing.assert_allclose(chart.surface_position(s), surface, rtol=1e-13)
+    step = 1e-6
+    slope = (chart.surface_position(s + step) - chart.surface_position(s - step)) / (2.0 * step)
+    np.testing.assert_allclose(chart.surface_stretch(s), slope, rtol=1e-8)
+    points = chart.from_physical(np.column_stack([surface, np.zeros_like(surface)]))
+    np.testing.assert_allclose(chart.along_surface(points), s, atol=1e-13)
+
+
+def test_confocal_rotation_is_that_of_the_map():
+    chart, x, step = Confocal(), np.array([0.7, -1.1]), np.array([1e-6, 0.0])
+    along_ξ = (chart.to_physical(x + step) - chart.to_physical(x - step)) / 2e-6
+    cos, sin = chart.rotation(x, np)
+    np.testing.assert_allclose([cos, sin], along_ξ / np.linalg.norm(along_ξ), rtol=1e-9)

@@ -1,0 +1,44 @@
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from galinx.solvers.friction.dahl import RK4_STABILITY_LIMIT, Dahl, exact, runge_kutta
+
+
+@pytest.mark.parametrize("δ", [0.5, 1.0, 1.0 + 1e-12, 1.5, 3.0])
+@pytest.mark.parametrize("f0, s", [(0.0, 1), (0.6, -1), (-0.3, 1)])
+def test_exact_solution_solves_the_law(δ, f0, s):
+    law = Dahl(0.7, 25000.0, δ)
+    d = np.linspace(0.0, 2e-5, 7)
+    found = solve_ivp(
+        lambda _, f: s * law.λ * law.rate(f, s), (0.0, d[-1]), [f0], "DOP853", d, rtol=1e-12, atol=1e-13
+    )
+    np.testing.assert_allclose(exact(law, f0, s, d), found.y[0], rtol=0.0, atol=1e-10)
+
+
+def test_full_slip_is_reached_after_a_finite_distance_for_δ_below_one():
+    law = Dahl(0.7, 25000.0, 0.5)
+    distance = 2.0 * law.μ_C / law.λ
+    assert exact(law, 0.0, 1, 0.99 * distance) < law.μ_C
+    assert exact(law, 0.0, 1, 1.01 * distance) == law.μ_C
+
+
+def test_exact_solution_restarts():
+    law = Dahl(0.4, 3e4, 1.3)
+    halfway = float(exact(law, -0.2, 1, 1e-5))
+    assert exact(law, halfway, 1, 2e-5) == pytest.approx(float(exact(law, -0.2, 1, 3e-5)), rel=1e-13)
+
+
+def test_runge_kutta_converges_with_order_four():
+    law, length = Dahl(0.7, 25000.0, 1.5), 1e-4
+    end = float(exact(law, 0.0, 1, length))
+    errors = [abs(runge_kutta(law, 0.0, 1, length, n).f[-1] - end) for n in (40, 80, 160)]
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 4.0, atol=0.2)
+
+
+def test_runge_kutta_refuses_a_step_beyond_its_stability():
+    length = 1e-4
+    λ = RK4_STABILITY_LIMIT * 0.1 * 20 / length
+    assert abs(runge_kutta(Dahl(0.1, 0.99 * λ), 0.0, 1, length, 20).f[-1]) < 0.2
+    with pytest.raises(ValueError, match="exact"):
+        runge_kutta(Dahl(0.1, 1.01 * λ), 0.0, 1, length, 20)

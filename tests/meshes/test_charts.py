@@ -24,3 +24,15 @@ def test_confocal_rotation_is_that_of_the_map():
     along_ξ = (chart.to_physical(x + step) - chart.to_physical(x - step)) / 2e-6
     cos, sin = chart.rotation(x, np)
     np.testing.assert_allclose([cos, sin], along_ξ / np.linalg.norm(along_ξ), rtol=1e-9)
+
+
+@pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))
+def test_distances_from_the_edges_are_those_of_positions(chart):
+    left, right = chart.surface_coordinate(np.array([-1.0, 1.0]))
+    s = left + (right - left) * np.array([1e-3, 0.1, 0.4, 0.6, 0.999])
+    X = chart.surface_position(s)
+    from_left, from_right, stretch = chart.under_punch(s - left, right - s)
+    # Next to an edge X itself has lost nine of sixteen digits of the distance.
+    np.testing.assert_allclose(from_left, 1.0 + X, rtol=1e-9)
+    np.testing.assert_allclose(from_right, 1.0 - X, rtol=1e-9)
+    np.testing.assert_allclose(stretch, chart.surface_stretch(s), rtol=1e-9)

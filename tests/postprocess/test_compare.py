@@ -7,6 +7,10 @@ X = np.array([-1.5, -0.5, 0.0, 0.5, 1.5])
 
 EXACT = np.array([[2.0, -1.0, -1.0, -1.0, 4.0]])
 
+INSIDE = np.array([[-0.5, 0.2]])
+
+METHODS = ("closed_form", "fem")
+
 PRESSURE = np.array([[np.nan, -1.0, -2.0, -1.0, np.nan]])
 
 
@@ -30,13 +34,14 @@ def archive(**changes):
         "surface/fem/sigma_XX": EXACT,
         "surface/fem/sigma_YY": PRESSURE,
         "surface/fem/sigma_YY_raw": PRESSURE,
+        **{f"interior/{method}/sigma_{ij}": INSIDE for method in METHODS for ij in ("XX", "YY", "XY")},
     } | changes
     return {found.name: found.value for found in compare.comparisons(data, 10.0)}
 
 
 def test_what_agrees_is_zero():
     found = archive()
-    assert len(found) == 7 and max(found.values()) == 0.0
+    assert len(found) == 8 and max(found.values()) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -51,6 +56,7 @@ def test_what_agrees_is_zero():
         ("states/fem/beta", [-0.62], compare.EXPONENTS, 0.02),
         ("states/fem/slope_under_punch", [0.1], compare.SLOPE, 0.1),
         ("surface/fem/sigma_YY", [[np.nan, -1.0, -2.2, -1.0, np.nan]], compare.PRESSURE, 0.1),
+        ("interior/fem/sigma_XY", [[-0.5, 0.25]], compare.INSIDE, 0.1),
         ("surface/fem/sigma_XX", [[2.4, -1.0, -1.0, -1.0, 4.0]], compare.IN_PLANE, 0.1),
     ],
 )

@@ -1,6 +1,8 @@
 import numpy as np
+from scipy.integrate import newton_cotes
 from scipy.special import eval_jacobi, roots_jacobi
 
+from galinx.meshes.halfplane import MESHES
 from galinx.postprocess import pressure
 
 α = np.array([-0.5, -0.42, -0.7])
@@ -45,3 +47,22 @@ def test_fitted_exponents():
     found = pressure.fitted_exponent(d, σ)
     np.testing.assert_allclose(found[:2], [-0.43, -0.6], rtol=1e-12)
     assert np.isnan(found[2])
+
+
+def test_a_pressure_is_recovered_from_its_nodal_forces():
+    """-1/√(1 - r²) is a constant of the confocal chart's surface coordinate, so its forces are exact."""
+    degree, facets, chart = 4, 60, MESHES["confocal"].chart
+    s = np.linspace(-np.pi / 2.0, np.pi / 2.0, facets * degree + 1)
+    forces = np.zeros_like(s)
+    for first in range(0, len(s) - 1, degree):
+        forces[first : first + degree + 1] -= newton_cotes(degree)[0] * (s[1] - s[0])
+    r = np.array([-1.5, -0.8, 0.0, 0.33, 0.9, 1.2])
+    maps = pressure.contact_recovery(s, degree, chart, r, farthest=1e-2)
+    inside = np.abs(r) < 1.0
+    found = forces @ maps.raw
+    assert np.isnan(found[~inside]).all()
+    np.testing.assert_allclose(found[inside], -1.0 / np.sqrt(1.0 - r[inside] ** 2), rtol=1e-11)
+    # ∫ T_k/√(1 - r²) dr is π for k = 0 and else 0; nodes interpolate T_k = cos(kθ).
+    np.testing.assert_allclose(forces @ maps.moments, [-np.pi] + 8 * [0.0], atol=1e-9)
+    # The second term of the pressure at an edge bends d^(-1/2) by a quarter of the distance.
+    np.testing.assert_allclose(maps.exponents(forces[None]), [[-0.5, -0.5]], atol=1e-2 / 4.0)

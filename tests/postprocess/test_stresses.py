@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from galinx.postprocess import stresses
-from galinx.solvers.solids.isotropic import Solid
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame, Solid
 
 
 @pytest.mark.parametrize("plane", ["strain", "stress"])
@@ -23,6 +24,23 @@ def test_stresses_of_gradients_are_those_of_known_states(ν, plane):
     along_X, along_Y = np.diag([1.0, -contraction]), np.diag([-contraction, 1.0])
     found = stresses.stresses_inside(κ, np.array([along_X, along_Y]))
     np.testing.assert_allclose(found, [[pulled, 0.0], [0.0, pulled], [0.0, 0.0]], rtol=1e-14, atol=1e-14)
+
+
+@pytest.mark.parametrize("κ", [1.0, 2.0, 2.6])
+def test_the_surface_stress_of_an_exact_strain_is_that_of_eq_32(κ):
+    """u,X = q σ_YY + m H[σ_XY] of the closed form, beside and under the punch."""
+    punch, X = FlatPunch(MovingFrame(κ, 0.6), -0.66), np.array([-2.0, -0.9, 0.1, 0.7, 1.3])
+    frame, σ_YY = punch.frame, punch.σ_YY(X)
+    u_X = frame.q * σ_YY + frame.m * punch.g * punch.hilbert(X)
+    beside_free = np.where(np.abs(X) < 1.0, σ_YY, np.nan)
+    found = stresses.σ_XX_on_surface(κ, u_X, beside_free)
+    np.testing.assert_allclose(found, punch.σ_XX(X), rtol=1e-13)
+
+
+def test_flatness_compares_slopes_under_the_punch_with_those_beside_it():
+    X = np.array([-1.5, -1.05, -0.95, -0.5, 0.9, 1.1])
+    v_X = np.array([[4.0, 99.0, 99.0, -1.0, 0.5, -2.0], [2.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
+    np.testing.assert_array_equal(stresses.flatness(X, v_X), [0.25, 0.5])
 
 
 def test_stress_measures_follow_from_principal_stresses():

@@ -6,7 +6,7 @@ from support import HOME
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.states import enumerate_states, pieces, speeds
 from galinx.app.plan.words import lines
 from galinx.app.scene.scene import read
 
@@ -89,3 +89,22 @@ def test_what_will_cost_accuracy_is_warned_of(changes, message):
 def test_what_cannot_be_is_refused(changes, message):
     with pytest.raises(BadInput, match=message):
         make_plan(template("tables4_5", changes))
+
+
+@pytest.mark.parametrize("sign, ratio", [("physical", -1.0), ("eq25", 1.0)])
+def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
+    """A punch that goes forward drags the surface along: σ_XY has the sign of -σ_YY f."""
+    states = enumerate_states(template("tables4_5", {"friction.sign": sign}))
+    assert (states.f > 0.0).any() and (states.f < 0.0).any()
+    assert list(states.g) == list(ratio * states.f)
+
+
+@pytest.mark.parametrize("size, count", [(4, 2), (6, 1), (1, 6)])
+def test_states_are_taken_in_pieces_of_one_speed(size, count):
+    states = enumerate_states(template("tables4_5"))
+    found = list(pieces(states, size))
+    assert len(found) == 2 * count
+    assert [i for rows in found for i in range(12)[rows]] == list(range(12))
+    for rows in found:
+        assert len(set(states.c[rows])) == 1 and rows.stop - rows.start <= size
+    assert list(pieces(states, size, 0.6)) == found[count:]

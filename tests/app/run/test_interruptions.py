@@ -31,12 +31,12 @@ SWEEP = {
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory):
-    """The scene of a sweep, and its archive as undisturbed."""
+    """The scene of a sweep, what its undisturbed archive has, and that archive."""
     folder = tmp_path_factory.mktemp("sweep")
     scene, target = folder / "sweep.toml", folder / "whole.h5"
     scene.write_text(template("tables4_5", SWEEP).text, encoding="utf-8")
     assert command("run", scene, "-o", target).returncode == 0
-    return scene, contents(target)
+    return scene, contents(target), target
 
 
 def contents(path):
@@ -77,7 +77,7 @@ def wait_for_parts(folder, count=1):
 
 
 def test_killed_at_any_moment_and_resumed_gives_the_same_archive(sweep, tmp_path):
-    scene, whole = sweep
+    scene, whole, _ = sweep
     moments = random.Random(3)
     resumed = 0
     for n in range(KILLS):
@@ -95,7 +95,7 @@ def test_killed_at_any_moment_and_resumed_gives_the_same_archive(sweep, tmp_path
 
 
 def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
-    scene, whole = sweep
+    scene, whole, _ = sweep
     target = tmp_path / "out.h5"
     with started("run", scene, "-o", target) as process:
         wait_for_parts(tmp_path, 3)
@@ -113,7 +113,7 @@ def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
 
 
 def test_a_killed_rank_ends_the_job_and_the_rest_is_resumed(sweep, tmp_path):
-    scene, _ = sweep
+    scene, *_ = sweep
     target = tmp_path / "out.h5"
     with started("-n", "2", "run", scene, "-o", target) as process:
         wait_for_parts(tmp_path, 2)
@@ -139,7 +139,7 @@ def rank_of(pid):
 
 
 def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):
-    scene, whole = sweep
+    scene, whole, _ = sweep
     target = tmp_path / "out.h5"
     with started("run", scene, "-o", target) as process:
         wait_for_parts(tmp_path)
@@ -185,7 +185,7 @@ def tiny_disk(tmp_path):
 
 
 def test_a_full_disk(sweep, tiny_disk):
-    scene, whole = sweep
+    scene, whole, _ = sweep
     target = tiny_disk / "out.h5"
     target.write_bytes(b"an earlier archive")
     done = command("run", scene, "-o", target, "--overwrite")
@@ -198,10 +198,8 @@ def test_a_full_disk(sweep, tiny_disk):
     same(contents(target), whole)
 
 
-def test_a_full_disk_for_a_field(sweep, tiny_disk, tmp_path):
-    scene, _ = sweep
-    archive = tmp_path / "out.h5"
-    assert command("run", scene, "-o", archive).returncode == 0
+def test_a_full_disk_for_a_field(sweep, tiny_disk):
+    *_, archive = sweep
     subprocess.run(["mount", "-o", "remount,size=100k", str(tiny_disk)], check=True)
     done = command("fields", archive, "-o", tiny_disk / "state.hdf")
     assert done.returncode == 3 and "Traceback" not in done.stderr
@@ -210,7 +208,7 @@ def test_a_full_disk_for_a_field(sweep, tiny_disk, tmp_path):
 
 
 def test_a_folder_that_cannot_be_written(sweep, tiny_disk):
-    scene, _ = sweep
+    scene, *_ = sweep
     subprocess.run(["mount", "-o", "remount,ro", str(tiny_disk)], check=True)
     done = command("run", scene, "-o", tiny_disk / "out.h5")
     assert done.returncode == 3 and "Read-only file system" in done.stderr

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
+from support import HOME
 
 from galinx.meshes.halfplane import MESHES
 from galinx.meshes.rings import TAGS, QuadMesh
@@ -16,7 +17,7 @@ from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
-STORED = Path(__file__).parent / "reference" / "stored_mesh.npz"
+STORED = HOME / "tests" / "reference" / "stored_mesh.npz"
 
 #: K_I left and right by speed, at g = -0.66, degree 7: computed with dolfinx 0.5.2, PETSc 3.18, gmsh 4.8.
 K_I = {

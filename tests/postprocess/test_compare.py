@@ -4,13 +4,9 @@ import pytest
 from galinx.postprocess import compare
 
 X = np.array([-1.5, -0.5, 0.0, 0.5, 1.5])
-
 EXACT = np.array([[2.0, -1.0, -1.0, -1.0, 4.0]])
-
 INSIDE = np.array([[-0.5, 0.2]])
-
 METHODS = ("closed_form", "fem")
-
 PRESSURE = np.array([[np.nan, -1.0, -2.0, -1.0, np.nan]])
 
 

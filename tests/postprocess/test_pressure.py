@@ -6,7 +6,6 @@ from galinx.meshes.halfplane import MESHES
 from galinx.postprocess import pressure
 
 α = np.array([-0.5, -0.42, -0.7])
-
 β = -1.0 - α
 
 

@@ -23,11 +23,8 @@ from galinx.app.scene.scene import parse
 from galinx.solvers.solids.isotropic import Solid, rayleigh_speed
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
-
 SCENES = 2000 if THOROUGH else 300
-
 STATES = 40 if THOROUGH else 8
-
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted((HOME / "scenes").glob("*.toml"))]
 
 #: What a value may become.

@@ -42,3 +42,15 @@ def test_runge_kutta_refuses_a_step_beyond_its_stability():
     assert abs(runge_kutta(Dahl(0.1, 0.99 * λ), 0.0, 1, length, 20).f[-1]) < 0.2
     with pytest.raises(ValueError, match="exact"):
         runge_kutta(Dahl(0.1, 1.01 * λ), 0.0, 1, length, 20)
+
+
+@pytest.mark.parametrize("f0, s, δ", [(0.0, 1, 1.0), (-0.5, 1, 2.0), (0.3, -1, 1.5)])
+def test_the_stability_limit_is_that_of_the_steepest_slope(f0, s, δ):
+    """The rate is steepest where a stroke starts; λ h times its slope there is what the scheme bears."""
+    steps, length, ε = 20, 1e-4, 1e-6
+    law = Dahl(0.5, 1.0, δ)
+    slope = abs(law.rate(f0 + ε, s) - law.rate(f0 - ε, s)) / (2.0 * ε)
+    λ = RK4_STABILITY_LIMIT * steps / (length * slope)
+    runge_kutta(Dahl(0.5, 0.999 * λ, δ), f0, s, length, steps)
+    with pytest.raises(ValueError, match="exact"):
+        runge_kutta(Dahl(0.5, 1.001 * λ, δ), f0, s, length, steps)

@@ -10,6 +10,8 @@ import numpy as np
 HOME = Path(__file__).parent.parent
 #: The scene of the study's Tables 4 and 5.
 SCENE = HOME / "scenes" / "tables4_5.toml"
+#: With these a run compiles the forms of three degrees only.
+FEW_DEGREES = ("--set", "motion.c=0.3", "--set", "solve.tolerance=1e-3")
 
 
 def computed(name="tables4_5", changes=None):

@@ -6,7 +6,7 @@ import sys
 
 import h5py
 import numpy as np
-from support import HOME, SCENE, command
+from support import FEW_DEGREES, HOME, SCENE, command
 
 from galinx import load
 
@@ -87,9 +87,10 @@ def test_a_second_run_compiles_nothing_and_makes_no_mesh(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     listings = []
     for _ in range(2):
-        done = command("run", "scenes/high_speed.toml", "-o", tmp_path / "out.h5", "--overwrite")
+        done = command("run", SCENE, "-o", tmp_path / "out.h5", "--overwrite", *FEW_DEGREES)
         assert done.returncode == 0, done.stderr
         files = (tmp_path / "galinx").rglob("*")
         listings.append({path: path.stat().st_mtime_ns for path in files if path.is_file()})
     assert any(path.suffix == ".so" for path in listings[0])
+    assert any(path.parent.name == "meshes" for path in listings[0])
     assert listings[0] == listings[1]

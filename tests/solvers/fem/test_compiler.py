@@ -8,12 +8,10 @@ import time
 
 import pytest
 from mpi4py import MPI
-from support import HOME, clean_environment, command
+from support import FEW_DEGREES, HOME, SCENE, clean_environment, command
 
 from galinx.solvers.errors import CompilerError
 from galinx.solvers.fem.compiler import compiling
-
-SCENE = HOME / "scenes" / "tables4_5.toml"
 
 
 @pytest.fixture
@@ -24,14 +22,14 @@ def cache(tmp_path, monkeypatch):
 
 def test_stubs_of_a_killed_run_are_swept(cache):
     """FFCx alone would wait ten seconds for each and then give up."""
-    assert command("run", SCENE, "-o", cache / "one.h5").returncode == 0
+    assert command("run", SCENE, "-o", cache / "one.h5", *FEW_DEGREES).returncode == 0
     compiled = list((cache / "galinx").rglob("*.c.cached"))
     assert compiled
     for ready in compiled:  # as they are left by SIGKILL in the compiler
         ready.unlink()
         ready.with_suffix("").write_text("", encoding="utf-8")
     started = time.monotonic()
-    done = command("run", SCENE, "-o", cache / "two.h5")
+    done = command("run", SCENE, "-o", cache / "two.h5", *FEW_DEGREES)
     assert done.returncode == 0, done.stderr
     assert time.monotonic() - started < 10.0
 

@@ -1,14 +1,60 @@
-"""Shared data of the tests: published tables, reference values, and one run of Tables 4-5."""
+"""What is computed once and read by many tests, and which tests are fast, which meet dolfinx.
+
+A test is ``fast``, or ``fem`` and to be run with every dolfinx, or of the pages and neither. None says so
+itself: its place does, and the fixtures that it asks for.
+"""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+from support import HOME, SCENE, command, computed
 
-HOME = Path(__file__).parent.parent
+#: Where tests compute no finite elements and start no process.
+FAST = (
+    "app/plan/", "app/scene/", "app/study/test_published.py", "docs/test_docs.py",
+    "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
+    "solvers/sie/", "solvers/solids/", "test_architecture.py",
+)  # fmt: skip
+#: Fixtures that compute; what asks for one is not fast wherever it is.
+SLOW = {"tables_run", "map_run", "inside_run", "archives"}
+#: Tests of pages start programs, but nothing in them depends on the version of dolfinx.
+PAGES = "docs/"
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        place = item.path.relative_to(Path(__file__).parent).as_posix()
+        if place.startswith(FAST) and not SLOW & set(item.fixturenames):
+            item.add_marker("fast")
+        elif not place.startswith(PAGES):
+            item.add_marker("fem")
+
+
+def pytest_sessionfinish(session, exitstatus):
+    """On several ranks, where only tests/mpi is looked at, a selection may leave nothing to run."""
+    mpi = getattr(sys.modules.get("mpi4py"), "MPI", None)
+    if exitstatus == pytest.ExitCode.NO_TESTS_COLLECTED and mpi and mpi.COMM_WORLD.size > 1:
+        session.exitstatus = pytest.ExitCode.OK
+
+
+@pytest.fixture(autouse=True)
+def _fast_tests_keep_their_word(request, monkeypatch):
+    """Neither a process nor a finite element space can be made in a fast test."""
+    if not request.node.get_closest_marker("fast"):
+        return
+
+    def refuse(*_, **__):
+        raise AssertionError("this test is not fast: name its place or fixture in conftest.py")
+
+    monkeypatch.setattr(subprocess, "Popen", refuse)
+    if space := sys.modules.get("galinx.solvers.fem.space"):
+        monkeypatch.setattr(space.Space, "__init__", refuse)
+    else:
+        monkeypatch.setitem(sys.modules, "dolfinx", None)
 
 
 @pytest.fixture(scope="session")
@@ -26,48 +72,48 @@ def references():
 
 @pytest.fixture(scope="session")
 def tables_run():
-    """Datasets and attributes of scenes/tables4_5.toml."""
-    return run_scene("tables4_5")
+    """The result of scenes/tables4_5.toml."""
+    return computed()
 
 
-def run_scene(name, *changes):
-    """Compute a scene of scenes/, its text changed by (old, new) pairs first."""
-    from galinx.app.run.collector import Memory
-    from galinx.app.run.compute import compute
-    from galinx.app.scene.scene import parse
-
-    text = (HOME / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert old in text, f"{old!r} is not in scenes/{name}.toml"
-        text = text.replace(old, new)
-    data = Memory()
-    return data, compute(parse(text), data)
+@pytest.fixture(scope="session")
+def inside_run():
+    """The result of scenes/inside.toml to a tolerance that is met at once."""
+    return computed("inside", {"solve.tolerance": 1e-3})
 
 
-def command(*arguments, cwd=HOME):
-    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text."""
-    return subprocess.run(
-        [str(HOME / "run.sh"), *map(str, arguments)],
-        cwd=cwd, env=clean_environment(), capture_output=True, text=True, timeout=300,
-        stdin=subprocess.DEVNULL,
-    )  # fmt: skip
-
-
-def mpirun(ranks, *arguments):
-    """The command that starts this Python on some ranks."""
-    beside = Path(sys.executable).with_name("mpirun")
-    program = str(beside) if beside.exists() else "mpirun"
-    return [program, "-n", str(ranks), sys.executable, *map(str, arguments)]
-
-
-def clean_environment():
-    """The environment without what MPI leaves there, which a second mpirun would trip over."""
-    mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "ORTE_", "HYDRA_", "HYDI_", "MPIR_")
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(mpi)}
-    return kept | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-        "PYTHONPATH": str(HOME),
+@pytest.fixture(scope="session")
+def map_run():
+    """The same with a map of stresses inside, so that it has every figure."""
+    changes = {
+        "output.quantities": ["friction", "sif", "surface", "interior"],
+        "output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]},
     }
+    return computed("tables4_5", changes)
+
+
+class Archived(NamedTuple):
+    """A finished command's archive and output."""
+
+    path: Path
+    said: str
+
+
+@pytest.fixture(scope="session")
+def archives(tmp_path_factory):
+    """What the command makes of scenes/tables4_5.toml on one and on two ranks, and what it says."""
+    folder = tmp_path_factory.mktemp("archives")
+    made = []
+    for ranks in ((), ("-n", "2")):
+        path = folder / f"{len(ranks)}.h5"
+        done = command(*ranks, "run", SCENE, "-o", path)
+        assert done.returncode == 0, done.stderr
+        assert "verdict: PASS" in done.stdout
+        made.append(Archived(path, done.stdout))
+    return made
+
+
+@pytest.fixture(scope="session")
+def archive(archives):
+    """The path of the archive that one rank made; to be read only."""
+    return archives[0].path

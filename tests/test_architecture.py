@@ -2,8 +2,7 @@
 
 import ast
 
-import pytest
-from conftest import HOME
+from support import HOME
 
 ROOMS = ("app", "meshes", "solvers", "postprocess")
 #: Libraries that are met in one place only.
@@ -28,38 +27,74 @@ def imports(path):
             yield node.module.removeprefix("galinx.")
 
 
-FILES = [path for room in ROOMS for path in sorted((HOME / room).rglob("*.py"))]
+#: By their place below the project's folder.
+FILES = {
+    path.relative_to(HOME).as_posix(): path for room in ROOMS for path in (HOME / room).rglob("*.py")
+}
+#: What the mechanics outside solvers/fem/ is made of.
+PURE = {
+    "solvers", "registry", "numpy", "scipy", "math", "dataclasses", "functools", "collections", "typing"
+}  # fmt: skip
+#: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics.
+OTHERS = {"postprocess": {"solvers"}}
+#: Lines of a file, and of a function from its name to its end, that can be read in one go.
+LONGEST_FILE, LONGEST_FUNCTION = 330, 50
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(HOME)))
-def test_imports(path):
-    name = path.relative_to(HOME).as_posix()
-    found = set(imports(path))
-    roots = {module.split(".")[0] for module in found}
-    allowed = {
-        "app": set(ROOMS),
-        "postprocess": {"postprocess"},
-        "meshes": {"meshes"},
-        "solvers": {"solvers"},
-    }
-    assert not (roots & set(ROOMS)) - allowed[path.relative_to(HOME).parts[0]]
+def faults_of_imports(name, found):
+    """What a file imports against the rules of its room."""
+    roots, room = {module.split(".")[0] for module in found}, name.split("/")[0]
+    if room != "app":
+        foreign = (roots & set(ROOMS)) - {room} - OTHERS.get(room, set())
+        yield from (f"{name} imports from {other}/" for other in foreign)
+    if room == "postprocess" and any(module.startswith("solvers.fem") for module in found):
+        yield f"{name} imports finite elements"
     for library, places in ONE_PLACE.items():
-        assert library not in roots or name.startswith(tuple(places))
-    if name.startswith("solvers/") and not name.startswith("solvers/fem/"):
-        assert roots <= {
-            "solvers",
-            "numpy",
-            "scipy",
-            "math",
-            "dataclasses",
-            "functools",
-            "collections",
-            "typing",
-        }
+        if library in roots and not name.startswith(tuple(places)):
+            yield f"{name} imports {library}, which is met in {', '.join(sorted(places))} only"
     if name.startswith("solvers/fem/"):
-        assert not any(module.startswith(("solvers.sie", "solvers.friction")) for module in found)
+        apart = ("solvers.sie", "solvers.friction")
+        yield from (f"{name} imports {module}" for module in found if module.startswith(apart))
+    elif room == "solvers":
+        yield from (f"{name} imports {root}, and is no finite element" for root in roots - PURE)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(HOME)))
-def test_files_stay_readable(path):
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= 330
+def faults_of_length(name, text):
+    """What is too long in a file to be read."""
+    if (lines := len(text.splitlines())) > LONGEST_FILE:
+        yield f"{name} has {lines} lines"
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            lines = node.end_lineno - node.lineno + 1
+            if lines > LONGEST_FUNCTION:
+                yield f"{name}: {node.name} has {lines} lines"
+
+
+def test_rooms_import_what_they_may():
+    assert len(FILES) > 80
+    faults = [
+        fault for name, path in FILES.items() for fault in faults_of_imports(name, set(imports(path)))
+    ]
+    assert not faults, "\n".join(faults)
+
+
+def test_files_and_functions_stay_readable():
+    faults = [
+        fault
+        for name, path in FILES.items()
+        for fault in faults_of_length(name, path.read_text(encoding="utf-8"))
+    ]
+    assert not faults, "\n".join(faults)
+
+
+def test_what_is_against_the_rules_is_found():
+    assert list(faults_of_imports("solvers/sie/x.py", {"numpy", "meshes.rings"})) == [
+        "solvers/sie/x.py imports from meshes/",
+        "solvers/sie/x.py imports meshes, and is no finite element",
+    ]
+    assert list(faults_of_imports("app/x.py", {"solvers.fem", "gmsh"})) == [
+        "app/x.py imports gmsh, which is met in meshes/gmsh_model.py only"
+    ]
+    assert list(faults_of_imports("solvers/fem/x.py", {"dolfinx", "solvers.sie.fourier"}))
+    assert list(faults_of_length("x.py", "def f():\n" + 50 * "    pass\n")) == ["x.py: f has 51 lines"]
+    assert list(faults_of_length("x.py", 331 * "\n")) == ["x.py has 331 lines"]

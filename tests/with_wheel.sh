@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All tests with the dolfinx of PyPI (0.11, MPICH of its own), in a virtual environment.
+# The tests that meet dolfinx, with that of PyPI (0.11, MPICH of its own), in a virtual environment.
 #   tests/with_wheel.sh [FOLDER]       default: a folder in the user's cache
 # Says that it is skipped, and ends well, where no Python of 3.12 or newer is found.
 set -euo pipefail
@@ -28,4 +28,4 @@ if [ ! -x "$folder/bin/mpirun" ]; then
 fi
 export GALINX_PYTHON="$folder/bin/python"
 echo "with $("$folder/bin/pip" list 2>/dev/null | grep -i '^dolfinx' | tr -s ' ')"
-"$home/run.sh" test "${@:2}"
+"$home/run.sh" test -m fem "${@:2}"

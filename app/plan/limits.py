@@ -69,7 +69,12 @@ def check_places(scene: Scene, places: Places) -> None:
     """
     if not len(places.points):
         return
-    check_distance(scene, "output.points", "a coordinate of ", float(np.abs(places.points).max()))
+    far, limit = float(np.abs(places.points).max()), inner(scene)
+    if far > limit:
+        raise BadInput(
+            f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
     if scene.solid.nearly_incompressible:
         raise BadInput(
             f"output.points: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
@@ -77,18 +82,9 @@ def check_places(scene: Scene, places: Places) -> None:
         )
 
 
-def check_distance(scene: Scene, key: str, what: str, found: float) -> None:
-    """Is a distance over a well inside the scene's mesh?
-
-    Raises:
-        BadInput: it is not positive, or too large.
-    """
-    limit = _INNER * MESHES[scene.solve.mesh].reach(scene.solve.tolerance)
-    if not 0.0 < found <= limit:
-        raise BadInput(
-            f"{key}: found {what}{found:g} a, expected more than 0 and at most {limit:g} a with the "
-            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
-        )
+def inner(scene: Scene) -> float:
+    """Distance over a up to which finite elements tell fields inside: well inside the scene's mesh."""
+    return _INNER * MESHES[scene.solve.mesh].reach(scene.solve.tolerance)
 
 
 def warnings_of(fem: FemPlan) -> Iterator[str]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
-from galinx.app.plan.limits import check_distance
+from galinx.app.plan.limits import inner
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, speeds
 from galinx.app.plan.task import Plan, Task
@@ -161,7 +161,12 @@ def _check(scene: Scene, extent: float) -> None:
             f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
             "elements"
         )
-    check_distance(scene, "extent", "", extent)
+    limit = inner(scene)
+    if not 0.0 < extent <= limit:
+        raise BadInput(
+            f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
 
 
 def _sampled(state: _State, extent: float) -> tuple[Any, Any]:

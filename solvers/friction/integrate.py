@@ -96,16 +96,14 @@ def adaptively(
     """
     from scipy.integrate import solve_ivp  # slow to import, and exact laws do without
 
-    order = np.argsort(slip)
+    at, back = np.unique(np.minimum(slip, length), return_inverse=True)
     found = solve_ivp(
         lambda _, state: law.rate(state, s, V), (0.0, length), z, method="DOP853",
-        t_eval=np.minimum(slip[order], length), rtol=TOLERANCES[0], atol=TOLERANCES[1],
+        t_eval=at, rtol=TOLERANCES[0], atol=TOLERANCES[1],
     )  # fmt: skip
     if not found.success:
         raise ValueError(f"{type(law).__name__} could not be integrated: {found.message}")
-    states = np.empty((len(slip), len(z)))
-    states[order] = found.y.T
-    return states
+    return found.y.T[back]
 
 
 def by_runge_kutta(

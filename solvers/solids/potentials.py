@@ -29,12 +29,22 @@ def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -
     X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
     if np.any(Y >= 0.0):
         raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use FlatPunch on the surface")
+    Φ_s, d = _potentials(frame, α, β, X, Y)
+    return np.array(field(frame, g, -Φ_s.imag, Φ_s.real, -d.imag, d.real))
+
+
+def field(frame: Any, g: Any, s_s: Any, h_s: Any, s: Any, h: Any) -> tuple[Any, Any, Any]:
+    """σ_XX, σ_YY, σ_XY of a potential Φ; plain arithmetic, so that symbols of a proof may stand for numbers.
+
+    Args:
+        frame: constants of the moving frame.
+        g: σ_XY/σ_YY on the surface.
+        s_s, h_s: -Im and Re of Φ(z_s).
+        s, h: the same of (Φ(z_d) - Φ(z_s))/c².
+    """
     k, β_s, β_d, e, r, q, κ = (
         frame.k, frame.β_s, frame.β_d, frame.e, frame.r, frame.q, frame.κ
     )  # fmt: skip
-    Φ_s, d = _potentials(frame, α, β, X, Y)
-    s_s, h_s, s, h = -Φ_s.imag, Φ_s.real, -d.imag, d.real
-
     u_X = (e * s + β_s * g * (2.0 * h + h_s)) / r + q * s_s
     v_Y = (
         -(β_d**2) * e * s
@@ -48,7 +58,7 @@ def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -
     dilatation = (c2 * (e * s + 2.0 * g * β_s * h) + 2.0 * β_s * g * h_s + of_s_s * s_s) / ((κ + 1.0) * r)
     σ_XX = u_X - v_Y + 2.0 * dilatation  # Eq 6
     σ_YY = v_Y - u_X + 2.0 * dilatation  # Eq 7
-    return np.array([σ_XX, σ_YY, σ_XY])
+    return σ_XX, σ_YY, σ_XY
 
 
 def _potentials(

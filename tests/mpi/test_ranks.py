@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
-from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
+from support import space_on
 
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.fem import surface
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -18,23 +16,20 @@ from galinx.solvers.solids.isotropic import MovingFrame
 REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)
 
 
-def on(comm, mesh, mixed=False):
-    kind = MESHES[mesh]
-    piece = kind.build(REFINEMENT, 1, comm.rank, comm.size)
-    return Space(*distribute(piece, comm), TAGS, kind.chart, 5, mixed)
-
-
-@pytest.mark.parametrize("mesh, mixed", [("confocal", False), ("graded", False), ("confocal", True)])
-def test_a_shared_mesh_gives_what_one_rank_gives(mesh, mixed):
+@pytest.mark.parametrize(
+    "mesh, form",
+    [("confocal", "isotropic"), ("graded", "isotropic"), ("confocal", "nearly incompressible")],
+)
+def test_a_shared_mesh_gives_what_one_rank_gives(mesh, form):
     states, traces, gradients = [], [], []
     points = np.array([[0.3, -0.2], [-1.5, -0.7], [1.0, -0.01], [4.0, -40.0], [0.0, -1.0]])
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        space = on(comm, mesh, mixed)
-        punch = SlidingPunch(space, 2.0, 0.6)
+        space = space_on(mesh, REFINEMENT, 5, comm, form)
+        punch = SlidingPunch(space, MovingFrame(2.0, 0.6))
         states.append(punch.states(-0.66))
         trace = surface.gather(space, punch.fields[:3])
         traces.append(trace.derivative(np.array([-1.9, -0.7, 0.3, 1.2, 1.8])))
-        inside = InteriorGradients(space, 2.0, 0.6, punch.fields, points)
+        inside = InteriorGradients(space, MovingFrame(2.0, 0.6), punch.fields, points)
         gradients.append(inside.of(states[-1].weights))
         punch.destroy()
     alone, shared = states
@@ -48,7 +43,7 @@ def test_shared_tractions_give_what_one_rank_gives():
     load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).σ_YY_by_distance
     slopes = []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        solver = LoadedHalfPlane(on(comm, "confocal"), 2.0, 0.6)
+        solver = LoadedHalfPlane(space_on("confocal", REFINEMENT, 5, comm), MovingFrame(2.0, 0.6))
         solver.load(load)
         assert solver.resultants[0] == pytest.approx(-2.0, rel=1e-12)
         slopes.append(surface.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))

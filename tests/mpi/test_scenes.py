@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from conftest import HOME
 from mpi4py import MPI
+from support import HOME
 
 from galinx.app.plan import plan
 from galinx.app.plan.plan import make_plan
-from galinx.app.run.collector import Memory
-from galinx.app.run.compute import compute
-from galinx.app.scene.scene import read
+from galinx.app.run.flow import compute
+from galinx.app.run.sinks import Memory
+from galinx.app.scene.read import read
 
 SCENES = {path.stem: read(path) for path in sorted((HOME / "scenes").glob("*.toml"))}
 #: Largest differences: relative of what a scene is run for, absolute of errors and fitted exponents, and

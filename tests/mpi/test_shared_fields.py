@@ -3,28 +3,27 @@
 import h5py
 import numpy as np
 import pytest
-from conftest import HOME
-from galinx.meshes.halfplane import MESHES
 from mpi4py import MPI
+from support import space_on
 
+from galinx import template
 from galinx.app.results.paraview import state_field, write_field
-from galinx.app.scene.scene import read
-from galinx.meshes.rings import TAGS, Refinement
-from galinx.solvers.fem.distributed import distribute
+from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.sampling import sample
-from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.isotropic import MovingFrame
 
 
 @pytest.mark.parametrize("mesh, extent", [("confocal", 5.0), ("graded", 5.0), ("confocal", 1e-3)])
 def test_ranks_sample_together_what_one_samples(mesh, extent):
-    kind, found = MESHES[mesh], []
+    found = []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        cells = kind.build(Refinement(5, 0.35, 2, (3.0,) * 4), 1, comm.rank, comm.size)
-        space = Space(*distribute(cells, comm), TAGS, kind.chart, 5)
-        punch = SlidingPunch(space, 2.0, 0.6)
+        space = space_on(mesh, Refinement(5, 0.35, 2, (3.0,) * 4), 5, comm)
+        punch = SlidingPunch(space, MovingFrame(2.0, 0.6))
         weights = punch.states(-0.66).weights[0]
-        found.append(sample(space, 2.0, 0.6, punch.fields, weights, extent, 4).gathered(comm))
+        found.append(
+            sample(space, MovingFrame(2.0, 0.6), punch.fields, weights, extent, 4).gathered(comm)
+        )
         punch.destroy()
     alone, shared = found
     assert (shared is None) == (MPI.COMM_WORLD.rank > 0)
@@ -46,7 +45,7 @@ def by_place(points, quads, data):
 
 
 def test_rank_0_writes_what_all_ranks_have(tmp_path):
-    path, scene = tmp_path / "state.hdf", read(HOME / "scenes" / "tables4_5.toml")
+    path, scene = tmp_path / "state.hdf", template("tables4_5")
     write_field(scene, 0, path, extent=2.0, degree=5)
     whole = state_field(scene, 0, extent=2.0, degree=5)
     assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)

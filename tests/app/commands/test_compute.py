@@ -1,0 +1,96 @@
+"""Commands that compute: what they write, refuse and leave undone."""
+
+import json
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+from support import FEW_DEGREES, HOME, SCENE, command
+
+from galinx import load
+
+
+def test_one_and_two_ranks_agree(archives):
+    with h5py.File(archives[0].path) as one, h5py.File(archives[1].path) as two:
+        for name in ("K_I_left", "K_I_right", "normal_force", "tangential_force", "v0"):
+            a, b = (file[f"states/fem/{name}"][()] for file in (one, two))
+            np.testing.assert_allclose(b, a, rtol=1e-9)
+        a, b = (file["surface/fem/sigma_XX"][()] for file in (one, two))
+        np.testing.assert_allclose(b, a, rtol=1e-6, atol=1e-8)
+
+
+def test_archive_layout(archive):
+    with h5py.File(archive) as file:
+        assert file["scene/text"].asstr()[()] == SCENE.read_text(encoding="utf-8")
+        states, points = len(file["states/f"]), len(file["surface/X_over_a"])
+        assert states == 12
+        for method in ("closed_form", "fem"):
+            for stress in ("sigma_YY", "sigma_XX"):
+                assert file[f"surface/{method}/{stress}"].shape == (states, points)
+        X = file["surface/X_over_a"][()]
+        assert X.min() == -5.0 and X.max() == 5.0 and not np.any(np.abs(X) == 1.0)
+        assert np.isnan(file["surface/fem/sigma_YY"][()][:, np.abs(X) > 1.0]).all()
+        assert np.isfinite(file["surface/fem/sigma_XX"][()]).all()
+        for key in ("program", "version", "schema_version", "created", "complete", "scene_sha256"):
+            assert key in file.attrs
+
+        def described(name, item):
+            if isinstance(item, h5py.Dataset):
+                assert item.attrs["units"] and item.attrs["long_name"], name
+
+        file.visititems(described)
+
+
+def test_an_archive_is_not_overwritten_unasked(archive):
+    before = archive.read_bytes()
+    done = command("run", SCENE, "-o", archive)
+    assert done.returncode == 2 and "--overwrite" in done.stderr
+    assert archive.read_bytes() == before
+
+
+def test_friction_alone_imports_no_finite_elements(tmp_path):
+    script = (
+        "import sys\nfrom click.testing import CliRunner\nfrom galinx.app.cli import cli\n"
+        f"done = CliRunner().invoke(cli, ['run', {str(HOME / 'scenes' / 'fig6.toml')!r}, '-o', "
+        f"{str(tmp_path / 'loops.h5')!r}], standalone_mode=False)\n"
+        "assert done.exception is None, done.exception\n"
+        "print([m for m in ('dolfinx', 'gmsh', 'petsc4py', 'mpi4py', 'matplotlib') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=HOME, capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_plan_computes_nothing(tmp_path):
+    done = command("plan", SCENE, cwd=tmp_path)
+    said = " ".join(done.stdout.split())  # lines are folded
+    assert done.returncode == 0 and "one factorisation" in said and not list(tmp_path.iterdir())
+
+
+def test_a_verdict_has_its_status(tmp_path):
+    scene, target = HOME / "scenes" / "box.toml", tmp_path / "box.h5"
+    done = command("run", scene, "-o", target, "--set", "solve.tolerance=1e-3")
+    assert done.returncode == 1 and "verdict: FAIL" in done.stdout
+    assert "outer boundary" in done.stderr
+
+
+def test_the_archive_holds_the_changed_scene(tmp_path):
+    done = command("run", SCENE, "-o", tmp_path / "a.h5", "--set", "friction.mu_c=0.25", "--set",
+                   'solve.methods=["closed_form"]', cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    shown = json.loads(command("show", tmp_path / "a.h5", "--json").stdout)
+    assert {state["mu_c"] for state in shown["states"]} == {0.25}
+    assert "mu_c = 0.25" in load(tmp_path / "a.h5").data["scene/text"]
+
+
+def test_a_second_run_compiles_nothing_and_makes_no_mesh(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    listings = []
+    for _ in range(2):
+        done = command("run", SCENE, "-o", tmp_path / "out.h5", "--overwrite", *FEW_DEGREES)
+        assert done.returncode == 0, done.stderr
+        files = (tmp_path / "galinx").rglob("*")
+        listings.append({path: path.stat().st_mtime_ns for path in files if path.is_file()})
+    assert any(path.suffix == ".so" for path in listings[0])
+    assert any(path.parent.name == "meshes" for path in listings[0])
+    assert listings[0] == listings[1]

@@ -1,0 +1,48 @@
+"""Commands that look at archives."""
+
+import json
+import shutil
+from pathlib import Path
+
+import h5py
+import pytest
+from support import command
+
+
+def test_show_as_json(archive):
+    shown = json.loads(command("show", archive, "--json").stdout)
+    assert shown["verdict"] == "PASS" and len(shown["states"]) == 12
+    first = shown["states"][0]
+    assert first["motion"] == "FM1" and first["closed_form"]["K_I"] == pytest.approx(0.3160757828331318)
+    assert first["fem"]["K_I_left"] == pytest.approx(first["closed_form"]["K_I"], rel=1e-6)
+
+
+def test_show_fits_a_terminal(archive):
+    shown = command("show", archive)
+    assert shown.returncode == 0 and "…" not in shown.stdout and "\x1b" not in shown.stdout
+    assert max(map(len, shown.stdout.splitlines())) <= 80
+
+
+def test_plot(archive, tmp_path):
+    done = command("plot", archive, "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    for name in ("friction", "surface"):
+        assert (tmp_path / f"{archive.stem}_{name}.png").stat().st_size > 10_000
+        assert (tmp_path / f"{archive.stem}_{name}.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_check_says_what_is_damaged(archive, tmp_path):
+    whole = Path(shutil.copy(archive, tmp_path))
+    done = command("check", whole)
+    assert done.returncode == 0 and "is whole" in done.stdout
+    with h5py.File(whole, "r+") as file:
+        file.attrs["complete"] = False
+    done = command("check", whole)
+    assert done.returncode == 1 and "fault: " in done.stdout and "faults: 1" in done.stdout
+    data = bytearray(whole.read_bytes())
+    with h5py.File(whole) as file:
+        place = file["states/fem/v0"].id.get_chunk_info(0).byte_offset
+    data[place + 3] ^= 16
+    whole.write_bytes(data)
+    done = command("check", whole)
+    assert done.returncode == 2 and "damaged" in done.stderr

@@ -1,0 +1,98 @@
+"""What commands say: 80 columns, colours on terminals only, as much as was asked for."""
+
+import os
+import pty
+import re
+import subprocess
+
+import pytest
+from support import HOME, SCENE, clean_environment, command, widest
+
+CLOSED = ("--set", 'solve.methods=["closed_form"]')
+
+
+def on_a_terminal(*arguments, cwd, **environment):
+    """Output of ``./run.sh ARGUMENTS`` on a terminal of 80 columns."""
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        [str(HOME / "run.sh"), *map(str, arguments)], cwd=cwd, stdout=theirs, stderr=theirs,
+        stdin=subprocess.DEVNULL,
+        env=clean_environment() | {"TERM": "xterm-256color", "COLUMNS": "80"} | environment,
+    )  # fmt: skip
+    os.close(theirs)
+    said = b""
+    while True:
+        try:
+            found = os.read(ours, 65536)
+        except OSError:  # Linux's way to say that nobody is at the other end
+            break
+        if not found:
+            break
+        said += found
+    os.close(ours)
+    assert process.wait(60) == 0, said
+    return said.decode()
+
+
+def test_a_run_ends_with_times_and_what_to_try_next(archives):
+    path, said = archives[0]
+    assert re.search(r"^time: [\d.]+ s", said, re.MULTILINE)
+    assert said.splitlines()[-1] == f"next: ./run.sh report {path}"
+    assert "\x1b" not in said
+
+
+@pytest.mark.parametrize(
+    "arguments", [("check",), ("plan", SCENE), ("init",), ("materials",)], ids=lambda a: a[0]
+)
+def test_output_fits_80_columns_without_colours(archive, arguments):
+    where = (archive.name,) if arguments == ("check",) else ()
+    done = command(*arguments, *where, cwd=archive.parent)
+    assert done.returncode == 0 and widest(done.stdout) <= 80 and "\x1b" not in done.stdout
+
+
+def test_colours_on_a_terminal_unless_unwanted(archive, tmp_path):
+    assert "\x1b[1;32mverdict: PASS" in on_a_terminal("show", archive, cwd=tmp_path)
+    assert "\x1b" not in on_a_terminal("show", archive, cwd=tmp_path, NO_COLOR="1")
+    # mpirun's ranks see a terminal even where there is none.
+    for count in ("1", "2"):
+        assert "\x1b" not in command("-n", count, "show", archive).stdout
+
+
+def test_progress_is_drawn_on_a_terminal_unless_quiet(tmp_path):
+    said = on_a_terminal("run", SCENE, "-o", "a.h5", cwd=tmp_path)
+    assert "finite elements at c = 0.6 (2 of 2)" in said and "%" in said
+    assert on_a_terminal("run", SCENE, "-o", "b.h5", "--quiet", *CLOSED, cwd=tmp_path) == ""
+
+
+def test_quiet_says_warnings_only(tmp_path):
+    done = command("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = command("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
+    assert done.stdout == "" and "within 1 % of the Rayleigh speed" in done.stderr
+
+
+def test_verbose_and_log_tell_every_step(tmp_path):
+    done = command("-n", "2", "run", SCENE, "-o", "a.h5", "-v", "--log", "steps.txt", cwd=tmp_path)
+    steps = [line for line in done.stderr.splitlines() if line]
+    for expected in ("mesh: confocal", "12 of 12 states", "verdict: PASS; archive: a.h5"):
+        assert steps.count(expected) == 1
+    logged = (tmp_path / "steps.txt").read_text(encoding="utf-8").splitlines()
+    assert [line.split(" ", 2)[2] for line in logged] == steps
+    assert all(re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} ", line) for line in logged)
+
+
+def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
+    # More output than a pipe holds, so that the program meets the closed end.
+    done = subprocess.run(
+        ["bash", "-c", f"{HOME / 'run.sh'} show {archive} --json | head -c 10; echo ${{PIPESTATUS[0]}}"],
+        env=clean_environment(), capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.stderr == "" and done.stdout.endswith(("0\n", "141\n"))
+
+
+def test_options_that_contradict_and_logs_that_cannot_be_written_are_refused(tmp_path):
+    both = command("run", SCENE, "-q", "-v", cwd=tmp_path)
+    assert both.returncode == 2 and "exclude each other" in both.stderr
+    nowhere = command("run", SCENE, "--log", tmp_path / "no" / "l.txt", "-o", "a.h5", cwd=tmp_path)
+    assert nowhere.returncode == 3 and "cannot write the log" in nowhere.stderr
+    assert "Traceback" not in nowhere.stderr and not (tmp_path / "a.h5").exists()

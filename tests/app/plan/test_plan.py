@@ -1,0 +1,126 @@
+"""What is planned of a scene, skipped, warned of and refused."""
+
+import numpy as np
+import pytest
+from support import HOME
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.plan import task
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.words import lines
+from galinx.app.scene.read import read
+
+
+def test_runge_kutta_beyond_its_stability_names_the_exact_integrator():
+    changes = {"friction.mu_c": 0.1, "friction.sigma0_over_load": 6e4, "friction.integrator": "rk4"}
+    scene = template("tables4_5", changes)
+    with pytest.raises(BadInput, match="exact"):
+        enumerate_states(scene)
+
+
+def test_a_value_off_by_its_unit_is_warned_of():
+    scene = template("tables4_5", {"solid.E": 193})
+    assert any("solid.E = 193 Pa" in text for text in make_plan(scene).warnings)
+
+
+def test_speed_in_metres_per_second():
+    changes = {"motion.c": None, "motion.speed": ["1.5 mm/s", "1880.4 m/s"]}
+    scene = template("tables4_5", changes)
+    assert speeds(scene) == pytest.approx((4.786e-7, 0.6), rel=1e-4)
+
+
+def test_lists_mean_their_product():
+    changes = {"friction.mu_c": [0.3, 0.7], "friction.delta": [1.0, 1.5, 2.0]}
+    scene = template("tables4_5", changes)
+    states = enumerate_states(scene)
+    assert len(states) == 2 * 2 * 3 * 3 * 2 == make_plan(scene).states
+    assert len(set(zip(*(states.columns[name].tolist() for name in ("c", "mu_c", "delta"))))) == 12
+
+
+def test_the_plan_skips_what_is_not_asked_for():
+    friction = make_plan(template("tables4_5", {"output.quantities": ["friction"]}))
+    assert not (friction.fem or friction.methods or friction.quantities)
+    closed = make_plan(template("tables4_5", {"solve.methods": ["closed_form"]}))
+    assert closed.methods == ("closed_form",) and closed.fem is None
+    assert not any(quantity.method == "fem" for quantity in closed.quantities)
+    assert any("mesh and finite elements" in text for text in closed.skipped)
+    scene = template("tables4_5", {"output.quantities": ["friction", "sif"]})
+    assert not make_plan(scene).asks("surface")
+    assert not any("surface" in text for text in lines(scene, make_plan(scene)))
+
+
+def test_the_closed_form_beyond_the_rayleigh_speed_is_formal():
+    scene = template("tables4_5", {"motion.c": 0.95, "solve.methods": ["closed_form"]})
+    assert any("formal" in warning for warning in make_plan(scene).warnings)
+
+
+def test_all_scenes_of_the_project_are_good():
+    scenes = sorted((HOME / "scenes").glob("*.toml"))
+    assert len(scenes) >= 5
+    for path in scenes:
+        assert make_plan(read(path)).states > 0
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"motion.c": 0.918}, "within 1 % of the Rayleigh speed c_R = 0.919402"),
+        ({"solve.mesh": "box"}, "boundary of the box mesh alone costs about 0.01"),
+    ],
+)
+def test_what_will_cost_accuracy_is_warned_of(changes, message):
+    (warning,) = make_plan(template("tables4_5", changes)).warnings
+    assert message in warning
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"solve.degree": 2}, "multiple of 4"),
+        ({"solve.cuts": 4}, "multiple of 4"),
+        ({"solve.degree": 2, "solve.cuts": 6}, "multiple of 4"),
+        ({"solve.degree": 2.5, "solve.cuts": 4}, "whole number"),
+        ({"solve.degree": 13, "solve.cuts": 4}, "13"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solve.mode": "traction"}, "contact"),
+        ({"solve.solver": "jacobi"}, "jacobi"),
+        ({"solve.solver": "gamg", "solid.nu": 0.5}, "indefinite"),
+        ({"solve.degree": 2, "solve.cuts": 4, "solid.nu": 0.5}, "two degrees less"),
+    ],
+)
+def test_what_cannot_be_is_refused(changes, message):
+    with pytest.raises(BadInput, match=message):
+        make_plan(template("tables4_5", changes))
+
+
+@pytest.mark.parametrize("sign, ratio", [("physical", -1.0), ("eq25", 1.0)])
+def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
+    """A punch that goes forward drags the surface along: σ_XY has the sign of -σ_YY f."""
+    states = enumerate_states(template("tables4_5", {"friction.sign": sign}))
+    f = states.columns["f"]
+    assert (f > 0.0).any() and (f < 0.0).any()
+    assert list(states.g) == list(ratio * f)
+
+
+@pytest.mark.parametrize("numbers, count", [(1, 6), (4000, 2), (10**9, 1)])
+def test_states_are_taken_in_chunks_of_one_speed(numbers, count, monkeypatch):
+    """Two speeds with six states each, of which each has 5 x 217 numbers on the surface and 13 besides."""
+    monkeypatch.setattr(task, "CHUNK_NUMBERS", numbers)
+    plan = make_plan(template("tables4_5"))
+    found = [rows for one in plan.tasks for rows in plan.chunks(one)]
+    assert len(found) == 2 * count
+    assert [i for rows in found for i in range(12)[rows]] == list(range(12))
+    assert [one.response.c for one in plan.tasks] == [4.786e-7, 0.6]
+
+
+def test_every_state_lies_on_its_archived_loop():
+    changes = {"friction.mu_c": [0.3, 0.7], "motion.X_over_L": [0.0, 0.5, 1.0]}
+    states = enumerate_states(template("tables4_5", changes))
+    assert states.loops.shape == (2, 3 * 101) and len(states.travel) == 303
+    for i in range(len(states)):
+        stroke = ["FM1", "BM1", "FM2"].index(states.columns["motion"][i])
+        here = slice(101 * stroke, 101 * (stroke + 1))
+        at = np.argmin(np.abs(states.travel[here] - states.columns["X_over_L"][i]))
+        f = states.loops[states.loop[i], here][at]
+        assert f == pytest.approx(states.columns["f"][i], rel=1e-14)

@@ -1,0 +1,154 @@
+"""Whole fields of one state, in SI, and in files that VTK reads."""
+
+import numpy as np
+import pytest
+from support import area_within, areas
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.plan.states import enumerate_states
+from galinx.app.results import paraview as fields
+from galinx.app.results.paraview import ABOUT, state_field, write_field
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
+
+
+@pytest.mark.parametrize("mode", ["contact", "traction"])
+def test_stresses_are_those_of_the_potentials(mode):
+    given = template("tables4_5", {"motion.c": [0.0, 0.6], "solve.mode": mode})
+    states = enumerate_states(given)
+    number = int(np.flatnonzero(states.columns["c"] == 0.6)[1])
+    found = state_field(given, number)
+    a, solid = given.punch.profile.half_width, given.solid
+    unit = given.punch.load / (2.0 * a)
+    X, Y = found.points.T / a
+    some = (Y <= -0.01) & (np.hypot(X, Y) <= 5.0)
+    punch = FlatPunch(MovingFrame(3.0 - 4.0 * solid.ν, 0.6), states.g[number])
+    exact = unit * punch.inside(X[some], Y[some])
+    fem = np.array([found.data[f"sigma_{ij}"][some] for ij in ("XX", "YY", "XY")])
+    assert np.abs(fem - exact).max() <= 1e-4 * np.abs(exact).max()
+    error = found.data["sigma_error"]
+    np.testing.assert_allclose(error[some], np.abs(fem - exact).max(axis=0), atol=1e-9 * unit)
+    assert np.array_equal(np.isnan(error), Y > -1e-13)
+    np.testing.assert_allclose(found.data["sigma_ZZ"][some], solid.ν * (fem[0] + fem[1]), rtol=1e-12)
+    # σ_YY at the surface is a pressure under the punch and vanishes beside it.
+    for part, level in ((np.abs(X) < 0.9, -1.0), ((np.abs(X) > 1.1) & (np.abs(X) < 5.0), 0.0)):
+        σ_YY = found.data["sigma_YY"][part & (Y > -1e-12)] / unit
+        assert σ_YY.max() < -0.3 if level else np.abs(σ_YY).max() < 1e-2
+
+
+def test_a_field_is_solved_once_and_for_any_scene(monkeypatch):
+    from galinx.solvers.fem.punch import SlidingPunch
+
+    made, true = [], SlidingPunch.__init__
+
+    def counted(self, space, *arguments, **options):
+        made.append(space.degree)
+        true(self, space, *arguments, **options)
+
+    monkeypatch.setattr(SlidingPunch, "__init__", counted)
+    given = template("tables4_5", {"output.quantities": ["friction"], "solve.methods": []})
+    field = state_field(given, 3, extent=2.0, degree=6)
+    assert made == [6]
+    assert set(field.data) == set(ABOUT) - {"sigma_error"}
+    # A speed that finite elements refuse does not stand in the way of the others.
+    fast = template("tables4_5", {"motion.c": [0.1, 0.95], "solve.methods": ["closed_form"]})
+    assert "sigma_error" in state_field(fast, 0, extent=2.0, degree=4).data
+    with pytest.raises(BadInput, match="is not below the Rayleigh speed"):
+        state_field(fast, len(enumerate_states(fast)) - 1)
+
+
+def test_given_tractions_of_the_users_own_have_a_field():
+    given = template("traction", {"solve.pressure": [[-1, -1], [1, -1]]})
+    found = state_field(given, 0)
+    X, Y = found.points.T / given.punch.profile.half_width
+    under = (Y > -1e-12) & (np.abs(X) < 0.9)
+    pressure = -found.data["sigma_YY"][under] * 2.0 * given.punch.profile.half_width / given.punch.load
+    np.testing.assert_allclose(pressure, 1.0, atol=1e-3)
+    assert "sigma_error" not in found.data
+
+
+def test_what_has_no_field_is_bad_input():
+    given = template("tables4_5")
+    count = len(enumerate_states(given))
+    for number in (-1, count):
+        with pytest.raises(BadInput, match=f"state {number}: .*0 to {count - 1}.* has {count}"):
+            state_field(given, number)
+    with pytest.raises(BadInput, match=r"expected ν <= 0\.49"):
+        state_field(template("tables4_5", {"solid.nu": 0.495}), 0)
+    box = template("tables4_5", {"solve.mesh": "box"})
+    for extent in (90.0, 0.0, np.nan):
+        with pytest.raises(BadInput, match="at most 60 a with the box mesh"):
+            state_field(box, 0, extent)
+    with pytest.raises(BadInput, match="degree: found 40, expected 4 to 13"):
+        state_field(given, 0, degree=40)
+
+
+def test_the_indentation_is_that_of_a_run(tables_run):
+    data = tables_run.data
+    given = template("tables4_5")
+    for number in (0, len(data["states/c"]) - 1):
+        speed = data["run/fem/c"].tolist().index(data["states/c"][number])
+        found = state_field(given, number, 2.0, int(data["run/fem/degree"][speed]))
+        X, Y = found.points.T / given.punch.profile.half_width
+        v = found.data["displacement"][(np.abs(X) <= 1.0) & (Y > -1e-13), 1]
+        np.testing.assert_allclose(v, -data["states/fem/v0"][number], rtol=1e-9)
+
+
+def test_lengths_and_stresses_scale_with_the_punch():
+    changes = {"punch.half_width": 2e-3, "punch.load": 3.0 * 55.3e3}
+    scenes = template("tables4_5"), template("tables4_5", changes)
+    small, large = (state_field(scene, 0, 2.0, 5) for scene in scenes)
+    np.testing.assert_allclose(large.points, 2.0 * small.points, rtol=1e-14)
+    np.testing.assert_allclose(large.data["von_mises"], 1.5 * small.data["von_mises"], rtol=1e-12)
+    np.testing.assert_allclose(large.data["displacement"], 3.0 * small.data["displacement"], rtol=1e-12)
+
+
+def test_vtk_reads_what_was_written(tmp_path):
+    reading = pytest.importorskip("vtkmodules.vtkIOHDF")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+
+    given = template("tables4_5")
+    a, path = given.punch.profile.half_width, tmp_path / "state.hdf"
+    write_field(given, 1, path, extent=3.0)
+    written = state_field(given, 1, extent=3.0)
+    reader = reading.vtkHDFReader()
+    assert reader.CanReadFile(str(path))
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    assert grid.GetNumberOfPoints() == len(written.points)
+    assert grid.GetNumberOfCells() == len(written.quads)
+    assert {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())} == {9}
+    data = grid.GetPointData()
+    assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} == set(ABOUT)
+    for name, values in written.data.items():
+        np.testing.assert_array_equal(vtk_to_numpy(data.GetArray(name)), values)
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    np.testing.assert_array_equal(points[:, :2], written.points)
+    assert not points[:, 2].any()
+    X0, X1, Y0, Y1, *_ = np.array(grid.GetBounds()) / a
+    assert -5.0 < X0 <= -3.0 and 3.0 <= X1 < 5.0 and -5.0 < Y0 <= -3.0 and Y1 == 0.0
+    size = vtkCellSizeFilter()
+    size.SetInputData(grid)
+    size.Update()
+    found = vtk_to_numpy(size.GetOutput().GetCellData().GetArray("Area"))
+    # Some VTKs take quadrilaterals of 1e-15 m² for points.
+    np.testing.assert_allclose(found, areas(written.points, written.quads), atol=1e-14)
+    assert area_within(written.points / a, written.quads, 3.0) == pytest.approx(18.0, rel=1e-9)
+
+
+def test_every_quantity_is_described():
+    given = template("tables4_5")
+    assert set(state_field(given, 0, 2.0, 4).data) == set(fields.ABOUT)
+
+
+def test_fields_of_a_cut_mesh_come_from_it():
+    changes = {"solve.degree": 2, "solve.cuts": 8, "motion.c": 0.6}
+    scenes = template("tables4_5", changes), template("tables4_5", changes | {"solve.cuts": 4})
+    field, coarse = (state_field(scene, 0, extent=3.0, degree=2) for scene in scenes)
+    assert len(field.quads) > 3 * len(coarse.quads)
+    deep = field.points[:, 1] < -0.5e-3  # half a punch's half-width
+    unit = np.abs(field.data["sigma_YY"][deep]).max()
+    assert np.nanmax(field.data["sigma_error"][deep]) < 0.02 * unit

@@ -1,0 +1,40 @@
+"""Results in Python."""
+
+import numpy as np
+import pytest
+from support import HOME, command
+
+from galinx import load, read_scene, template
+from galinx.app.errors import BadInput
+
+
+def test_named_arrays_have_units_and_the_archives_numbers(map_run):
+    states = map_run.dataset
+    assert dict(states.sizes) == {"state": 12, "X_over_a": 217, "point": 420}
+    np.testing.assert_array_equal(states.fem_K_I_right, map_run.data["states/fem/K_I_right"])
+    assert states.fem_normal_force.attrs["units"] == "N/m" and states.c.attrs["units"] == "1"
+    assert states.interior_fem_sigma_XX.dims == ("state", "point")
+
+
+def test_arrays_over_the_parameters_find_a_state_by_its_values(map_run, published):
+    K_I = map_run.grid.fem_K_I_right
+    assert set(K_I.dims) == {"c", "mu_c", "sigma0_over_load", "delta", "motion", "X_over_L"}
+    for motion, X, printed, _ in published["table5"]["rows"]:
+        assert round(K_I.sel(c=0.6, motion=motion, X_over_L=X).item(), 4) == printed
+
+
+def test_saved_and_loaded_is_the_same(map_run, tmp_path):
+    map_run.save(tmp_path / "a.h5")
+    again = load(tmp_path / "a.h5")
+    assert again.verdict == map_run.verdict == "PASS" and again.scene == map_run.scene
+    for name, values in map_run.data.items():
+        np.testing.assert_array_equal(again.data[name], values)
+    assert command("check", tmp_path / "a.h5").returncode == 0
+    with pytest.raises(BadInput, match="exists"):
+        map_run.save(tmp_path / "a.h5")
+
+
+def test_a_scene_file_is_read_with_changes():
+    assert read_scene(HOME / "scenes" / "fig5.toml", {"motion.c": 0.25}).motion.c == (0.25,)
+    with pytest.raises(BadInput, match="no such scene"):
+        template("fig99")

@@ -1,0 +1,148 @@
+"""Scenes against their closed form, from rest to near the Rayleigh speed."""
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx.postprocess import compare
+
+#: One state of scenes/tables4_5.toml.
+SINGLE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.8}
+
+
+def disagreement(result):
+    """Value of every comparison by name."""
+    load = result.scene.punch.load
+    return {found.name: found.value for found in compare.comparisons(result.data, load, compare.RULES)}
+
+
+def test_accuracy_at_the_default_tolerance(tables_run):
+    found = disagreement(tables_run)
+    assert found["K_I"] <= 1e-6
+    assert found["sigma_YY"] <= 1e-5 and found["sigma_XX"] <= 1e-4
+    assert found["exponents"] <= 2e-4
+    assert tables_run.verdict == "PASS"
+
+
+def test_forces_balance(tables_run):
+    data = tables_run.data
+    np.testing.assert_allclose(data["states/fem/normal_force"], -55.3e3, rtol=1e-9)
+    np.testing.assert_allclose(data["states/fem/tangential_force"], -55.3e3 * data["states/g"], rtol=1e-9)
+
+
+def test_work_does_not_grow_with_the_number_of_states(tables_run):
+    """At each speed a factorisation for the results, and some of lower degree that measure the error."""
+    few = tables_run.data
+    many = computed("tables4_5", {"motion.X_over_L": np.linspace(0.0, 1.0, 200).tolist()}).data
+    assert len(many["states/f"]) == 1200
+    assert list(many["run/fem/factorisations"]) == list(few["run/fem/factorisations"])
+    assert few["run/fem/factorisations"].max() <= 4
+    # Some seventeen fields at each of three degrees, each solved for and refined.
+    assert many["run/fem/back_substitutions"].max() < 120
+
+
+@pytest.mark.parametrize("mode", ["contact", "traction"])
+def test_finite_elements_need_no_closed_form(mode):
+    result = computed("tables4_5", {"solve.methods": ["fem"], "solve.mode": mode})
+    assert not any("closed_form" in name for name in result.data)
+    assert np.isfinite(result.data["surface/fem/sigma_XX"]).all()
+    assert result.verdict == "PASS"
+
+
+def test_states_at_once_are_the_states_one_by_one(tables_run):
+    one = computed("tables4_5", SINGLE | {"motion.c": 0.6}).data
+    for name in ("states/fem/K_I_left", "states/fem/v0", "surface/fem/sigma_XX"):
+        np.testing.assert_allclose(one[name][0], tables_run.data[name][7], rtol=1e-8)
+
+
+@pytest.mark.parametrize("c", [0.0, 0.9])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
+def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
+    changes = {"motion.c": c, "solve.tolerance": tolerance, "friction.mu_c": 1.0}
+    data = computed("tables4_5", changes).data
+    true, estimate = data["states/fem/true_error"].max(), data["states/fem/estimate"].max()
+    assert true <= tolerance and estimate <= tolerance
+    assert true <= 3.0 * estimate
+
+
+def test_high_speed():
+    result = computed("high_speed", {"motion.c": 0.9})
+    found = disagreement(result)
+    assert found["K_I"] <= 1e-6
+    assert found["sigma_YY"] <= 1e-4 and found["sigma_XX"] <= 1e-4
+    assert result.verdict == "PASS"
+
+
+@pytest.mark.parametrize("nu", [-0.9, 0.49, 0.4999, 0.5])
+def test_no_solid_locks(nu):
+    result = computed("tables4_5", {"solid.nu": nu})
+    found = disagreement(result)
+    assert result.verdict == "PASS"
+    assert found["K_I"] <= 1e-6 and found["sigma_XX"] <= 1e-5
+
+
+def test_graded_mesh():
+    result = computed("graded")
+    found = disagreement(result)
+    assert found["K_I"] <= 1e-5 and found["exponents"] <= 2e-3
+    assert found["sigma_YY"] <= 1e-3 and found["sigma_XX"] <= 1e-3
+    assert result.verdict == "PASS"
+
+
+def test_box_is_limited_by_its_walls():
+    result = computed("box", {"motion.c": 4.786e-7})
+    assert 1e-3 < disagreement(result)["K_I"] < 1e-2
+
+
+def test_given_tractions_leave_the_punch_flat():
+    result = computed("traction")
+    found = disagreement(result)
+    assert found["slope under the punch"] <= 1e-6 and found["sigma_XX"] <= 1e-4
+    assert result.verdict == "PASS"
+
+
+def test_a_given_uniform_traction_has_its_known_stress():
+    """Uniform σ_YY = -1 without friction at rest: σ_XX = σ_YY under the load, 0 beside it."""
+    changes = {"solve.pressure": [[-1, -1], [1, -1]], "motion.c": 0.0, "motion.X_over_L": 0.0}
+    result = computed("traction", SINGLE | changes)
+    data = result.data
+    X, σ_XX = data["surface/X_over_a"], data["surface/fem/sigma_XX"][0]
+    away = np.abs(1.0 - np.abs(X)) > 0.02
+    np.testing.assert_allclose(σ_XX[away], np.where(np.abs(X) < 1.0, -1.0, 0.0)[away], atol=1e-4)
+    assert data["states/fem/normal_force"] == pytest.approx(-55.3e3, rel=1e-12)
+    assert result.verdict == "not judged"
+
+
+def test_the_two_signs_of_friction_are_mirror_images(tables_run):
+    physical = tables_run.data
+    printed = computed("tables4_5", {"friction.sign": "eq25"}).data
+    np.testing.assert_array_equal(printed["states/g"], -physical["states/g"])
+    np.testing.assert_allclose(
+        printed["states/fem/K_I_left"], physical["states/fem/K_I_right"], rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        printed["surface/fem/sigma_XX"], physical["surface/fem/sigma_XX"][:, ::-1], rtol=1e-5, atol=1e-7
+    )
+
+
+def test_pressure_and_tension_lead_at_the_trailing_end(tables_run):
+    """Physical sign, forward: both the stronger singularity and the tension are at X = -a."""
+    data = tables_run.data
+    X = data["surface/X_over_a"]
+    behind, ahead = np.argmin(np.abs(X + 1.05)), np.argmin(np.abs(X - 1.05))
+    for i in np.flatnonzero(data["states/f"] > 0.0):
+        assert data["states/fem/beta"][i] < data["states/fem/alpha"][i]
+        assert data["surface/fem/sigma_XX"][i, behind] > 0.0 > data["surface/fem/sigma_XX"][i, ahead]
+
+
+def test_the_condition_is_recorded(tables_run):
+    data = tables_run.data
+    assert (data["run/fem/largest_condition"] > 1e3).all()
+    assert (data["run/fem/largest_condition"] < 1e7).all()
+
+
+def test_a_pressure_that_pulls_fails():
+    result = computed("traction", {"solve.pressure": [[-1, -2], [0, 1], [1, -2]]})
+    assert result.verdict == "FAIL"
+    told = "tension under the punch, over N/(2a): 1.0e+00, at most 0"
+    assert told in result.attributes["verdict_reasons"]

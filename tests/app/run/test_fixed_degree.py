@@ -1,0 +1,42 @@
+"""Meshes cut finely at a fixed degree."""
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx.solvers.fem.multigrid import LIMIT, available
+
+
+def cut(degree, cuts, c, solver="auto"):
+    """Datasets of a scene with one speed, at a fixed degree."""
+    changes = {"solve.degree": degree, "solve.cuts": cuts, "solve.solver": solver}
+    return computed("tables4_5", changes | {"motion.c": c, "motion.X_over_L": 0.8}).data
+
+
+def test_the_error_falls_at_twice_the_rate_of_the_energy_norm():
+    """K_I is a moment of the contact forces: h^(2p) at degree p = 2."""
+    coarse, fine = (cut(2, cuts, 0.6)["states/fem/true_error"] for cuts in (8, 16))
+    assert np.all(coarse / fine > 0.8 * 2**4)
+
+
+@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 4), (4, 4)])
+def test_the_estimate_covers_the_true_error(degree, cuts):
+    data = cut(degree, cuts, 0.9)
+    assert np.all(data["states/fem/true_error"] <= data["states/fem/estimate"])
+    assert list(data["run/fem/factorisations"]) == [3]
+    assert "run/fem/change_by_degree" not in data
+
+
+@pytest.fixture(scope="module")
+def direct():
+    return cut(2, 4, 0.6, "direct")
+
+
+@pytest.mark.parametrize("solver", available())
+def test_multigrid_gives_what_a_factor_gives(direct, solver):
+    iterative = cut(2, 4, 0.6, solver)
+    for side in ("left", "right"):
+        name = f"states/fem/K_I_{side}"
+        np.testing.assert_allclose(iterative[name], direct[name], rtol=1e-9)
+    assert not direct["run/fem/iterations"].any()
+    assert np.all(np.isin(iterative["run/fem/iterations"], np.arange(1, LIMIT)))

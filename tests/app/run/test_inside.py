@@ -1,0 +1,65 @@
+"""Stresses inside, against the potentials."""
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx.app.errors import BadInput
+
+
+def random_points(count, seed):
+    """Points within 5 a of the punch's middle, at least 0.01 a deep."""
+    random = np.random.default_rng(seed)
+    R, φ = 5.0 * np.sqrt(random.random(count)), -np.pi * random.random(count)
+    return np.column_stack([R * np.cos(φ), np.minimum(R * np.sin(φ), -0.01)])
+
+
+def with_points(points):
+    """Changes to a scene that ask for stresses at points."""
+    return {"output.quantities": ["sif", "interior"], "output.points": np.asarray(points).tolist()}
+
+
+@pytest.mark.parametrize("tolerance, limit", [(1e-6, 1e-4), (1e-9, 2e-6)])
+def test_stresses_inside_are_those_of_the_potentials(tolerance, limit):
+    changes = {"solve.tolerance": tolerance, "motion.c": [0.0, 4.786e-7, 0.6, 0.9]}
+    data = computed("tables4_5", with_points(random_points(200, 7)) | changes).data
+    for ij in ("XX", "YY", "XY"):
+        fem, exact = (data[f"interior/{method}/sigma_{ij}"] for method in ("fem", "closed_form"))
+        assert fem.shape == (24, 200)
+        error = np.abs(fem - exact).max(axis=1) / np.abs(exact).max(axis=1)
+        assert error.max() <= limit
+
+
+def test_nothing_inside_is_computed_unasked(tables_run):
+    data = tables_run.data
+    assert not any(name.startswith("interior/") for name in data)
+    assert "stresses inside: not in output.quantities" in data["run/skipped"]
+
+
+@pytest.mark.parametrize("mesh", ["graded", "box"])
+def test_other_meshes_and_given_tractions(mesh):
+    points = with_points(random_points(40, 3))
+    for mode in ("contact", "traction"):
+        changes = {"solve.mesh": mesh, "solve.mode": mode, "solve.tolerance": 1e-4}
+        data = computed("tables4_5", points | changes).data
+        fem, exact = (data[f"interior/{method}/sigma_XX"] for method in ("fem", "closed_form"))
+        # The box is wrong by what its walls do; the graded mesh by its degree alone.
+        assert np.abs(fem - exact).max() <= (3e-2 if mesh == "box" else 2e-3) * np.abs(exact).max()
+
+
+def test_incompressible_solids_have_stresses_inside_in_closed_form_only():
+    points = with_points([[0.0, -1.0], [0.9, -0.1]])
+    with pytest.raises(BadInput, match=r"expected ν <= 0\.49"):
+        computed("tables4_5", points | {"solid.nu": 0.5})
+    data, near = (
+        computed("tables4_5", points | {"solid.nu": ν, "solve.methods": ["closed_form"]}).data
+        for ν in (0.5, 0.4999999)
+    )
+    for ij in ("XX", "YY", "XY"):
+        name = f"interior/closed_form/sigma_{ij}"
+        np.testing.assert_allclose(data[name], near[name], rtol=1e-5, atol=1e-7)
+
+
+def test_a_point_beyond_the_mesh_is_refused():
+    with pytest.raises(BadInput, match="coordinate of 90 a, expected at most 60 a with the box mesh"):
+        computed("tables4_5", with_points([[0.0, -90.0]]) | {"solve.mesh": "box"})

@@ -1,0 +1,123 @@
+"""Random and mutated scenes: each runs, or ends with one readable message; and random legal ones agree.
+
+GALINX_THOROUGH=1 tries as many as a release does.
+"""
+
+import json
+import math
+import os
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from support import HOME
+
+from galinx import compute
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.words import expense, lines
+from galinx.app.scene.read import parse
+from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+SCENES = 2000 if THOROUGH else 300
+STATES = 40 if THOROUGH else 8
+TEXTS = [path.read_text(encoding="utf-8") for path in sorted((HOME / "scenes").glob("*.toml"))]
+
+#: What a value may become.
+_WORDS = """0 -1 nan inf -inf 1e308 1e-308 -0.0 "" "ν" "193GPa" "25mm" [] {} [[]] true "1e999Pa" [1,2,3]
+["fem"] ["forward"] 0.5 1e-9 0.999 1979-05-27 "closed_form" [[-1,-1],[1,-1]] [[0,-1]] "box" "graded"
+"traction" ["friction"] ["sif","interior"] "%s%n" "1lightyear" [0.3,"x"] 3 0.25 0.05 1e-3 1e-2"""
+
+VALUES = [*_WORDS.split(), "9" * 400]
+
+
+@st.composite
+def mutated(draw):
+    """A shipped scene with some values replaced, lines lost or repeated, or characters changed."""
+    rows = draw(st.sampled_from(TEXTS)).splitlines()
+    for _ in range(draw(st.integers(1, 4))):
+        n = draw(st.integers(0, len(rows) - 1))
+        kind = draw(st.sampled_from(["value", "value", "value", "lose", "repeat", "character", "key"]))
+        if kind == "value" and "=" in rows[n]:
+            rows[n] = rows[n].split("=")[0] + "= " + draw(st.sampled_from(VALUES))
+        elif kind == "lose" and len(rows) > 1:
+            del rows[n]
+        elif kind == "repeat":
+            rows.insert(n, rows[n])
+        elif kind == "character" and rows[n]:
+            i = draw(st.integers(0, len(rows[n]) - 1))
+            rows[n] = rows[n][:i] + draw(st.characters(blacklist_categories=["Cs"])) + rows[n][i + 1 :]
+        elif kind == "key" and "=" in rows[n]:
+            rows[n] = draw(st.sampled_from(["E", "c", "points", "speed", "methods", "title", "δ"])) + (
+                " =" + rows[n].split("=", 1)[1]
+            )
+    return "\n".join(rows)
+
+
+@settings(max_examples=SCENES, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(text=mutated())
+def test_a_mutated_scene_runs_or_is_refused_with_a_message(text):
+    try:
+        scene = parse(text)
+        plan = make_plan(scene)
+        assert lines(scene, plan) and expense(plan)
+        if plan.states > 5000:
+            return
+        with_fem = plan.fem and plan.states <= 200 and (THOROUGH or len(text) % 8 == 0)
+        if plan.fem and not with_fem:
+            only = replace(scene.solve, methods=("closed_form",))
+            scene = replace(scene, solve=only)
+        result = compute(scene)
+    except BadInput as error:
+        assert str(error).strip() and "Traceback" not in str(error)
+        return
+    data = result.data
+    assert np.isfinite(data["states/f"]).all()
+    assert (np.abs(data["states/f"]) <= np.max(data["states/mu_c"]) * (1.0 + 1e-12)).all()
+    if "states/closed_form/K_I" in data:
+        K_I = data["states/closed_form/K_I"]
+        assert ((K_I >= 0.0) & (1.0 / np.pi >= K_I)).all()
+    if "states/fem/true_error" in data and result.verdict == "PASS":
+        assert (data["states/fem/true_error"] <= 3.0 * data["states/fem/estimate"]).all()
+
+
+def legal(n):
+    """A random legal scene, by number, and its tolerance."""
+    choose = random.Random(n)
+    plane, ν = choose.choice(["strain", "stress"]), choose.uniform(-0.5, 0.49)
+    c_R = rayleigh_speed(Isotropic(1e11, ν, 5000.0, plane).κ)
+    mesh = choose.choice(["confocal", "confocal", "graded"])
+    coarsest = 5.0 if mesh == "graded" else 7.0  # finer is not what straight cells are meant for
+    tolerance = 10.0 ** choose.uniform(-coarsest, -3.0)
+    values = {
+        "solid.E": 10.0 ** choose.uniform(6.0, 12.0),
+        "solid.nu": ν,
+        "solid.rho": 5000.0,
+        "solid.plane": plane,
+        "punch.half_width": 10.0 ** choose.uniform(-6.0, 0.0),
+        "punch.load": 10.0 ** choose.uniform(0.0, 7.0),
+        "friction.mu_c": choose.uniform(0.05, 1.0),
+        "friction.sigma0_over_load": 10.0 ** choose.uniform(3.0, 5.0),
+        "friction.delta": choose.uniform(0.3, 3.0),
+        "friction.sign": choose.choice(["physical", "eq25"]),
+        "motion.c": choose.choice([0.0, choose.uniform(0.0, 0.9)]) * c_R,
+        "motion.X_over_L": choose.uniform(0.0, 1.0),
+        "solve.tolerance": tolerance,
+        "solve.mesh": mesh,
+    }
+    return tolerance, "\n".join(f"{name} = {json.dumps(value)}" for name, value in values.items())
+
+
+@pytest.mark.parametrize("n", range(STATES))
+def test_finite_elements_agree_with_the_closed_form_at_random(n):
+    tolerance, text = legal(n)
+    result = compute(parse(text))
+    data = result.data
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    assert data["states/fem/true_error"].max() <= tolerance
+    assert (data["states/fem/true_error"] <= 3.0 * data["states/fem/estimate"]).all()
+    assert not math.isnan(data["states/fem/v0"].sum())

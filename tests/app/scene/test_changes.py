@@ -1,0 +1,42 @@
+"""Scenes changed from outside."""
+
+import pytest
+from support import SCENE
+
+from galinx.app.errors import BadInput
+from galinx.app.scene.changes import changed, from_words
+from galinx.app.scene.read import parse, read
+
+
+def test_a_change_stands_in_the_text_and_comments_stay():
+    text = SCENE.read_text(encoding="utf-8")
+    result = changed(text, {"friction.mu_c": [0.3, 0.5], "solve.tolerance": 1e-4})
+    assert "mu_c = [0.3, 0.5]" in result and "tolerance = 0.0001" in result
+    assert result.count("#") == text.count("#") and "# σ₀ l/N" in result
+    assert parse(result).friction.parameters["mu_c"] == (0.3, 0.5)
+
+
+def test_words_are_toml_values_or_texts():
+    changes = from_words(
+        ["friction.mu_c=[0.3, 0.5]", "solid.E=70 GPa", "title=Two words", "motion.c=0.1"]
+    )
+    assert changes == {
+        "friction.mu_c": [0.3, 0.5], "solid.E": "70 GPa", "title": "Two words", "motion.c": 0.1
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("word", ["friction.mu_c", "=0.5", " =1"])
+def test_words_without_key_or_value_are_refused(word):
+    with pytest.raises(BadInput, match=r"section\.key=value"):
+        from_words([word])
+
+
+@pytest.mark.parametrize("key", ["friction", "a.b.c", "mu_c"])
+def test_keys_name_section_and_key(key):
+    with pytest.raises(BadInput, match="cannot be changed"):
+        read(SCENE, {key: 1.0})
+
+
+def test_a_change_that_makes_no_sense_is_refused_like_any_scene():
+    with pytest.raises(BadInput, match="did you mean mu_c"):
+        read(SCENE, {"friction.mu_cc": 0.5})

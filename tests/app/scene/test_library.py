@@ -1,0 +1,33 @@
+"""Solids that a scene can name."""
+
+import pytest
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.read import parse
+
+
+def test_a_known_solid_gives_its_constants_and_the_scene_may_differ():
+    scene = template("fig5")
+    assert (scene.solid.E, scene.solid.ν, scene.solid.ρ) == (193e9, 0.25, 7860.0)
+    scene = template("fig5", {"solid.material": "PMMA", "solid.nu": 0.33})
+    assert (scene.solid.E, scene.solid.ν, scene.solid.ρ) == (3.3e9, 0.33, 1190.0)
+
+
+def test_another_solid_replaces_the_constants_of_the_old_one():
+    solid = template("own_material", {"solid.material": "steel", "solid.rho": 8000}).solid
+    assert (solid.E, solid.ν, solid.ρ) == (210e9, 0.3, 8000.0)
+
+
+def test_without_constants_a_solid_may_be_named():
+    with pytest.raises(BadInput, match=r"or solid\.material"):
+        parse("[friction]\nmu_c = 0.5\nsigma0_over_load = 1e4\n[motion]\nc = 0.1\n")
+    with pytest.raises(BadInput, match="unobtainium"):
+        template("fig5", {"solid.material": "unobtainium"})
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_every_known_solid_is_one(name):
+    solid = template("fig5", {"solid.material": name}).solid
+    assert LIBRARY[name].source and 500.0 < solid.c_s < 5000.0

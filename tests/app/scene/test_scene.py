@@ -1,0 +1,146 @@
+"""Scenes: what is read, and a message for each fault."""
+
+import numpy as np
+import pytest
+from support import SCENE
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states
+from galinx.app.scene.read import parse, read
+
+TEXT = SCENE.read_text(encoding="utf-8")
+
+
+def test_units_become_si():
+    scene = parse(TEXT)
+    assert (scene.solid.E, scene.punch.load, scene.friction.pre_sliding) == (193e9, 55.3e3, 1e-4)
+    assert scene.friction.parameters["sigma0_over_load"] == (25000.0,)
+
+
+def test_defaults_leave_only_what_has_none():
+    scene = parse(
+        "[solid]\nE = 1e9\nnu = 0.3\nrho = 1000\n[friction]\nmu_c = 0.5\nsigma0_over_load = 1e4\n"
+        "[motion]\nc = 0.1\n"
+    )
+    assert scene.solve.tolerance == 1e-6 and scene.output.quantities == ("friction", "sif", "surface")
+    assert len(enumerate_states(scene)) == 6
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"solid.nu": None, "solid.nuu": 0.25}, "did you mean nu"),
+        ({"solid.nu_": 1}, "solid.nu_: no such key"),
+        ({"sloid.nu": 0.25}, "did you mean solid"),
+        ({"solid.nu": None}, "solid.nu: missing"),
+        ({"solid.nu": 0.51}, "0.51"),
+        ({"solid.nu": -1.0}, "-1"),
+        ({"solid.nu": float("nan")}, "finite"),
+        ({"solid.nu": True}, "True"),
+        ({"solid.E": "193 mm"}, r"\[length\]"),
+        ({"solid.E": "193 GPz"}, "GPz"),
+        ({"solid.E": "193 GPa("}, "GPa"),
+        ({"solid.E": "2 3 GPa"}, "2 3 GPa"),
+        ({"solid.E": -1.0}, "-1"),
+        ({"solid.E": float("inf")}, "finite"),
+        ({"solid.E": [1.0]}, "solid.E"),
+        ({"solid.rho": 0}, "rho"),
+        ({"punch.half_width": "0 mm"}, "half_width"),
+        ({"punch.load": "-55.3 N/mm"}, "load"),
+        ({"friction.mu_c": -0.7}, "mu_c"),
+        ({"friction.mu_c": []}, "mu_c"),
+        ({"friction.mu_c": "0.5.5"}, "0.5.5"),
+        ({"friction.delta": 0}, "delta"),
+        ({"friction.pre_sliding": "nan mm"}, "pre_sliding"),
+        ({"friction.model": "coulomb"}, "dahl"),
+        ({"friction.integrator": "euler"}, "integrator"),
+        ({"friction.sign": "other"}, "sign"),
+        ({"motion.c": 1.0}, "motion.c"),
+        ({"motion.c": -0.1}, "motion.c"),
+        ({"motion.c": 0.95}, "Rayleigh speed c_R = 0.919402"),
+        ({"motion.speed": "1 m/s"}, "exclude each other"),
+        ({"motion.c": None}, "motion: expected c"),
+        ({"motion.c": None, "motion.speed": "4 km/s"}, "shear wave speed 3133.99"),
+        ({"motion.X_over_L": 1.2}, "X_over_L"),
+        ({"motion.X_over_L": []}, "X_over_L"),
+        ({"motion.strokes": ["sideways"]}, "strokes"),
+        ({"solve.methods": ["fme"]}, "methods"),
+        ({"solve.methods": []}, "solve.methods is empty"),
+        ({"solve.tolerance": 0}, "tolerance"),
+        ({"solve.mesh": "round"}, "mesh"),
+        ({"solve.pressure": [[-1, -1], [1, -1]]}, "traction"),
+        ({"solve.mode": "traction", "solve.pressure": [[-1, -1], [0.5, -1]]}, "X/a = 1"),
+        ({"output.quantities": ["friction", "siff"]}, "quantities"),
+        ({"title": 5}, "title"),
+    ],
+)
+def test_each_fault_has_its_message(changes, message):
+    with pytest.raises(BadInput, match=message):
+        make_plan(template("tables4_5", changes))
+
+
+@pytest.mark.parametrize("changes", [{"solid.nu": 0.5}, {"friction.integrator": "rk4"}])
+def test_what_looks_like_a_fault_and_is_none(changes):
+    scene = template("tables4_5", changes)
+    assert make_plan(scene).states == len(enumerate_states(scene)) == 12
+
+
+def test_text_that_is_not_toml_is_refused():
+    with pytest.raises(BadInput, match="not TOML"):
+        parse(TEXT.replace("[solve]", "[solve"))
+
+
+def test_all_faults_come_in_one_message():
+    changes = {
+        "solid.nu": None, "solid.nuu": 1, "friction.mu_c": -1, "friction.integrator": "x"
+    }  # fmt: skip
+    with pytest.raises(BadInput) as caught:
+        template("tables4_5", changes)
+    for part in ("solid.nuu", "solid.nu: missing", "friction.mu_c", "friction.integrator", "4 faults"):
+        assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "content, message",
+    [(b"", "empty"), (b"\xff\xfe", "UTF-8"), (None, "cannot read"), ("folder", "folder")],
+)
+def test_files_that_are_no_scenes(tmp_path, content, message):
+    path = tmp_path / "scene.toml"
+    if content == "folder":
+        path.mkdir()
+    elif content is not None:
+        path.write_bytes(content)
+    with pytest.raises(BadInput, match=message):
+        read(path)
+
+
+def test_byte_order_mark_and_carriage_returns_are_accepted(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + TEXT.replace("\n", "\r\n").encode())
+    assert read(path).sha256 == parse(TEXT).sha256
+
+
+def test_a_map_lists_its_points_by_rows_before_the_single_ones():
+    changes = {"output.map": {"X": [-1, 1, 3], "Y": [-2, -1, 2]}, "output.points": [[5.0, -5.0]]}
+    assert np.array_equal(
+        template("inside", changes).output.inside,
+        [(-1, -2), (0, -2), (1, -2), (-1, -1), (0, -1), (1, -1), (5, -5)],
+    )
+
+
+@pytest.mark.parametrize(
+    "value, message",
+    [
+        ([1], "X = "),
+        ({"X": [-1, 1, 3]}, "X = "),
+        ({"X": [-1, 1], "Y": [-2, -1, 2]}, "from, to, number"),
+        ({"X": [1, -1, 3], "Y": [-2, -1, 2]}, "from < to"),
+        ({"X": [-1, 1, 3], "Y": [-2, 0, 2]}, "Y/a < 0"),
+        ({"X": [-1, 1, 2.5], "Y": [-2, -1, 2]}, "from < to"),
+    ],
+)
+def test_maps_that_are_none_are_refused(value, message):
+    with pytest.raises(BadInput, match=message):
+        template("inside", {"output.map": value})

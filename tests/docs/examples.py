@@ -1,0 +1,157 @@
+"""Examples of the pages: commands, Python and other blocks found, and what runs them."""
+
+import hashlib
+import re
+import shlex
+import shutil
+import subprocess
+from concurrent.futures import Future
+from pathlib import Path
+from threading import Lock
+
+from support import HOME, clean_environment
+
+DOCS = HOME / "docs"
+PAGES = [HOME / "README.md", HOME / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
+
+#: Words of run.sh that take minutes, run the tests themselves or write into the checkout.
+NOT_RUN = ("test", "bench", "stress", "docs")
+
+_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_COMMAND = re.compile(r"\s*(\w+=\S+ |for .*; do )*\./run\.sh\b")
+_STATUS = re.compile(r"#.*\bstatus (\d)\b")
+#: No windows, and no compiled files beside the pages.
+SILENT = {"MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def name_of(page):
+    return page.name
+
+
+def text_of(page):
+    return page.read_text(encoding="utf-8")
+
+
+def blocks(page, kind):
+    """Bodies of the fenced blocks of one kind."""
+    return [body for language, body in _FENCE.findall(text_of(page)) if language == kind]
+
+
+def commands(page):
+    """Lines with ./run.sh of indented blocks and of console blocks."""
+    found, language = [], None
+    for line in text_of(page).splitlines():
+        if line.startswith("```"):
+            language = line[3:] if language is None else None
+        elif _COMMAND.match(line) and (language == "console" or (not language and line[:4] == "    ")):
+            found.append(line.strip())
+    return found
+
+
+def words_of(command):
+    """What follows ./run.sh, without comment."""
+    words = shlex.split(command, comments=True)
+    return words[words.index("./run.sh") + 1 :]
+
+
+class Shelf:
+    """Runs commands, from several threads; what ran before on the same files is taken from the shelf."""
+
+    def __init__(self, folder):
+        self._folder, self._known, self._lock = folder, {}, Lock()
+
+    def run(self, command, cwd):
+        """Status and output of a command line of a page in ``cwd``."""
+        words = words_of(command) or ["paper", "-o", "results"]
+        key = (command.split("./run.sh")[0].strip(), *words, *_digests(words, cwd))
+        with self._lock:
+            mine = key not in self._known
+            done = self._known.setdefault(key, Future())
+            folder = self._folder / str(len(self._known))
+        if mine:
+            try:
+                done.set_result(self._record(command, cwd, folder))
+            except BaseException as error:
+                done.set_exception(error)
+        status, told, files = done.result()
+        if not mine:
+            shutil.copytree(files, cwd, dirs_exist_ok=True)
+        return status, told
+
+    def _record(self, command, cwd, kept):
+        before = _state(cwd)
+        done = subprocess.run(
+            ["bash", "-c", command], cwd=cwd, env=clean_environment() | SILENT, text=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=200,
+        )  # fmt: skip
+        kept.mkdir()
+        for path, stamp in _state(cwd).items():
+            if before.get(path) != stamp:
+                (kept / path).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(cwd / path, kept / path)
+        return done.returncode, done.stdout, kept
+
+
+def _files(cwd):
+    """Files below a page's folder; scenes/ and run.sh are those of the checkout."""
+    return [
+        path.relative_to(cwd)
+        for path in cwd.rglob("*")
+        if path.is_file() and path.relative_to(cwd).parts[0] not in ("scenes", "run.sh")
+    ]
+
+
+def _state(cwd):
+    return {path: (cwd / path).stat().st_mtime_ns for path in _files(cwd)}
+
+
+def _digests(words, cwd):
+    """Of the files that a command names or could find in its way."""
+    named = {word.split("=")[-1] for word in words}
+    named |= {Path(word).stem + ".h5" for word in words if word.endswith(".toml")}
+    return sorted(
+        (str(path), hashlib.sha256((cwd / path).read_bytes()).hexdigest())
+        for path in _files(cwd)
+        if str(path) in named
+    )
+
+
+def folder_for(page, folder):
+    """A page's folder, in which ./run.sh and scenes/ are those of the checkout."""
+    made = folder / page.name
+    made.mkdir()
+    script = made / "run.sh"
+    script.write_text(f'#!/bin/sh\nexec {shlex.quote(str(HOME / "run.sh"))} "$@"\n')
+    script.chmod(0o755)
+    (made / "scenes").symlink_to(HOME / "scenes")
+    return made
+
+
+def run_page(page, shelf, folder):
+    """Run the commands of a page in order, then its Python; what both print."""
+    output, faults = "", []
+    for command in commands(page):
+        words = words_of(command)
+        if words and words[0] in NOT_RUN:
+            continue
+        wanted = int((_STATUS.search(command) or [0, 0])[1])
+        status, told = shelf.run(command, folder)
+        output += told
+        if status != wanted:
+            faults.append(f"{command}\n  status {status}, expected {wanted}\n{told[-1500:]}")
+    assert not faults, "\n".join(faults)
+    return output + run_python(page, folder)
+
+
+def run_python(page, folder):
+    """Run the Python blocks of a page as one program; its output."""
+    program = "\n".join(blocks(page, "python"))
+    if not program:
+        return ""
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", program], cwd=folder, text=True, timeout=200,
+        env=clean_environment() | SILENT | {"PYTHONPATH": str(HOME), "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    assert done.returncode == 0, f"{page.name}: {done.stdout}"
+    return done.stdout

@@ -1,0 +1,124 @@
+"""What the pages show is run: commands, Python, scenes, the notebook."""
+
+import os
+import re
+import shutil
+import subprocess
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from examples import (
+    DOCS,
+    NOT_RUN,
+    PAGES,
+    Shelf,
+    blocks,
+    commands,
+    folder_for,
+    name_of,
+    run_page,
+    words_of,
+)
+from support import HOME, clean_environment
+
+from galinx.app.cli import cli
+from galinx.app.scene.changes import changed
+from galinx.app.scene.read import parse
+from galinx.app.scene.sections import SECTIONS
+from galinx.app.scene.templates import templates
+from galinx.postprocess.quantities import table
+
+
+@pytest.fixture(scope="module")
+def outputs(request, tmp_path_factory):
+    """What the examples print, by page; the pages that are tested run side by side."""
+    folder = tmp_path_factory.mktemp("pages")
+    shelf = Shelf(tmp_path_factory.mktemp("shelf"))
+    pages = [
+        item.callspec.params["page"]
+        for item in request.session.items
+        if "outputs" in getattr(item, "fixturenames", ()) and item.path == Path(__file__)
+    ]
+    with ThreadPoolExecutor(min(4, os.cpu_count() or 1)) as pool:
+        yield {page: pool.submit(run_page, page, shelf, folder_for(page, folder)) for page in pages}
+        pool.shutdown(cancel_futures=True)
+
+
+def without_numbers(text):
+    """For comparison of output: numbers and line breaks may differ."""
+    return " ".join(re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", text).split())
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
+    told = without_numbers(outputs[page].result())
+    for block in blocks(page, "text"):
+        for piece in block.split("…\n"):
+            assert without_numbers(piece) in told, f"{page.name} quotes what is not printed:\n{piece}"
+
+
+def test_only_long_words_are_left_out():
+    assert NOT_RUN == ("test", "bench", "stress", "docs")
+    script = (HOME / "run.sh").read_text(encoding="utf-8")
+    for word in NOT_RUN:
+        assert f'"${{1:-}}" = {word} ]' in script or word in cli.commands, f"run.sh does not know {word}"
+    shown = [command for page in PAGES for command in commands(page)]
+    assert len(shown) > 50
+    assert sum(words_of(command)[:1] not in ([word] for word in NOT_RUN) for command in shown) > 45
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "toml")], ids=name_of)
+def test_scenes_of_a_page_are_valid(page):
+    for block in blocks(page, "toml"):
+        tree = tomllib.loads(block)
+        if {"solid", "friction", "motion"} <= tree.keys():
+            parse(block, page.name)
+            continue
+        changes = {}
+        for section, given in tree.items():
+            known = {key for keys in SECTIONS[section].alternatives.values() for key in keys}
+            assert given.keys() <= known, f"{page.name}: {given.keys() - known}"
+            changes |= {f"{section}.{key}": value for key, value in given.items()}
+        if "motion.speed" in changes:
+            changes["motion.c"] = None
+        parse(changed(templates()["tables4_5"].text, changes), page.name)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "matlab")], ids=name_of)
+def test_matlab_reads_datasets_that_exist(page):
+    read = re.findall(r"h5read\('[^']+', '/([^']+)'\)", "\n".join(blocks(page, "matlab")))
+    assert read
+    assert set(read) <= table().keys()
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "bash")], ids=name_of)
+def test_shell_scripts_of_a_page_parse(page):
+    for block in blocks(page, "bash"):
+        done = subprocess.run(["bash", "-n"], input=block, capture_output=True, text=True)
+        assert done.returncode == 0, f"{page.name}: {done.stderr}"
+
+
+def test_the_notebook_runs(tmp_path):
+    nbformat = pytest.importorskip("nbformat")
+    pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    source = DOCS / "tutorial.ipynb"
+    notebook = nbformat.read(source, as_version=4)
+    nbformat.validate(notebook)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "clear the outputs of the notebook"
+    shutil.copy(source, tmp_path)
+    # A process of its own: MPI in this one must not reach the kernel.
+    program = (
+        "import nbformat, nbclient\n"
+        "notebook = nbformat.read('tutorial.ipynb', as_version=4)\n"
+        "nbclient.NotebookClient(notebook, timeout=120, kernel_name='python3').execute()\n"
+    )
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=200,
+        stdin=subprocess.DEVNULL,
+        env=clean_environment() | {"PYTHONPATH": str(HOME), "PYTHONDONTWRITEBYTECODE": "1"}
+        | {"IPYTHONDIR": str(tmp_path / "ipython"), "JUPYTER_RUNTIME_DIR": str(tmp_path / "runtime")},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-3000:]

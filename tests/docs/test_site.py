@@ -1,0 +1,64 @@
+"""Pages that are made, and the site that is built of all pages."""
+
+import runpy
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from examples import DOCS, SILENT
+from support import HOME, clean_environment
+
+
+def test_made_pages_are_up_to_date():
+    for path, text in runpy.run_path(str(DOCS / "make.py"))["pages"]().items():
+        assert path.read_text(encoding="utf-8") == text, (
+            f"{path.relative_to(HOME)} is out of date: PYTHONPATH=. /usr/bin/python3 docs/make.py"
+        )
+
+
+class Page(HTMLParser):
+    """Links, what is loaded, and anchors of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.loaded, self.anchors = [], [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.anchors |= {given[key] for key in ("id", "name") if given.get(key)}
+        if tag == "a" and given.get("href"):
+            self.links.append(given["href"])
+        elif tag in ("img", "script", "link") and (target := given.get("src") or given.get("href")):
+            self.loaded.append(target)
+
+
+def test_the_site_is_built_and_its_links_hold(tmp_path):
+    mkdocs = shutil.which("mkdocs", path="/usr/bin") or shutil.which("mkdocs")
+    if not mkdocs:
+        pytest.skip("mkdocs is not installed")
+    site = tmp_path / "site"
+    done = subprocess.run(
+        [mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site],
+        cwd=tmp_path, capture_output=True, text=True, env=clean_environment() | SILENT,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "WARNING" not in done.stderr, done.stderr
+    assert not [path for path in site.rglob("*.py*")]
+    pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}
+    built = {path.stem for path in pages}
+    assert {page.stem for page in DOCS.glob("*.md")} <= built
+    for path, page in pages.items():
+        for target in (*page.links, *page.loaded):
+            parts = urlsplit(target)
+            if parts.scheme or parts.netloc:
+                assert target in page.links, f"{path.name} loads {target} from the network"
+                continue
+            if path.name == "404.html":  # its addresses start at the site's root
+                continue
+            there = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            assert there.exists(), f"{path.name}: {target}"
+            if parts.fragment and there in pages:
+                assert unquote(parts.fragment) in pages[there].anchors, f"{path.name}: {target}"

@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+from galinx.meshes import MESHES
+from galinx.meshes.cells import check_cells
+from galinx.meshes.graded import BOX_DEPTH, BOX_WIDTH
+from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS, QuadMesh
+
+TOLERANCES = [1e-2, 1e-6, 1e-9]
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("β_s", [1.0, 0.4])
+def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, β_s):
+    kind = MESHES[mesh]
+    cells = kind.build(MESHES[mesh].refinement(tolerance, β_s))
+    check_cells(cells)
+    x, y = np.moveaxis(cells.points[cells.cells], -1, 0)
+    area = 0.5 * np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1))
+    if mesh == "confocal":
+        assert area == pytest.approx(np.pi * cells.points[:, 0].max(), rel=1e-13)
+    elif mesh == "box":
+        assert area == pytest.approx(BOX_WIDTH * BOX_DEPTH, rel=1e-12)
+    # Euler: one component without a hole, so every inner edge is shared by two cells.
+    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    assert count.max() == 2
+    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+
+
+@pytest.mark.parametrize("times", [2, 9, 18, 36])
+@pytest.mark.parametrize("mesh", MESHES)
+def test_cut_meshes_have_no_cracks(mesh, times):
+    """Every inner edge is shared by two cells: no vertex is there twice but for its last digit."""
+    cells = MESHES[mesh].build(MESHES[mesh].refinement(1e-5, 1.0), times)
+    check_cells(cells)
+    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
+    _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
+    assert count.max() == 2
+    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_boundary_parts_lie_where_they_should(mesh):
+    kind = MESHES[mesh]
+    cells = kind.build(MESHES[mesh].refinement(1e-6, 1.0))
+    X = {tag: kind.chart.to_physical(cells.points[np.unique(cells.edges[tag])]) for tag in TAGS.values()}
+    for tag in (CONTACT, FREE):
+        np.testing.assert_allclose(X[tag][:, 1], 0.0, atol=1e-12 * np.abs(X[tag]).max())
+    assert np.abs(X[CONTACT][:, 0]).max() == pytest.approx(1.0, abs=1e-15)
+    assert np.abs(X[FREE][:, 0]).min() == pytest.approx(1.0, abs=1e-15)
+    if mesh == "box":
+        assert (np.isclose(np.abs(X[FAR][:, 0]), 100.0) | np.isclose(X[FAR][:, 1], -100.0)).all()
+    else:
+        radius = kind.reach(1e-6)
+        np.testing.assert_allclose(np.linalg.norm(X[FAR], axis=1), radius, rtol=1e-9)
+
+
+def test_a_turned_cell_is_refused():
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    check_cells(QuadMesh(square, np.array([[0, 1, 2, 3]]), {}))
+    with pytest.raises(ValueError, match="degenerate"):
+        check_cells(QuadMesh(square, np.array([[0, 3, 2, 1]]), {}))
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
+    coarse = MESHES[mesh].refinement(1e-3, 1.0)
+    whole, fine = (MESHES[mesh].build(coarse, cuts) for cuts in (1, 3))
+    assert len(fine.cells) == 9 * len(whole.cells)
+    np.testing.assert_array_equal(fine.points[: len(whole.points)], whole.points)
+    # The first of the nine at a cell's first vertex, the last at the one across.
+    first, last = fine.cells.reshape(-1, 9, 4)[:, [0, -1]].transpose(1, 0, 2)
+    np.testing.assert_array_equal(np.column_stack([first[:, 0], last[:, 2]]), whole.cells[:, [0, 2]])
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_pieces_of_a_mesh_make_the_whole(mesh):
+    kind, pattern = MESHES[mesh], MESHES[mesh].refinement(1e-3, 1.0)
+    whole, pieces = kind.build(pattern, 4), [kind.build(pattern, 4, i, 3) for i in range(3)]
+    for name in ("points", "cells"):
+        np.testing.assert_array_equal(
+            np.concatenate([getattr(p, name) for p in pieces]), getattr(whole, name)
+        )
+    for tag, edges in whole.edges.items():
+        np.testing.assert_array_equal(np.concatenate([p.edges[tag] for p in pieces]), edges)

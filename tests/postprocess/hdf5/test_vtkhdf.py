@@ -1,0 +1,40 @@
+import numpy as np
+import pytest
+
+from galinx.app.results.paraview import StateField
+from galinx.postprocess.errors import UnwritableArchive
+from galinx.postprocess.hdf5 import vtkhdf
+
+
+def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
+    import h5py
+
+    points, quads = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.arange(4)[None]
+    path = tmp_path / "square.hdf"
+    path.write_bytes(b"an earlier file")
+    square = StateField(points, quads, {"u": np.zeros((4, 3))})
+    nothing = StateField(points[:0], quads[:0], {"u": np.zeros((0, 3))})
+    vtkhdf.write(path, [nothing, square, nothing, square], {"u": ("m", "displacement")})
+    with h5py.File(path) as file:
+        root = file["VTKHDF"]
+        assert root.attrs["Version"].dtype == np.int64 and root.attrs["Version"].tolist() == [1, 0]
+        assert root.attrs["Type"] == b"UnstructuredGrid"
+        assert h5py.check_string_dtype(root.attrs.get_id("Type").dtype) == ("ascii", 16)
+        assert root["Types"].dtype == np.uint8 and root["Offsets"][:].tolist() == [0, 4, 8]
+        assert root["Connectivity"][:].tolist() == [*range(8)] and len(root["Points"]) == 8
+        assert root["PointData/u"].attrs["units"] == "m"
+        assert root["PointData/u"].attrs["long_name"] == "displacement"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["square.hdf"]
+
+
+def test_a_refused_file_is_said_and_leaves_nothing(tmp_path):
+    square = [StateField(np.zeros((4, 2)), np.arange(4)[None], {})]
+    with pytest.raises(UnwritableArchive, match="No such file or directory"):
+        vtkhdf.write(tmp_path / "no" / "f.hdf", square, {})
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UnwritableArchive, match="Not a directory"):
+        vtkhdf.write(tmp_path / "file" / "f.hdf", square, {})
+    (tmp_path / "folder.hdf").mkdir()
+    with pytest.raises(UnwritableArchive, match="folder"):
+        vtkhdf.write(tmp_path / "folder.hdf", square, {})
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder.hdf"]

@@ -1,0 +1,48 @@
+"""Factors: singular, short of memory, freed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import small_punch
+
+from galinx.clock import Clock
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem import direct as linear
+from galinx.solvers.fem.direct import Factor
+
+
+@pytest.mark.parametrize("entry", [0.0, float("nan")])
+def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
+    from petsc4py import PETSc
+
+    A = PETSc.Mat().createAIJ((4, 4), comm=PETSc.COMM_SELF)
+    A.setUp()
+    for i in range(4):
+        A.setValue(i, i, 2.0 if i else entry)
+    A.assemble()
+    b = A.createVecLeft()
+    b.set(1.0)
+    with pytest.raises(SolveError):
+        Factor(A, Clock()).solve(b)
+
+
+def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
+    expected = small_punch().states(0.5).normal
+    monkeypatch.setattr(linear, "WORKSPACE", (-80, 400))
+    np.testing.assert_allclose(small_punch().states(0.5).normal, expected, rtol=1e-9)
+    monkeypatch.setattr(linear, "WORKSPACE", (-80, -80))
+    with pytest.raises(SolveError, match=r"status -9.*it wanted [0-9]+ MB a rank"):
+        small_punch()
+
+
+def test_factors_are_freed():
+    def resident():
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * 4096
+
+    sizes = []
+    for _ in range(40):
+        small_punch().destroy()
+        sizes.append(resident())
+    # Unfreed, each would leave two megabytes.
+    assert sizes[-1] - sizes[9] < 15e6

@@ -1,0 +1,65 @@
+"""A punch on a mesh: rates of convergence, refinement of its solutions."""
+
+import numpy as np
+import pytest
+from scipy.special import eval_chebyt
+from support import small_punch, space_on
+
+from galinx.meshes.rings import Refinement
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
+
+
+def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
+    """Largest error of the pressure's first six Chebyshev moments over N."""
+    space = space_on(mesh, refinement, degree)
+    solver = SlidingPunch(space, MovingFrame(2.0, c))
+    state = solver.states(g)
+    X = space.chart.surface_position(space.contact.s)
+    exact = FlatPunch(MovingFrame(2.0, c), g)
+    t, w = np.polynomial.legendre.leggauss(200)
+    τ, w = (t + 1.0) / 2.0, w / 2.0
+    near, stretch = τ**8, 8.0 * τ**7
+    errors = []
+    for n in range(6):
+        moment = np.sum(
+            w * stretch * exact.σ_YY_by_distance(near, 2.0 - near) * eval_chebyt(n, near - 1.0)
+        )
+        moment += np.sum(
+            w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near)
+        )
+        errors.append(abs(state.normal[0] @ eval_chebyt(n, X) - moment) / 2.0)
+    solver.destroy()
+    return max(errors)
+
+
+def test_exponential_convergence_in_the_degree():
+    refinement = Refinement(8, 0.35, 2, (3.0,) * 7)
+    degrees = np.arange(3, 8)
+    errors = [moment_error("confocal", refinement, p) for p in degrees]
+    decades_a_degree = -np.polyfit(degrees, np.log10(errors), 1)[0]
+    assert decades_a_degree > 0.9
+    assert errors[-1] < 1e-7
+
+
+def test_convergence_in_the_grading():
+    """The energy in the innermost ring, of radius ρ, goes as ρ^(2 + 2α), α = -1/2 without friction."""
+    ratio, levels = 0.5, np.array([3, 4, 5, 6])
+    columns = (1.0,) * 15
+    errors = [moment_error("graded", Refinement(n, ratio, 2, columns), 6, g=0.0) for n in levels]
+    expected = 2.0 * (2.0 + 2.0 * -0.5)  # a ring of size s in (ξ, η) has the radius s²/2
+    rate = np.polyfit(levels * np.log(ratio), np.log(errors), 1)[0]
+    assert rate == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("c, refines", [(0.0, False), (0.6, False), (0.9192, True)])
+def test_solutions_are_refined_where_that_changes_forces(c, refines):
+    """Near the Rayleigh speed, 0.9194 c_s, rounding grows."""
+    always, where_needed = (small_punch(c, negligible=share) for share in (0.0, 1e-10))
+    wanted, found = (punch.states([-0.5, 0.5]) for punch in (always, where_needed))
+    fields = len(where_needed.fields)
+    assert always.factor.solves == 2 * len(always.fields)
+    assert where_needed.factor.solves == (2 * fields if refines else fields + 1)
+    scale = np.linalg.norm(wanted.normal)
+    assert np.linalg.norm(found.normal - wanted.normal) <= 2e-10 * scale

@@ -1,0 +1,24 @@
+import pytest
+from mpi4py import MPI
+from support import space_on
+
+from galinx.app.plan.fem import unknowns
+from galinx.meshes import MESHES
+from galinx.meshes.rings import TAGS, Refinement
+from galinx.solvers.errors import MeshError
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.space import Space
+
+
+def test_a_missing_boundary_part_is_named():
+    kind = MESHES["confocal"]
+    mesh, tags = distribute(kind.build(Refinement(1, 0.3, 1, (1.0,))), MPI.COMM_WORLD)
+    with pytest.raises(MeshError, match="far"):
+        Space(mesh, tags, TAGS | {"far": 17}, kind.chart, 2)
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_planned_sizes_are_those_of_the_run(mesh):
+    pattern = MESHES[mesh].refinement(1e-3, 1.0)
+    cells, space = MESHES[mesh].build(pattern), space_on(mesh, pattern, 3)
+    assert (space.cells, space.size) == (len(cells.cells), unknowns(cells, 3))

@@ -1,0 +1,51 @@
+"""The same numbers on one stored mesh whatever version of dolfinx, PETSc and gmsh is installed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from support import HOME
+
+from galinx.meshes import MESHES
+from galinx.meshes.rings import TAGS, QuadMesh
+from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.fem import adapter
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import MovingFrame
+
+STORED = HOME / "tests" / "reference" / "stored_mesh.npz"
+
+#: K_I left and right by speed, at g = -0.66, degree 7: computed with dolfinx 0.5.2, PETSc 3.18, gmsh 4.8.
+K_I = {
+    0.0: (0.310875642856849, 0.31087564941324647),
+    0.6: (0.3071673530808114, 0.3071673375479583),
+    0.9: (0.29299919967389376, 0.29299865368904493),
+}
+
+
+@pytest.mark.parametrize("c", K_I)
+def test_the_stored_mesh_has_the_same_intensities(c):
+    with np.load(STORED) as file:
+        edges = {tag: file[str(tag)] for tag in TAGS.values()}
+        mesh = QuadMesh(file["points"], file["cells"], edges)
+    chart = MESHES["confocal"].chart
+    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, chart, 7)
+    punch = SlidingPunch(space, MovingFrame(2.0, c))
+    recovery = contact_recovery(space.contact.s, 7, chart, np.array([0.0]))
+    local = FlatPunch(MovingFrame(2.0, c), np.array([-0.66]))
+    found = from_moments(punch.states(-0.66).normal @ recovery.moments, local.α, local.β).K_I[0]
+    punch.destroy()
+    np.testing.assert_allclose(found, K_I[c], rtol=1e-9)
+
+
+def test_what_differs_between_versions_is_one_small_module():
+    """Nothing asks for a version number, and nothing but the adapter for what a library offers."""
+    text = Path(adapter.__file__).read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 120 and "__version__" not in text
+    for path in Path(adapter.__file__).parent.glob("*.py"):
+        if path.name != "adapter.py":
+            assert "dolfinx.cpp" not in path.read_text(encoding="utf-8"), path.name

@@ -1,0 +1,80 @@
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.integrate import RK4_STABILITY_LIMIT, runge_kutta
+
+
+def exact(law, f0, s, d):
+    """f after slip d from f0."""
+    found = law.exact(np.array([f0]), s, 0.0, np.atleast_1d(d))[:, 0]
+    return found if np.ndim(d) else float(found[0])
+
+
+def by_steps(law, f0, s, length, steps):
+    return runge_kutta(law, np.array([f0]), s, 0.0, length, steps).z[:, 0]
+
+
+@pytest.mark.parametrize("δ", [0.5, 1.0, 1.0 + 1e-12, 1.5, 3.0])
+@pytest.mark.parametrize("f0, s", [(0.0, 1), (0.6, -1), (-0.3, 1)])
+def test_exact_solution_solves_the_law(δ, f0, s):
+    law = Dahl(0.7, 25000.0, δ)
+    d = np.linspace(0.0, 2e-5, 7)
+    found = solve_ivp(
+        lambda _, f: law.rate(f, s), (0.0, d[-1]), [f0], "DOP853", d, rtol=1e-12, atol=1e-13
+    )
+    np.testing.assert_allclose(exact(law, f0, s, d), found.y[0], rtol=0.0, atol=1e-10)
+
+
+def test_the_rate_is_that_of_the_studys_equation():
+    law = Dahl(0.7, 25000.0, 1.5)
+    for f, s in ((0.2, 1), (0.2, -1), (-0.6, 1)):
+        y = 1.0 - s * f / 0.7
+        assert law.rate(np.array([f]), s)[0] == pytest.approx(s * 25000.0 * y**1.5, rel=1e-14)
+
+
+def test_full_slip_is_reached_after_a_finite_distance_for_δ_below_one():
+    law = Dahl(0.7, 25000.0, 0.5)
+    distance = 2.0 * law.μ_C / law.λ
+    assert exact(law, 0.0, 1, 0.99 * distance) < law.μ_C
+    assert exact(law, 0.0, 1, 1.01 * distance) == law.μ_C
+
+
+def test_exact_solution_restarts():
+    law = Dahl(0.4, 3e4, 1.3)
+    halfway = exact(law, -0.2, 1, 1e-5)
+    assert exact(law, halfway, 1, 2e-5) == pytest.approx(exact(law, -0.2, 1, 3e-5), rel=1e-13)
+
+
+def test_runge_kutta_converges_with_order_four():
+    law, length = Dahl(0.7, 25000.0, 1.5), 1e-4
+    end = exact(law, 0.0, 1, length)
+    errors = [abs(by_steps(law, 0.0, 1, length, n)[-1] - end) for n in (40, 80, 160)]
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 4.0, atol=0.2)
+
+
+def test_runge_kutta_refuses_a_step_beyond_its_stability():
+    length = 1e-4
+    λ = RK4_STABILITY_LIMIT * 0.1 * 20 / length
+    assert abs(by_steps(Dahl(0.1, 0.99 * λ), 0.0, 1, length, 20)[-1]) < 0.2
+    with pytest.raises(ValueError, match="exact"):
+        by_steps(Dahl(0.1, 1.01 * λ), 0.0, 1, length, 20)
+
+
+@pytest.mark.parametrize("f0, s, δ", [(0.0, 1, 1.0), (-0.5, 1, 2.0), (0.3, -1, 1.5)])
+def test_the_stability_limit_is_that_of_the_steepest_slope(f0, s, δ):
+    """The rate is steepest where a stroke starts; h times its slope there is what the scheme bears."""
+    steps, length, ε = 20, 1e-4, 1e-6
+    law = Dahl(0.5, 1.0, δ)
+    slope = abs(law.rate(f0 + ε, s) - law.rate(f0 - ε, s)) / (2.0 * ε)
+    λ = RK4_STABILITY_LIMIT * steps / (length * slope)
+    by_steps(Dahl(0.5, 0.999 * λ, δ), f0, s, length, steps)
+    with pytest.raises(ValueError, match="exact"):
+        by_steps(Dahl(0.5, 1.001 * λ, δ), f0, s, length, steps)
+
+
+@pytest.mark.parametrize("values", [(0.0, 1.0), (1.0, -1.0), (1.0, 1.0, 0.0), (float("nan"), 1.0)])
+def test_parameters_outside_their_range_are_refused(values):
+    with pytest.raises(ValueError, match="> 0"):
+        Dahl(*values)

@@ -1,0 +1,61 @@
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from galinx.solvers.friction import FrictionLaw
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.strokes import friction_along
+
+STROKES = ["forward", "backward", "forward"]
+
+
+def test_friction_of_the_reference_states(references):
+    history = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
+    found = {(s.name, X): f for s in history for X, f in zip(s.X_over_L, s.f)}
+    for state in references["states"]:
+        key = state["motion"], float(state["X/L"])
+        assert found[key] == pytest.approx(float(state["f"]), rel=1e-13)
+
+
+def test_backward_strokes_travel_from_L_to_0():
+    forward, backward, _ = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
+    assert list(forward.X_over_L) == [0.2, 0.8] and list(backward.X_over_L) == [0.8, 0.2]
+    assert backward.f[0] > backward.f[1]
+
+
+def test_both_integrators_agree_on_all_strokes():
+    law, X = Dahl(0.7, 25000.0), [0.0, 0.2, 0.33, 0.8, 1.0]
+    by_steps = friction_along(law, STROKES, 1e-4, X, integrator="rk4")
+    for found, wanted in zip(by_steps, friction_along(law, STROKES, 1e-4, X)):
+        np.testing.assert_allclose(found.f, wanted.f, atol=2e-5)
+
+
+@dataclass(frozen=True)
+class Spring(FrictionLaw):
+    """Two springs in a row with sliders, f = z₀ + z₁, that give as the speed rises: the rate alone."""
+
+    about: ClassVar[str] = "two springs"
+
+    def rest(self):
+        return np.array([0.0, 0.1])
+
+    def rate(self, z, s, V):
+        return s * 1e4 / (1.0 + V) * (1.0 - s * z / np.array([0.3, 0.2]))
+
+    def friction(self, z, s, V):
+        return z.sum(axis=-1)
+
+
+def test_a_law_that_knows_its_rate_alone_is_integrated_and_carries_its_state():
+    X = np.array([0.0, 0.3, 1.0])
+    for V in (0.0, 2.0):
+        forward, backward = friction_along(Spring(), STROKES[:2], 1e-4, X, V)
+        k = 1e4 / (1.0 + V) * 1e-4 / np.array([0.3, 0.2])
+        wanted = [0.3, 0.2] + ([0.0, 0.1] - np.array([0.3, 0.2])) * np.exp(-np.outer(X, k))
+        np.testing.assert_allclose(forward.z, wanted, rtol=1e-10)
+        np.testing.assert_allclose(forward.f, wanted.sum(axis=1), rtol=1e-10)
+        np.testing.assert_allclose(backward.z[0], wanted[-1], rtol=1e-10)
+    with pytest.raises(ValueError, match="no limit of stable steps"):
+        friction_along(Spring(), STROKES, 1e-4, X, integrator="rk4")

@@ -1,0 +1,41 @@
+import numpy as np
+import pytest
+
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
+
+
+def punch_of(entry, g):
+    solid = Isotropic(193e9, float(entry["nu"]), 7860.0, entry["plane"])
+    return FlatPunch(MovingFrame(solid.κ, float(entry["c"])), float(g))
+
+
+def test_states_of_the_references(references):
+    for state in references["states"]:
+        punch = punch_of(state, state["f"])
+        found = [punch.α, punch.β, punch.K_I]
+        wanted = [float(state[name]) for name in ("alpha", "beta", "K_I")]
+        np.testing.assert_allclose(found, wanted, rtol=1e-12)
+
+
+def test_surface_stresses_of_the_references(references):
+    for entry in references["surface"]:
+        punch, X = punch_of(entry, entry["g"]), float(entry["X/a"])
+        wanted = float(entry["sigma_XX"])
+        assert punch.σ_XX(X) == pytest.approx(wanted, rel=1e-12, abs=1e-15)
+        if "sigma_YY" in entry:
+            assert punch.σ_YY(X) == pytest.approx(float(entry["sigma_YY"]), rel=1e-12)
+
+
+def test_pressure_carries_the_load_and_leaves_the_punch_flat():
+    punch = FlatPunch(MovingFrame(2.0, 0.6), 0.66)
+    r = np.linspace(-0.95, 0.95, 11)
+    slope = punch.response.n * punch.hilbert(r) - punch.response.q * punch.g * punch.σ_YY(r)
+    np.testing.assert_allclose(slope, 0.0, atol=1e-14)
+    t, w = np.polynomial.legendre.leggauss(60)
+    τ = (t + 1.0) / 2.0  # distance = τ^8 takes the singular ends away
+    total = sum(
+        np.sum(w / 2.0 * 8.0 * τ**7 * punch.σ_YY_by_distance(*ends))
+        for ends in ((τ**8, 2.0 - τ**8), (2.0 - τ**8, τ**8))
+    )
+    assert total == pytest.approx(-2.0, rel=1e-12)

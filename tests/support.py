@@ -1,0 +1,106 @@
+"""What tests of several rooms need: commands, processes, scenes computed in memory, spaces and areas."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+HOME = Path(__file__).parent.parent
+#: The scene of the study's Tables 4 and 5.
+SCENE = HOME / "scenes" / "tables4_5.toml"
+#: With these a run compiles the forms of three degrees only.
+FEW_DEGREES = ("--set", "motion.c=0.3", "--set", "solve.tolerance=1e-3")
+
+
+def computed(name="tables4_5", changes=None):
+    """The result of a scene of scenes/, with other values by ``"section.key"``, None for none."""
+    import galinx
+
+    return galinx.compute(galinx.template(name, changes))
+
+
+def command(*arguments, cwd=HOME):
+    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text."""
+    return subprocess.run(
+        [str(HOME / "run.sh"), *map(str, arguments)],
+        cwd=cwd, env=clean_environment(), capture_output=True, text=True, timeout=300,
+        stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+def mpirun(ranks, *arguments):
+    """The command that starts this Python on some ranks."""
+    beside = Path(sys.executable).with_name("mpirun")
+    program = str(beside) if beside.exists() else "mpirun"
+    return [program, "-n", str(ranks), sys.executable, *map(str, arguments)]
+
+
+def clean_environment():
+    """The environment without what MPI leaves there, which a second mpirun would trip over."""
+    mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "ORTE_", "HYDRA_", "HYDI_", "MPIR_")
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(mpi)}
+    return kept | {
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+        "PYTHONPATH": str(HOME),
+    }
+
+
+def widest(text):
+    """Length of the longest line."""
+    return max(map(len, text.splitlines()))
+
+
+def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
+    """A finite element space on one of the meshes; this rank alone has it where ``comm`` is not given."""
+    from mpi4py import MPI
+
+    from galinx.meshes import MESHES
+    from galinx.meshes.rings import TAGS
+    from galinx.solvers.fem.distributed import distribute
+    from galinx.solvers.fem.space import Space
+
+    comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
+    piece = kind.build(refinement, 1, comm.rank, comm.size)
+    return Space(*distribute(piece, comm), TAGS, kind.chart, degree, form)
+
+
+def small_punch(c=0.6, **options):
+    """A punch that is solved in a moment, at degree 7."""
+    from galinx.meshes.rings import Refinement
+    from galinx.solvers.fem.punch import SlidingPunch
+    from galinx.solvers.solids.isotropic import MovingFrame
+
+    space = space_on("confocal", Refinement(6, 0.35, 2, (3.0,) * 3), 7)
+    return SlidingPunch(space, MovingFrame(2.0, c), **options)
+
+
+def areas(points, quads):
+    """Signed areas of polygons, (m,)."""
+    X, Y = points[quads][..., 0], points[quads][..., 1]
+    return 0.5 * (X * np.roll(Y, -1, axis=1) - np.roll(X, -1, axis=1) * Y).sum(axis=1)
+
+
+def clipped(polygon, axis, bound, sign):
+    """The part of a polygon with sign·x[axis] <= sign·bound."""
+    result = []
+    for p, q in zip(polygon, np.roll(polygon, -1, axis=0)):
+        outside_p, outside_q = (sign * (z[axis] - bound) for z in (p, q))
+        if outside_p <= 0.0:
+            result.append(p)
+        if outside_p * outside_q < 0.0:
+            result.append(p + (q - p) * outside_p / (outside_p - outside_q))
+    return np.reshape(result, (-1, 2))
+
+
+def area_within(points, quads, extent):
+    total = 0.0
+    for polygon in points[quads]:
+        for axis, bound, sign in ((0, extent, 1), (0, -extent, -1), (1, -extent, -1)):
+            polygon = clipped(polygon, axis, bound, sign) if len(polygon) else polygon
+        total += areas(polygon, np.arange(len(polygon))[None])[0] if len(polygon) else 0.0
+    return total

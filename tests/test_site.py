@@ -11,7 +11,7 @@ import pytest
 from conftest import HOME, clean_environment, command
 from examples import DOCS, SILENT, name_of
 
-from galinx.app.scene.scene import parse
+from galinx.app.scene.read import parse
 
 SCENES = sorted((HOME / "scenes").glob("*.toml"))
 

@@ -168,8 +168,8 @@ def archive_page() -> str:
         heads = ("dataset", "shape", "unit", "what", "there with", "compared")
         parts += [f"## /{group}\n", _table(heads, rows)]
     rules = [
-        (rule.name, rule.text, ", ".join(f"`{path}`" for path in rule.needs), _limit(rule))
-        for rule in RULES
+        (name, rule.text, ", ".join(f"`{row.path}`" for row in rule.needs), _limit(rule))
+        for name, rule in RULES.items()
     ]
     parts.append(_COMPARISONS + _table(("name", "text", "datasets", "at most"), rules))
     return "\n".join(parts)
@@ -250,10 +250,11 @@ def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
 def _dataset(path: str, row: Any) -> tuple[str, ...]:
     """A dataset's row."""
     from galinx.postprocess.compare import RULES
+    from galinx.postprocess.quantities.quantity import ANYWHERE
 
     what = row.about + "; tells states apart" * bool(row.symbol)
-    what += "; NaN where it cannot be told" * (row.nan_allowed == "anywhere")
-    compared = ", ".join(rule.name for rule in RULES if path in rule.needs)
+    what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
+    compared = ", ".join(name for name, rule in RULES.items() if row in rule.needs)
     return f"`/{path}`", " × ".join(row.over), row.unit.replace("none", ""), what, _there(row), compared
 
 

@@ -165,7 +165,7 @@ def archive_page() -> str:
     parts, known = [_ARCHIVE], table()
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
         rows = [_dataset(path, row) for path, row in known.items() if path.startswith(f"{group}/")]
-        heads = ("dataset", "shape", "unit", "what", "there with", "compared")
+        heads = ("dataset", "what", "shape", "unit", "there with", "compared")
         parts += [f"## /{group}\n", _table(heads, rows)]
     rules = [
         (name, rule.text, ", ".join(f"`{row.path}`" for row in rule.needs), _limit(rule))
@@ -255,7 +255,8 @@ def _dataset(path: str, row: Any) -> tuple[str, ...]:
     what = row.about + "; tells states apart" * bool(row.symbol)
     what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
     compared = ", ".join(name for name, rule in RULES.items() if row in rule.needs)
-    return f"`/{path}`", " × ".join(row.over), row.unit.replace("none", ""), what, _there(row), compared
+    shape, unit = " × ".join(row.over), row.unit.replace("none", "")
+    return f"`/{path}`", what, shape, unit, _there(row), compared
 
 
 def _there(row: Any) -> str:

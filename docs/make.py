@@ -1,4 +1,4 @@
-"""Writes what the program itself knows: docs/commands.md, docs/scene.md, scenes/scene.schema.json.
+"""Writes what the program itself knows: pages of commands, scenes and archives, and the scenes' schema.
 
 ``./run.sh docs`` runs it before it builds the pages; alone: ``PYTHONPATH=. python3 docs/make.py``.
 mkdocs loads it as a hook, so the program is imported only where pages are made.
@@ -35,12 +35,22 @@ Words that `run.sh` knows besides the commands:
 | `./run.sh bench` | measure run time against error, see [Benchmarks](benchmarks.md) |
 | `./run.sh docs` | write these reference pages and build all pages as HTML into `site/` |
 | `./run.sh -n RANKS COMMAND …` | run a command on several MPI ranks of this machine |
+
+Before the command stand
+
+| option | meaning |
+|---|---|
+| `-x FILE.py` | run a file that registers [models of your own](howto_extend.md); may be repeated |
+| `--version` | print the version |
+
+With the folder `bin` on `PATH` the same command is called `galinx`. An installed `galinx` knows the
+commands and these options, not the words above; `mpirun -n RANKS galinx COMMAND …` runs it on ranks.
 """
 
 _SCENE = """\
 # Scenes
 
-Written by `docs/make.py` from the classes that check scenes.
+Written by `docs/make.py` from the keys that check scenes.
 
 A scene is a TOML file that says what is to be computed. The shortest one:
 
@@ -56,9 +66,11 @@ c = 0.3                          # over the shear wave speed
 
 - A number is in the unit of its row. A text carries its own unit: `"193 GPa"`, `"1 mm"`, `"1.5 mm/s"`.
   A unit of another dimension is an error.
-- `c` or `speed`, `mu_c`, `sigma0_over_load` and `delta` may be lists. All their combinations are
+- `c` or `speed`, and the parameters of the friction law, may be lists. All their combinations are
   computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
-  from 0; `c` changes most slowly, then `mu_c`, `sigma0_over_load`, `delta`, stroke and position.
+  from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.
+- `kind`, `profile` and `model` name a solid, a punch and a friction law, each with keys of its own.
+  [Extend galinx](howto_extend.md) adds others.
 - A key that the program does not know is an error, with the nearest known key in the message.
 - Strokes are called FM1, FM2, … (forward) and BM1, BM2, … (backward) in results.
 
@@ -68,38 +80,44 @@ output of `./run.sh schema`. The first line of the scenes in `scenes/` names it.
 `title` stands before the sections: free text, shown above tables and figures.
 """
 
-#: What a row says beyond the program's own short meaning.
-_NOTES = {
-    "solid.plane": '`"stress"` is a thin sheet',
-    "solid.material": "E, nu or rho written beside it replace the material's",
-    "punch.half_width": "dimensionless results do not depend on it",
-    "punch.load": "dimensionless results do not depend on it",
-    "friction.sigma0_over_load": "the slope of f over slip where f = 0",
-    "friction.delta": "below 1, full slip is reached after a finite slip",
-    "friction.pre_sliding": "the length of a stroke",
-    "friction.integrator": '`"rk4"`: Runge-Kutta with 20 steps a stroke, refused where it is unstable',
-    "friction.sign": '`"physical"`: σ_XY = -f σ_YY; `"eq25"`: σ_XY = f σ_YY, the mirror image',
-    "motion.c": "finite elements want it below the Rayleigh speed",
-    "motion.speed": "divided by the shear wave speed of the solid",
-    "motion.X_over_L": "on the same axis in both directions",
-    "solve.methods": "an empty list where only friction is asked for",
-    "solve.tolerance": "the polynomial degree rises until the measured error is below it",
-    "solve.mesh": '`"box"` is the block of the study, with walls at 100 a',
-    "solve.mode": '`"traction"`: pressure put in, see [Theory](theory.md)',
-    "solve.pressure": "for the mode traction",
-    "output.quantities": "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside",
-    "output.points": 'needs the quantity `"interior"`; Y/a < 0',
-    "output.map": 'needs the quantity `"interior"`; Y/a < 0',
-}
+_ARCHIVE = """\
+# Archives
 
-_CHOICES = {
-    "motion.c": "one of `c` and `speed`",
-    "motion.speed": "one of `c` and `speed`",
-    "solid.material": "none",
-    "output.map": "none",
-    "output.points": "none",
-}
-_CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
+Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
+
+One HDF5 file a run. It appears under its name only when it is whole: it is written beside it, read back,
+compared and renamed. Every numerical dataset carries a checksum, every dataset `units` ("1" for
+dimensionless) and `long_name`. An archive, and how to read it in Python:
+
+    ./run.sh run scenes/tables4_5.toml -o out.h5
+
+```python
+import h5py
+
+with h5py.File("out.h5") as file:
+    K_I = file["states/fem/K_I_right"][()]
+    motion = file["states/motion"].asstr()[()]
+```
+
+Other ways are in [Read archives](howto_read_archive.md).
+
+Root attributes: `program`, `version`, `schema_version`, `created`, `complete`, `scene_sha256`, `title`,
+`verdict`, `verdict_reasons` and `warnings` (JSON lists), `comparisons` and `versions` (JSON objects),
+`machine`, `load` (N/m).
+
+Datasets that nothing asks for are absent; the column "there with" says what does: a name of
+`solve.methods`, `solve.mode` or `friction.model`, or a word of `output.quantities`. The column "compared"
+names rows of [Comparisons](#comparisons). Quantities of your own come beside these, see
+[Extend galinx](howto_extend.md).
+"""
+
+_COMPARISONS = """\
+## Comparisons
+
+What is held against what, a number each: the attribute `comparisons` has the largest over all states by
+its text; the verdict is FAIL where one exceeds its limit. T is `solve.tolerance`.
+
+"""
 
 
 def commands_page() -> str:
@@ -107,6 +125,7 @@ def commands_page() -> str:
     import click
 
     from galinx.app.cli import cli
+    from galinx.app.console.program import program
 
     parts = [_COMMANDS]
     for name, command in cli.commands.items():
@@ -117,7 +136,8 @@ def commands_page() -> str:
         rows = [record for p in options if (record := p.get_help_record(context))]
         parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\nUsage: `{usage}`\n")
         if example:
-            parts.append(f"Example:\n\n    {' '.join(example.split())}\n")
+            shown = _plain(example).replace(program(), "./run.sh", 1)
+            parts.append(f"Example:\n\n    {shown}\n")
         if rows:
             parts.append(_table(("option", "meaning"), [(f"`{names}`", text) for names, text in rows]))
     return "\n".join(parts)
@@ -125,26 +145,33 @@ def commands_page() -> str:
 
 def scene_page() -> str:
     """Every section and key of a scene, and the known materials."""
-    import attrs
-
     from galinx.app.scene.materials import LIBRARY
-    from galinx.app.scene.schema import schema
     from galinx.app.scene.sections import SECTIONS
 
-    known = {f"{name}.{field.name}" for name, kind in SECTIONS.items() for field in attrs.fields(kind)}
-    stale = ({*_NOTES, *_CHOICES, *_CONSTANTS}) - known
-    if stale:
-        raise ValueError(f"docs/make.py speaks of keys that scenes do not have: {', '.join(stale)}")
-    properties = schema()["properties"]
     parts = [_SCENE]
-    for name, kind in SECTIONS.items():
-        described = properties[name]["properties"]
-        rows = [_row(name, field, described[field.name]) for field in attrs.fields(kind)]
-        heads = ("key", "value", "default", "allowed", "meaning")
-        parts += [f"## [{name}]\n", _table(heads, rows)]
+    for name, section in SECTIONS.items():
+        parts += [f"## [{name}]\n", *_section(section)]
     parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
     rows = [(f"`{n}`", m.about, m.E, f"{m.nu:g}", m.rho, m.source) for n, m in LIBRARY.items()]
     parts.append(_table(("name", "solid", "E", "ν (dimensionless)", "ρ", "source"), rows))
+    return "\n".join(parts)
+
+
+def archive_page() -> str:
+    """Every dataset of an archive, and every comparison."""
+    from galinx.postprocess.compare import RULES
+    from galinx.postprocess.quantities import table
+
+    parts, known = [_ARCHIVE], table()
+    for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
+        rows = [_dataset(path, row) for path, row in known.items() if path.startswith(f"{group}/")]
+        heads = ("dataset", "what", "shape", "unit", "there with", "compared")
+        parts += [f"## /{group}\n", _table(heads, rows)]
+    rules = [
+        (name, rule.text, ", ".join(f"`{row.path}`" for row in rule.needs), _limit(rule))
+        for name, rule in RULES.items()
+    ]
+    parts.append(_COMPARISONS + _table(("name", "text", "datasets", "at most"), rules))
     return "\n".join(parts)
 
 
@@ -158,6 +185,7 @@ def schema_text() -> str:
 def pages() -> dict[Path, str]:
     """All files that are made, and their text."""
     return {
+        HOME / "docs" / "archive.md": archive_page(),
         HOME / "docs" / "commands.md": commands_page(),
         HOME / "docs" / "scene.md": scene_page(),
         HOME / "scenes" / "scene.schema.json": schema_text(),
@@ -172,24 +200,95 @@ def on_files(files: Any, **_: Any) -> Any:
     return files
 
 
-def _row(section: str, field: Any, described: dict[str, Any]) -> tuple[str, ...]:
-    path, convert, about = f"{section}.{field.name}", field.metadata["convert"], field.metadata["doc"]
-    if path in _CHOICES:
-        default = _CHOICES[path]
+def _section(section: Any) -> list[str]:
+    """The keys of a section; where it describes a model, then those of each model."""
+    from galinx.registry import Registry
+    from galinx.solvers.parameters import parameters
+
+    heads = ("key", "value", "default", "allowed", "meaning")
+
+    def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
+        return [_row(key, known, section.or_else) for key, known in keys.items()]
+
+    alternatives = section.alternatives
+    if "" in alternatives:
+        return [_table(heads, rows(alternatives[""]))]
+    keys = next(iter(alternatives.values()))
+    chosen, models = next(
+        (key, known.kind.options)
+        for key, known in keys.items()
+        if isinstance(getattr(known.kind, "options", None), Registry)
+    )
+    own = {model: parameters(models[model]).keys() for model in alternatives}
+    common = {key: known for key, known in keys.items() if key not in own[next(iter(own))]}
+    parts = [_table(heads, rows(common))]
+    for model, keys in alternatives.items():
+        of_model = {key: known for key, known in keys.items() if key in own[model]}
+        about = models[model].about
+        what = f", {about}" * (about != model)
+        parts += [f'With `{chosen} = "{model}"`{what}:\n', _table(heads, rows(of_model))]
+    return parts
+
+
+def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
+    """A key's row; ``or_else`` is what else would do where it is missing."""
+    from galinx.app.scene.keys import REQUIRED
+    from galinx.app.scene.schema import entry
+
+    described = entry(known)
+    if known.default is REQUIRED:
+        default = f"required{or_else}"
     elif "default" in described:
-        default = f"`{json.dumps(described['default'], ensure_ascii=False)}`"
+        empty = described["default"] == []
+        default = known.without if empty else f"`{json.dumps(described['default'], ensure_ascii=False)}`"
     else:
-        default = "required, or `material`" if path in _CONSTANTS else "required"
-    meaning = "; ".join(filter(None, (about, _NOTES.get(path))))
-    return f"`{field.name}`", _value(convert), default, _allowed(described), meaning
+        default = known.without
+    meaning = "; ".join(filter(None, (known.about, known.note)))
+    return f"`{key}`", _value(known.kind), default, _allowed(described), meaning
 
 
-def _value(convert: Any) -> str:
+def _dataset(path: str, row: Any) -> tuple[str, ...]:
+    """A dataset's row."""
+    from galinx.postprocess.compare import RULES
+    from galinx.postprocess.quantities.quantity import ANYWHERE
+
+    what = row.about + "; tells states apart" * bool(row.symbol)
+    what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
+    compared = ", ".join(name for name, rule in RULES.items() if row in rule.needs)
+    shape, unit = " × ".join(row.over), row.unit.replace("none", "")
+    return f"`/{path}`", what, shape, unit, _there(row), compared
+
+
+def _there(row: Any) -> str:
+    """What a dataset is there with; nothing where it always is."""
+    from galinx.app.run.methods import METHODS
+    from galinx.postprocess.quantities.quantity import LOCAL
+    from galinx.solvers.friction import LAWS
+    from galinx.solvers.parameters import parameters
+
+    name = row.path.rpartition("/")[2]
+    laws = [law for law, model in LAWS.items() if row.symbol and name in parameters(model)]
+    method = row.method or next((part for part in row.path.split("/") if part in METHODS), "")
+    method = "any method" if method == LOCAL else method and f"`{method}`"
+    words = [method, *(f"`{word}`" for word in (row.mode, row.asked_by, *laws) if word)]
+    return ", ".join(filter(None, words)) or "every run"
+
+
+def _limit(rule: Any) -> str:
+    """Largest value of a PASS."""
+    if rule.tolerances is not None:
+        limit = "T" if rule.tolerances == 1.0 else f"{rule.tolerances:g} T"
+    else:
+        limit = "told only" if rule.limit is None else f"{rule.limit:g}"
+    return limit + f", mode `{rule.mode}`" * bool(rule.mode)
+
+
+def _value(kind: Any) -> str:
     """What kind of value a key wants."""
-    text = _plain(type(convert).__doc__ or "").replace("``", "`").rstrip(".")
-    unit = getattr(convert, "unit", None)
+    text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
+    unit = getattr(kind, "unit", None)
     if unit is not None:
-        several = " or a list" if type(convert).__name__ == "Numbers" else ""
+        several = " or a list" if type(kind).__name__ == "Numbers" else ""
         return f"number [{unit or 'dimensionless'}]{several}"
     return text[0].lower() + text[1:] if text[:2] != "`{" else text
 

@@ -19,6 +19,7 @@ NOT_RUN = ("test", "bench", "stress", "docs")
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _COMMAND = re.compile(r"\s*(\w+=\S+ |for .*; do )*\./run\.sh\b")
+_NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: No windows, and no compiled files beside the pages.
 SILENT = {"MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"}
@@ -35,6 +36,20 @@ def text_of(page):
 def blocks(page, kind):
     """Bodies of the fenced blocks of one kind."""
     return [body for language, body in _FENCE.findall(text_of(page)) if language == kind]
+
+
+def file_of(block):
+    """The file that a block is saved in, which its first line names as a comment; None for none."""
+    named = _NAMED.match(block)
+    return named[1] if named else None
+
+
+def save_blocks(page, folder):
+    """Blocks that name a file; those of one file follow each other."""
+    for block in (*blocks(page, "python"), *blocks(page, "toml")):
+        if name := file_of(block):
+            with (folder / name).open("a", encoding="utf-8") as file:
+                file.write(block)
 
 
 def commands(page):
@@ -128,8 +143,9 @@ def folder_for(page, folder):
 
 
 def run_page(page, shelf, folder):
-    """Run the commands of a page in order, then its Python; what both print."""
+    """Save the files of a page, run its commands in order, then its Python; what both print."""
     output, faults = "", []
+    save_blocks(page, folder)
     for command in commands(page):
         words = words_of(command)
         if words and words[0] in NOT_RUN:

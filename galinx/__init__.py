@@ -24,7 +24,8 @@ _NAMES = {
     **dict.fromkeys(("PROFILES", "Profile"), "solvers.profiles"),
     **dict.fromkeys(("MESHES", "MeshKind"), "meshes"),
     **dict.fromkeys(("QUANTITIES", "Quantity"), "postprocess.quantities"),
-    **dict.fromkeys(("METHODS",), "app.run.methods"),
+    **dict.fromkeys(("RULES", "Rule"), "postprocess.compare"),
+    **dict.fromkeys(("METHODS", "MethodKind"), "app.run.methods"),
     **dict.fromkeys(("choice", "parameter"), "solvers.parameters"),
 }
 

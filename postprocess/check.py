@@ -57,7 +57,9 @@ def _layout(path: Path, states: int, known: dict[str, Quantity]) -> list[str]:
     found = []
     for name, (unit, shape) in archive.described(path).items():
         if name not in known:
-            found.append(f"{name} is not in the table of datasets")
+            found.append(
+                f"{name} is not in the table of datasets; is it registered by a file of yours (-x)?"
+            )
         elif unit != known[name].unit:
             found.append(f"{name} has the unit {unit!r}, expected {known[name].unit!r}")
         elif known[name].over == (STATE,) and shape != (states,):

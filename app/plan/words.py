@@ -4,17 +4,19 @@ from galinx.app import ranks
 from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan, unknowns
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
+from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import CLOSED_FORM
+from galinx.postprocess.quantities.quantity import FEM
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
-    if CLOSED_FORM in plan.methods:
-        result.append(f"closed form: {plan.states} states")
+    for name in plan.methods:
+        if name != FEM:
+            result.append(f"{METHODS[name].about}: {plan.states} states")
     if plan.fem:
         result += _fem_lines(scene, plan, plan.fem)
     if plan.asks(stresses.ON_SURFACE):

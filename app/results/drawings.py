@@ -103,8 +103,10 @@ class Loops:
 
     def __init__(self, data: dict[str, Any]) -> None:
         self._data, self._told = data, Told(data)
-        varied = self._told.varied()
-        self._names = [name for name in self._told.law if name in varied]
+        _, self._first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
+        varied = self._told.varied(self._first)
+        # The speed tells loops apart only where the law depends on it.
+        self._names = [name for name in ("c", *self._told.law) if name in varied]
         self._known: dict[int, Loop] = {}
 
     def of(self, state: int) -> Loop | None:
@@ -126,8 +128,7 @@ class Loops:
 
     def distinct(self) -> list[Loop]:
         """The first loops, of different laws."""
-        _, first = np.unique(self._data[runs.LOOP_OF_STATE.path], return_index=True)
-        return [loop for state in first.tolist() if (loop := self.of(state))][:_CURVES]
+        return [loop for state in self._first.tolist() if (loop := self.of(state))][:_CURVES]
 
 
 def _surface(data: dict[str, Any], loops: Loops) -> Drawing:

@@ -72,7 +72,7 @@ class Collector:
         Raises:
             SolveError: no speed could be solved.
         """
-        if not self._plan.fem or not ranks.is_root():
+        if not ranks.is_root():
             return
         records = [self._records[i] for i in sorted(self._records)]
         failures = [
@@ -81,7 +81,10 @@ class Collector:
         if len(failures) == len(self._plan.tasks):
             raise SolveError(failures[0])
         self._judge.failures = failures
-        self._sink.put(FAILURES.path, failures)
+        if self._plan.fem or failures:
+            self._sink.put(FAILURES.path, failures)
+        if not self._plan.fem:
+            return
         for name, quantity in RECORD.items():
             self._sink.put(quantity.path, np.array([record[name] for record in records]))
         changes = [record.get("change_by_degree", []) for record in records]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from galinx.app.console.program import program
 from galinx.app.scene.values import Choice, Kind, Number, Numbers
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
@@ -73,8 +74,13 @@ class Section:
                 values[key] = known.kind(given[key])
             except ValueError as error:
                 found.append(f"{name}.{key} ({known.about}): {error}")
+        if not found:
+            try:
+                return self._made(values)
+            except ValueError as error:  # values that a model refuses together
+                found.append(f"{name}: {error}")
         faults += found
-        return None if found else self._made(values)
+        return None
 
     def _made(self, values: dict[str, Any]) -> Any:
         return self.build(**values)
@@ -123,7 +129,8 @@ class ModelSection(Section):
             try:
                 Choice(self._models)(wanted)
             except ValueError as error:
-                faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}")
+                own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
+                faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
             return None
         return super().read(name, given, faults)
 

@@ -57,7 +57,8 @@ def intensity_rows(name: str, data: dict[str, Any]) -> list[IntensityRow]:
     """Rows of ``"table4"`` or ``"table5"`` from an archive; none where it lacks their states."""
     table = published()[name]
     paths = [row.path for row in (states.K_I_BOTH, states.K_I_LEFT[FEM], states.K_I_RIGHT[FEM])]
-    if any(path not in data for path in paths):
+    columns = [column(key) for key in REFERENCE]
+    if any(path not in data for path in (*paths, *columns)):
         return []
     chosen = data[states.SPEED.path] == table["c"]
     for key, value in REFERENCE.items():

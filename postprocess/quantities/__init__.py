@@ -16,21 +16,23 @@ from galinx.registry import Registry
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 
-__all__ = ["QUANTITIES", "WORDS", "Quantity", "add", "column", "declared", "table"]
-
-#: Quantities by their path, but for the parameters of friction laws.
-QUANTITIES: Registry[Quantity] = Registry(
-    "quantity", {row.path: row for part in (states, stresses, runs) for row in part.ROWS}
-)
+__all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "table"]
 
 
-def add(quantity: Quantity) -> Quantity:
-    """Add a quantity of one's own.
+class Table(Registry[Quantity]):
+    """Quantities by their path."""
 
-    Raises:
-        ValueError: its path is taken.
-    """
-    return QUANTITIES.register(quantity.path, quantity)
+    def add(self, quantity: Quantity) -> Quantity:
+        """Add a quantity of one's own, and return it.
+
+        Raises:
+            ValueError: its path is taken.
+        """
+        return self.register(quantity.path, quantity)
+
+
+#: All but the parameters of friction laws.
+QUANTITIES = Table("quantity", {row.path: row for part in (states, stresses, runs) for row in part.ROWS})
 
 
 def column(name: str) -> str:

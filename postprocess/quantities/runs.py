@@ -1,6 +1,9 @@
 """What a run says of itself, and the friction loops that its states lie on."""
 
-from galinx.postprocess.quantities.quantity import LOOP, SPEED, STATE, STEP, Quantity, rows
+from galinx.postprocess.quantities.quantity import FEM, LOOP, SPEED, STATE, STEP, Quantity, rows
+
+#: Dimensions of what is told in words, and of times.
+LINE, TIMED = "lines", "steps"
 
 SCENE = Quantity("scene/text", "none", "scene as given (TOML)")
 
@@ -14,7 +17,7 @@ LOOP_F = Quantity(
 
 #: One value a speed that finite elements solved, by the name in a method's record.
 RECORD = {
-    name: Quantity(f"run/fem/{name}", "1", about, (SPEED,))
+    name: Quantity(f"run/fem/{name}", "1", about, (SPEED,), method=FEM)
     for name, about in {
         "c": "speeds with finite elements, over shear wave speed",
         "cells": "cells of the mesh",
@@ -31,13 +34,13 @@ RECORD = {
 CHANGES = Quantity(
     "run/fem/change_by_degree", "1",
     "largest relative change of K_I and moments from the degree before, by degree; 0: not computed",
-    (SPEED, "degrees"),
+    (SPEED, "degrees"), method=FEM,
 )  # fmt: skip
 
-FAILURES = Quantity("run/failures", "none", "speeds that could not be solved, and why")
-DONE = Quantity("run/done", "none", "steps done")
-SKIPPED = Quantity("run/skipped", "none", "steps skipped, and why")
-SECONDS = Quantity("run/seconds", "s", "wall time of the steps done, in the order of run/steps")
-STEPS = Quantity("run/steps", "none", "names of the timed steps")
+FAILURES = Quantity("run/failures", "none", "speeds that could not be solved, and why", (LINE,))
+DONE = Quantity("run/done", "none", "steps done", (LINE,))
+SKIPPED = Quantity("run/skipped", "none", "steps skipped, and why", (LINE,))
+SECONDS = Quantity("run/seconds", "s", "wall time of the steps done, in the order of run/steps", (TIMED,))
+STEPS = Quantity("run/steps", "none", "names of the timed steps", (TIMED,))
 
 ROWS = rows(globals())

@@ -55,7 +55,7 @@ INSIDE_Y = Quantity(
 )  # fmt: skip
 MAP = Quantity(
     "interior/map", "1", "rows and columns of the grid that the first points inside form, by rows",
-    asked_by=BELOW,
+    ("2",), asked_by=BELOW,
 )  # fmt: skip
 
 

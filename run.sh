@@ -16,11 +16,11 @@ mpirun=mpirun
 
 # The programs, then what only the tests need.
 packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
-  python3-scipy python3-matplotlib python3-attr python3-pint python3-click python3-rich
+  python3-scipy python3-matplotlib python3-pint python3-click python3-rich
   python3-jinja2 python3-tomlkit python3-xarray
   libopenblas0-serial openmpi-bin gcc libc6-dev)
 docs_packages=(mkdocs)
-test_packages=(python3-pytest python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
+test_packages=(python3-pytest python3-pytest-xdist python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
   python3-vtk9 python3-nbclient python3-ipykernel "${docs_packages[@]}")
 
 missing() { # the packages of the arguments that are not installed
@@ -78,7 +78,9 @@ if [ "${1:-}" = test ]; then
   shift
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
-  "$python" -m pytest "$@"
+  # Files of tests side by side, as many as there are cores; programs that they start choose theirs freely.
+  OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none \
+    "$python" -m pytest -n "$(nproc --all)" --dist loadfile "$@"
   for argument in "$@"; do # tests that are named are run alone
     [ ! -e "${argument%%::*}" ] || exit 0
   done

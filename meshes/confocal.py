@@ -1,4 +1,4 @@
-"""The confocal mesh: the rectangle of elliptic coordinates, in which edge singularities are nearly smooth."""
+"""Confocal meshes: the rectangle of elliptic coordinates, where edge singularities are nearly smooth."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""A way to mesh the half-plane, and how fine it has to be; the rule was measured, see docs/verification.md."""
+"""A way to mesh the half-plane, and how fine it has to be; measured, see docs/verification.md."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -5,6 +5,7 @@ import os
 import zipfile
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +56,6 @@ def _keep(path: Path, mesh: QuadMesh) -> None:
     temporary = path.with_name(f"{path.name}.{os.getpid()}.npz")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        edges = {str(tag): edges for tag, edges in mesh.edges.items()}
+        edges: dict[str, Any] = {str(tag): edges for tag, edges in mesh.edges.items()}
         np.savez(temporary, points=mesh.points, cells=mesh.cells, **edges)
         os.replace(temporary, path)

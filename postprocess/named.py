@@ -42,7 +42,7 @@ def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
     coordinates: dict[str, Any] = dict.fromkeys(path.rpartition("/")[2] for path in apart)
     for path, values in data.items():
         row = known.get(path)
-        if row is None or not of_states(path) or not row.over:
+        if row is None or not of_states(path) or not _has_names(row):
             continue
         dims = tuple(_DIMENSIONS[dimension] for dimension in row.over)
         about = {"units": row.unit, "long_name": row.about}
@@ -56,6 +56,10 @@ def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
             variables[name] = (dims, values, about)
     kept = {name: attributes[name] for name in ("title", "version", "verdict")}
     return xarray.Dataset(variables, coordinates, kept)
+
+
+def _has_names(row: Quantity) -> bool:
+    return bool(row.over) and set(row.over) <= _DIMENSIONS.keys()
 
 
 def over_parameters(states: xarray.Dataset) -> xarray.Dataset:

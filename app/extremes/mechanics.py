@@ -62,8 +62,9 @@ def _in_plane_error(data: dict[str, np.ndarray]) -> np.ndarray:
 
 def _slope_error(κ: float, c: float, degree: int, g: float = -0.5) -> float:
     """Error of v,X for 1.1 <= |X/a| <= 5 over its largest value there; v,X knows the Rayleigh speed."""
-    plan, kind = make_plan(parse(scene(c=[c]))), MESHES["confocal"]
-    space = Space(*distribute(plan.fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree)
+    fem, kind = make_plan(parse(scene(c=[c]))).fem, MESHES["confocal"]
+    assert fem
+    space = Space(*distribute(fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree)
     punch = SlidingPunch(space, MovingFrame(κ, c))
     weights = punch.states(g).weights
     X = np.concatenate([-np.linspace(1.1, 5.0, 40), np.linspace(1.1, 5.0, 40)])
@@ -98,14 +99,16 @@ def _beyond_rayleigh(c_R: float) -> Verdict:
 def solids() -> Row:
     """Poisson's ratio from -0.9 to 1/2, in both planes."""
     ν = np.array([-0.9, -0.5, 0.0, 0.25, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.5])
-    lines, true, estimate = {}, [], []
+    lines: dict[str, np.ndarray] = {}
+    true, estimate = [], []
     for plane in ("strain", "stress"):
         runs = [solved(nu=float(value), plane=plane, c=_slow_and_fast(value, plane)) for value in ν]
         errors = np.array([run[of.TRUE_ERROR.path] for run in runs])
         estimates = np.array([run[of.ESTIMATE.path] for run in runs])
         lines |= {f"K_I, plane {plane}": errors.max(axis=1), f"estimate, {plane}": estimates.max(axis=1)}
         lines[f"σ_XX, {plane}"] = np.array([_in_plane_error(run).max() for run in runs])
-        true.append(errors), estimate.append(estimates)
+        true.append(errors)
+        estimate.append(estimates)
     σ_XX = max(lines[f"σ_XX, {plane}"].max() for plane in ("strain", "stress"))
     verdicts = [honest(np.array(true), np.array(estimate)), reached(np.array(true), TOLERANCE, "every ν")]
     verdicts.append(Verdict(f"σ_XX on the surface within {σ_XX:.1e}, allowed 1e-4", σ_XX <= 1e-4))

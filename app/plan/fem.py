@@ -84,15 +84,20 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
         for response in responses
     )
     size = _size(refinement, solve.cuts * max(degrees))
-    shared = 1 < ranks.size() <= len(responses) and size < SMALL
+    shared = shares_speeds(size, len(responses))
     solver = solve.solver
     if mixed or solver == "auto":
         needed = cost.bytes_of_levels(size, direct=True) * (ranks.size() if shared else 1)
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
-        solve.mesh, kind, refinement, solve.cuts, scene.solid.form, solver, degrees, solve.degree is not None,
-        solve.tolerance, solve.mode, solve.pressure, shared,
+        solve.mesh, kind, refinement, solve.cuts, scene.solid.form, solver, degrees,
+        solve.degree is not None, solve.tolerance, solve.mode, solve.pressure, shared,
     )  # fmt: skip
+
+
+def shares_speeds(unknowns: int, speeds: int) -> bool:
+    """Small systems gain nothing from being cut in pieces; whole speeds are shared out instead."""
+    return 1 < ranks.size() <= speeds and unknowns < SMALL
 
 
 def _check_degree_and_solver(scene: Scene) -> None:

@@ -1,4 +1,4 @@
-"""Which figures an archive has, and what is on each; all is read from the archive, nothing computed again."""
+"""Which figures an archive has, and what is on each: all is read from it, nothing computed again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

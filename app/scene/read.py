@@ -72,6 +72,7 @@ def parse(text: str, name: str = "scene") -> Scene:
 def _fill_in_material(tree: dict[str, Any]) -> None:
     """Values of a known solid; those that the scene gives itself stay."""
     solid = tree.get("solid")
-    name = solid.get("material") if isinstance(solid, dict) else None
-    if isinstance(name, str) and name in LIBRARY:
-        tree["solid"] = LIBRARY[name].constants | solid
+    if isinstance(solid, dict):
+        name = solid.get("material")
+        if isinstance(name, str) and name in LIBRARY:
+            tree["solid"] = LIBRARY[name].constants | solid

@@ -26,7 +26,9 @@ gram = [mass] = g
 newton = kilogram * meter / second ** 2 = N
 pascal = newton / meter ** 2 = Pa
 """
-_COMMON_NAMES = frozenset("m mm µm μm km s ms kg g N mN kN MN Pa kPa MPa GPa".split())
+_COMMON_NAMES = frozenset(
+    ("m", "mm", "µm", "μm", "km", "s", "ms", "kg", "g", "N", "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa")
+)
 
 #: Names of units in a text; an exponent's e belongs to its number.
 _NAMES = re.compile(r"(?<![\w.])[^\W\d]\w*")
@@ -47,13 +49,14 @@ def _pint() -> Any:
 
     Those take longer to import than everything else that a friction loop needs.
     """
-    hidden = [name for name in ("pandas", "xarray", "dask") if name not in sys.modules]
-    sys.modules.update(dict.fromkeys(hidden))  # None: Python takes the module for missing
+    modules: dict[str, Any] = sys.modules
+    hidden = [name for name in ("pandas", "xarray", "dask") if name not in modules]
+    modules.update(dict.fromkeys(hidden))  # None: Python takes the module for missing
     try:
         import pint
     finally:
         for name in hidden:
-            del sys.modules[name]
+            del modules[name]
     return pint
 
 

@@ -34,9 +34,12 @@ class Piece(Protocol):
         data: arrays at the points by name, (n,) or (n, 3); the same names in every piece.
     """
 
-    points: NDArray
-    quads: NDArray
-    data: Mapping[str, NDArray]
+    @property
+    def points(self) -> NDArray: ...
+    @property
+    def quads(self) -> NDArray: ...
+    @property
+    def data(self) -> Mapping[str, NDArray]: ...
 
 
 def write(path: Path, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:

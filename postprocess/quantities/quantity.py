@@ -30,8 +30,8 @@ class Quantity:
         unit: "1" for dimensionless, "none" for texts.
         about: what it is; the dataset's long name.
         over: its dimensions.
-        of: reads it off a solution (see :mod:`galinx.solvers.solution`) of a body, one value a state; None
-            where the run itself puts it in.
+        of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
+            None where the run itself puts it in.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
         mode: of the finite elements, where only one gives it.
         asked_by: word of output.quantities; "" where every solution gives it.

@@ -20,8 +20,8 @@ from galinx.postprocess.stresses import flatness
 _CONTACT = "contact"
 
 MOTION = Quantity(
-    "states/motion", "none", "name of the stroke: forward (FM) or backward (BM) motion, numbered", (STATE,),
-    symbol="motion",
+    "states/motion", "none", "name of the stroke: forward (FM) or backward (BM) motion, numbered",
+    (STATE,), symbol="motion",
 )  # fmt: skip
 POSITION = Quantity(
     "states/X_over_L", "1", "position on the stroke over the pre-sliding displacement", (STATE,),
@@ -93,7 +93,7 @@ ESTIMATE = Quantity(
 
 
 def K_I_error(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Larger relative error of the two stress intensity factors against the integral equation, (states,)."""
+    """Larger relative error of both stress intensity factors against the integral equation, (states,)."""
     left, right = (
         data[side[FEM].path] / data[side[CLOSED_FORM].path] - 1.0 for side in (K_I_LEFT, K_I_RIGHT)
     )

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 class Chart(Protocol):
     """What forms and postprocessing ask of a chart: the coordinates a mesh is drawn in."""
 
-    #: Name of the chart in archives and form caches.
-    name: str
+    @property
+    def name(self) -> str:
+        """Name of the chart in archives and form caches."""
 
     def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
         """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at x.

@@ -59,9 +59,7 @@ class CellMatrices:
         self.kernel(result, constants, corners)
         return result
 
-    def condense(
-        self, constants: NDArray, corners: NDArray
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def condense(self, constants: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:
         """Condensed element matrices, and what gives the inner unknowns from the outer ones.
 
         Returns:

@@ -1,5 +1,6 @@
 """Meshes shared out over ranks."""
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,9 +16,12 @@ _ORDER = [0, 1, 3, 2]
 class Quadrilaterals(Protocol):
     """``points`` (n, 2), ``cells`` (m, 4) going round, and ``edges`` (k, 2) by their tag."""
 
-    points: NDArray
-    cells: NDArray
-    edges: dict[int, NDArray]
+    @property
+    def points(self) -> NDArray: ...
+    @property
+    def cells(self) -> NDArray: ...
+    @property
+    def edges(self) -> Mapping[int, NDArray]: ...
 
 
 def distribute(mesh: Quadrilaterals | None, comm: MPI.Comm) -> tuple[Any, Any]:

@@ -50,7 +50,7 @@ class KrylovSpace:
         if not self.complete:
             self._V.append(w / self._H[j + 1, j])
 
-    def solve(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
         """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
         m = len(self.fields) - 1
         e1 = np.zeros((1, m, 1))

@@ -5,7 +5,7 @@ from numpy.polynomial.legendre import legder, legvander
 from numpy.typing import ArrayLike, NDArray
 
 
-def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
     """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
 
     They are expanded in Legendre polynomials, which is well conditioned for nodes that crowd at the ends;

@@ -33,7 +33,7 @@ def empty_matrix(numbers: NDArray[np.int32], first: int, last: int, comm: MPI.Co
     from_others = border.array_r.astype(np.int64)
     border.destroy()
     within = np.maximum(brought(np.ones(len(numbers), dtype=bool)) + from_others, 2)  # a diagonal
-    across = brought(~here.all(axis=1)) + from_others
+    across = brought(np.any(~here, axis=1)) + from_others
     room = np.minimum(within, 2 * owned), np.minimum(across, 2 * comm.allreduce(owned))
 
     A = PETSc.Mat().create(comm)

@@ -1,6 +1,6 @@
 """Conjugate gradients with algebraic multigrid: for matrices whose factor does not fit into memory."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,7 +99,7 @@ class Multigrid:
         self._ksp.destroy(), self.A.destroy()
 
 
-def _orthonormal(A: PETSc.Mat, modes: Sequence[NDArray]) -> PETSc.NullSpace:
+def _orthonormal(A: PETSc.Mat, modes: Iterable[NDArray]) -> PETSc.NullSpace:
     basis: list[PETSc.Vec] = []
     for mode in modes:
         x = A.createVecRight()

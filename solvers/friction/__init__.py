@@ -13,7 +13,7 @@ class Laws(Registry[type[FrictionLaw]]):
         """Add a law of one's own, and return it.
 
         Raises:
-            ValueError: the name is taken, or another law has a parameter of that key in another unit.
+            ValueError: the name is taken, or another law has that parameter in another unit.
         """
         for other, law in self.items():
             known = parameters(law)
@@ -21,7 +21,8 @@ class Laws(Registry[type[FrictionLaw]]):
                 if other != name and key in known and known[key].unit != parameter.unit:
                     raise ValueError(
                         f"the parameter {key!r} of the friction law {other!r} has the unit "
-                        f"{known[key].unit or '1'!r}, of {name!r} {parameter.unit or '1'!r}; name it apart"
+                        f"{known[key].unit or '1'!r}, {name!r} wants {parameter.unit or '1'!r}: name it "
+                        "apart"
                     )
         return super().register(name, model)
 

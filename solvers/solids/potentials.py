@@ -34,7 +34,7 @@ def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -
 
 
 def field(frame: Any, g: Any, s_s: Any, h_s: Any, s: Any, h: Any) -> tuple[Any, Any, Any]:
-    """σ_XX, σ_YY, σ_XY of a potential Φ; plain arithmetic, so that symbols of a proof may stand for numbers.
+    """σ_XX, σ_YY, σ_XY of a potential Φ; plain arithmetic, so that a proof's symbols may be put in.
 
     Args:
         frame: constants of the moving frame.

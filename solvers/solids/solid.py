@@ -1,6 +1,6 @@
 """What solvers ask of an elastic solid, at rest and at speed."""
 
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,8 @@ class Response(Protocol):
     Attributes:
         c: speed over the solid's wave speed, dimensionless.
         n, m, n12, q: of the surface, dimensionless.
-        margin: 1 at rest, 0 at the highest speed that finite elements can do, negative beyond; displacements
-            grow as it falls.
+        margin: 1 at rest, 0 at the highest speed that finite elements can do, negative beyond;
+            displacements grow as it falls.
         β_s: how much the slowest field is flattened: fields turn within an angle of that size.
     """
 
@@ -43,7 +43,7 @@ class Response(Protocol):
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
 
-    def inside(self, α: NDArray, β: NDArray, g: NDArray, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+    def inside(self, α: Any, β: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), below a flat punch.
 
         Args:
@@ -60,7 +60,7 @@ class Solid(Protocol):
         about: what kind of solid it is.
         form: name of the weak form that finite elements solve, see :mod:`galinx.solvers.fem.forms`; its
             constants are attributes of the response.
-        nearly_incompressible: displacements alone would lose digits; the weak form has an unknown pressure.
+        nearly_incompressible: displacements alone would lose digits; the form has an unknown pressure.
         plane: ``"strain"`` or ``"stress"``.
         μ: modulus that stresses are divided by [Pa].
         ρ: density [kg/m³].

@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 from support import HOME
 
-from galinx.app.plan import plan
+from galinx.app.plan import fem
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import compute
 from galinx.app.run.sinks import Memory
@@ -22,7 +22,7 @@ RESULTS, SMALL, STRESSES = 1e-9, 1e-8, 1e-7
 def test_a_decomposed_mesh_gives_what_one_rank_gives(name, monkeypatch):
     found = []
     for alone in (True, False):
-        monkeypatch.setattr(plan, "_share_speeds", lambda *_, alone=alone: alone)
+        monkeypatch.setattr(fem, "shares_speeds", lambda *_, alone=alone: alone)
         found.append(Memory())
         compute(SCENES[name], found[-1])
     one, two = found

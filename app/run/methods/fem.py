@@ -33,7 +33,7 @@ def _given() -> ModuleType:
     return given
 
 
-#: What solves at one speed, by the scene's mode: a module with the functions ``solver`` and ``one_state``.
+#: What solves at one speed, by the scene's mode: a module with functions ``solver`` and ``one_state``.
 MODES: dict[str, Callable[[], ModuleType]] = {"contact": _punch, "traction": _given}
 
 
@@ -101,7 +101,7 @@ class FiniteElements:
 
 @contextmanager
 def quiet_compiler() -> Iterator[None]:
-    """FFCx's build tools announce every compilation on the root logger, whose level they set themselves."""
+    """FFCx's build tools announce compilations on the root logger, whose level they set themselves."""
     disabled, warnings = logging.root.manager.disable, logging.getLogger("py.warnings")
     level = warnings.level
     logging.disable(logging.INFO)

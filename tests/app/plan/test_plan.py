@@ -105,7 +105,7 @@ def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
 
 @pytest.mark.parametrize("numbers, count", [(1, 6), (4000, 2), (10**9, 1)])
 def test_states_are_taken_in_chunks_of_one_speed(numbers, count, monkeypatch):
-    """Two speeds with six states each, of which each has 5 x 217 numbers on the surface and 13 besides."""
+    """Two speeds with six states each; a state has 5 x 217 numbers on the surface and 13 besides."""
     monkeypatch.setattr(task, "CHUNK_NUMBERS", numbers)
     plan = make_plan(template("tables4_5"))
     found = [rows for one in plan.tasks for rows in plan.chunks(one)]

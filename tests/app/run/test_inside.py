@@ -19,13 +19,15 @@ def with_points(points):
     return {"output.quantities": ["sif", "interior"], "output.points": np.asarray(points).tolist()}
 
 
-@pytest.mark.parametrize("tolerance, limit", [(1e-6, 1e-4), (1e-9, 2e-6)])
-def test_stresses_inside_are_those_of_the_potentials(tolerance, limit):
-    changes = {"solve.tolerance": tolerance, "motion.c": [0.0, 4.786e-7, 0.6, 0.9]}
+@pytest.mark.parametrize(
+    "tolerance, limit, speeds", [(1e-6, 1e-4, [0.0, 4.786e-7, 0.6, 0.9]), (1e-9, 2e-6, [4.786e-7, 0.9])]
+)
+def test_stresses_inside_are_those_of_the_potentials(tolerance, limit, speeds):
+    changes = {"solve.tolerance": tolerance, "motion.c": speeds}
     data = computed("tables4_5", with_points(random_points(200, 7)) | changes).data
     for ij in ("XX", "YY", "XY"):
         fem, exact = (data[f"interior/{method}/sigma_{ij}"] for method in ("fem", "closed_form"))
-        assert fem.shape == (24, 200)
+        assert fem.shape == (6 * len(speeds), 200)
         error = np.abs(fem - exact).max(axis=1) / np.abs(exact).max(axis=1)
         assert error.max() <= limit
 

@@ -21,9 +21,9 @@ from galinx.solvers.fem.punch import SlidingPunch
 #: Moments at which a run is killed; GALINX_THOROUGH=1 asks for as many as a release does.
 KILLS = 20 if os.environ.get("GALINX_THOROUGH") else 4
 
-#: A sweep of 12 speeds with two parts each: of 1000 states, and of the other 20.
+#: A sweep of 6 speeds with two parts each: of 1000 states, and of the other 20.
 SWEEP = {
-    "motion.c": [round(0.07 * n, 2) for n in range(12)],
+    "motion.c": [round(0.14 * n, 2) for n in range(6)],
     "motion.X_over_L": [round(n / 339, 6) for n in range(340)],
     "solve.tolerance": 1e-4,
 }

@@ -1,4 +1,4 @@
-"""Models of a user's own, registered from outside: solved by two methods, archived, drawn, and refused."""
+"""Models of a user's own, registered from outside: solved by two methods, archived, drawn, refused."""
 
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -121,7 +121,7 @@ def test_a_name_or_a_unit_that_is_taken_is_refused(monkeypatch):
 def test_a_path_outside_the_table_is_refused_by_every_sink():
     for sink in (Memory(), Nowhere()):
         for write in (lambda s: s.put("states/ff", 1.0), lambda s: s.reserve("states/ff", (1,))):
-            with pytest.raises(KeyError, match="did you mean states/f?"):
+            with pytest.raises(KeyError, match="did you mean states/f"):
                 write(sink)
 
 

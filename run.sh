@@ -78,9 +78,8 @@ if [ "${1:-}" = test ]; then
   shift
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
-  # Files of tests side by side, as many as there are cores; programs that they start choose theirs freely.
-  OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none \
-    "$python" -m pytest -n "$(nproc --all)" --dist loadfile "$@"
+  # Files of tests side by side, as many as there are cores.
+  "$python" -m pytest -n "$(nproc --all)" --dist loadfile "$@"
   for argument in "$@"; do # tests that are named are run alone
     [ ! -e "${argument%%::*}" ] || exit 0
   done

@@ -6,46 +6,21 @@ from functools import lru_cache
 from math import isfinite
 from typing import Any
 
+from galinx.app.scene.metric import in_unit
+
 #: A number, then a unit. pint alone would multiply what stands side by side: "0.5.5" is no 0.25.
 _FORM = re.compile(
     r"\s*[-+]?(\d+\.?\d*|\.\d+|nan|inf)([eE][-+]?\d+)?\s*(1\s*/\s*)?([^\W\d]|%|$).*", re.DOTALL
 )
 
 
-#: What the units that most scenes use are made of, as pint defines them: all that it knows would take
-#: longer to read than a friction loop to compute.
-_COMMON = """
-giga- = 1e9 = G-
-mega- = 1e6 = M-
-kilo- = 1e3 = k-
-milli- = 1e-3 = m-
-micro- = 1e-6 = µ- = μ-
-meter = [length] = m
-second = [time] = s
-gram = [mass] = g
-newton = kilogram * meter / second ** 2 = N
-pascal = newton / meter ** 2 = Pa
-"""
-_COMMON_NAMES = frozenset(
-    ("m", "mm", "µm", "μm", "km", "s", "ms", "kg", "g", "N", "mN", "kN", "MN", "Pa", "kPa", "MPa", "GPa")
-)
-
-#: Names of units in a text; an exponent's e belongs to its number.
-_NAMES = re.compile(r"(?<![\w.])[^\W\d]\w*")
-
-
-@lru_cache(maxsize=2)
-def _registry(common: bool) -> Any:
-    """pint's registry of all units, or of those that most scenes use."""
-    if not common:
-        return _pint().UnitRegistry()
-    registry = _pint().UnitRegistry(None)
-    registry.load_definitions(_COMMON.strip().splitlines())
-    return registry
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    return _pint().UnitRegistry()
 
 
 def _pint() -> Any:
-    """pint, which only scenes with units pay for, without array libraries that it looks for.
+    """pint, which only scenes with rarer units pay for, without array libraries that it looks for.
 
     Those take longer to import than everything else that a friction loop needs.
     """
@@ -87,13 +62,15 @@ def to_si(value: Any, unit: str) -> float:
 def _parse(text: str, unit: str, wanted: str) -> float:
     if not _FORM.fullmatch(text):
         raise ValueError(f"found {text!r}, expected {wanted}")
+    metric = in_unit(text, unit)
+    if metric is not None:
+        return metric
 
     import tokenize
 
     pint = _pint()
     try:
-        names = _NAMES.findall(text) + _NAMES.findall(unit)
-        quantity = _registry(_COMMON_NAMES.issuperset(names)).Quantity(text)
+        quantity = _registry().Quantity(text)
         if not unit and not quantity.unitless and quantity.dimensionless:
             return float(quantity.to("").magnitude)
         return float(quantity.to(unit).magnitude)

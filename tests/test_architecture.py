@@ -1,6 +1,8 @@
 """The folder tree is the architecture: which room may import which."""
 
 import ast
+import re
+from graphlib import TopologicalSorter
 
 from support import HOME
 
@@ -98,3 +100,45 @@ def test_what_is_against_the_rules_is_found():
     assert list(faults_of_imports("solvers/fem/x.py", {"dolfinx", "solvers.sie.fourier"}))
     assert list(faults_of_length("x.py", "def f():\n" + 50 * "    pass\n")) == ["x.py: f has 51 lines"]
     assert list(faults_of_length("x.py", 331 * "\n")) == ["x.py has 331 lines"]
+
+
+def modules():
+    """Modules by name, and what each imports of the others, wherever in it."""
+    known = {
+        name.removesuffix(".py").removesuffix("/__init__").replace("/", "."): path
+        for name, path in FILES.items()
+    }
+    for name, path in known.items():
+        found = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                module = node.module.removeprefix("galinx.")
+                names = (f"{module}.{alias.name}" for alias in node.names)
+                found |= {one if one in known else module for one in names}
+        yield name, found & known.keys() - {name}
+
+
+def test_no_module_imports_what_imports_it():
+    graph = dict(modules())
+    assert graph["app.run.flow"] >= {"app.plan.plan", "app.run.solve", "app.run.sinks"}
+    order = [*TopologicalSorter(graph).static_order()]  # raises where there is a circle
+    assert order.index("app.run.flow") > order.index("app.plan.plan")
+
+
+def test_nothing_is_imported_for_types_alone():
+    assert not [name for name, path in FILES.items() if "TYPE_CHECKING" in path.read_text("utf-8")]
+
+
+#: A dataset's path as the table of quantities spells it, or a format of one.
+PATH = re.compile(r"(states|surface|interior|loops|run|scene)/[\w{]")
+
+
+def test_paths_of_datasets_are_spelled_in_their_table_alone():
+    faults = []
+    for name, path in FILES.items():
+        if name.startswith(("app/", "postprocess/")) and not name.startswith("postprocess/quantities/"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                text = node.value if isinstance(node, ast.Constant) else None
+                if isinstance(text, str) and PATH.match(text):
+                    faults.append(f"{name}:{node.lineno}: {text}")
+    assert not faults, "\n".join(faults)

@@ -90,8 +90,9 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
         needed = cost.bytes_of_levels(size, direct=True) * (ranks.size() if shared else 1)
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
-        solve.mesh, kind, refinement, solve.cuts, scene.solid.form, solver, degrees,
-        solve.degree is not None, solve.tolerance, solve.mode, solve.pressure, shared,
+        mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
+        solver=solver, degrees=degrees, fixed=solve.degree is not None, tolerance=solve.tolerance,
+        mode=solve.mode, pressure=solve.pressure, shared_speeds=shared,
     )  # fmt: skip
 
 

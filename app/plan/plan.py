@@ -44,7 +44,10 @@ def make_plan(scene: Scene) -> Plan:
     )
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
-    return Plan(body, places, methods, quantities, tasks, fem, skipped, tuple(warnings))
+    return Plan(
+        body=body, places=places, methods=methods, quantities=quantities, tasks=tasks, fem=fem,
+        skipped=skipped, warnings=tuple(warnings),
+    )  # fmt: skip
 
 
 def _contact(scene: Scene) -> bool:

@@ -176,9 +176,9 @@ def _sampled(state: _State, extent: float) -> tuple[Any, Any]:
         from galinx.solvers.fem.sampling import sample
     task, degree = state.task, state.degree
     # One speed alone is never shared out.
-    work = FiniteElements(_on_one_mesh(state.plan), Progress(), Clock())
-    with work.one_state(task, state.g, degree) as (space, fields, weights):
-        return sample(space, task.response, fields, weights, extent, degree), work.comm
+    fem = FiniteElements(_on_one_mesh(state.plan), Progress(), Clock())
+    with fem.one_state(task, state.g, degree) as (space, fields, weights):
+        return sample(space, task.response, fields, weights, extent, degree), fem.work.comm
 
 
 def _on_one_mesh(plan: Plan) -> Plan:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import nullcontext
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from galinx.app.console.progress import Progress
 from galinx.app.run.flow import compute as compute_into
@@ -14,11 +14,6 @@ from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states
-
-if TYPE_CHECKING:
-    import xarray
-
-    from galinx.app.results.drawings import Drawing
 
 
 class Result:
@@ -48,21 +43,21 @@ class Result:
         return json.loads(self.attributes["comparisons"])
 
     @cached_property
-    def dataset(self) -> "xarray.Dataset":
-        """Named arrays over the dimension ``state``, with units and long names."""
+    def dataset(self) -> Any:
+        """An xarray.Dataset over the dimension ``state``, with units and long names."""
         from galinx.postprocess.named import dataset
 
         return dataset(self.data, self.attributes)
 
     @cached_property
-    def grid(self) -> "xarray.Dataset":
+    def grid(self) -> Any:
         """The same over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
         from galinx.postprocess.named import over_parameters
 
         return over_parameters(self.dataset)
 
-    def drawings(self) -> Iterator["Drawing"]:
-        """Every figure that the result allows."""
+    def drawings(self) -> Iterator[Any]:
+        """Every figure that the result allows, as :class:`galinx.app.results.drawings.Drawing`."""
         from galinx.app.results.drawings import of_archive
 
         return of_archive(self.data, self.scene)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Plan, Task
-from galinx.app.run.methods import Method, Solver
+from galinx.app.run.methods.method import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare
 from galinx.postprocess.journal import Part

@@ -1,70 +1,20 @@
 """Methods that solve the contact, by the name that scenes use.
 
-A method is made for a plan, and answers each of its tasks, one speed, with a solver of friction states.
-What only one method needs is imported when that is made.
+What only one method needs is imported when that is made for a plan.
 """
-
-from collections.abc import Callable
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
-from typing import Any, Protocol
-
-from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.task import Plan, Task
+from galinx.app.plan.task import Plan
+from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.registry import Registry
-from galinx.solvers.solution import Body, Solution
+from galinx.solvers.solution import Body
 
-
-class Solver(Protocol):
-    """Friction states at one speed."""
-
-    def states(self, g: NDArray) -> Solution:
-        """The states with these values of σ_XY/σ_YY.
-
-        Raises:
-            SolveError: they could not be found.
-        """
-
-    def record(self) -> dict[str, Any]:
-        """Numbers of the work that was done, as ``postprocess.quantities.RECORD`` names them; or none."""
-
-
-class Method(Protocol):
-    """A way to solve the contact, for one plan."""
-
-    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
-        """A solver at one speed.
-
-        Args:
-            task: the speed.
-            g: all values of σ_XY/σ_YY that will be asked for, sorted.
-
-        Raises:
-            SolveError: the equations could not be solved there.
-        """
-
-
-@dataclass(frozen=True)
-class MethodKind:
-    """A method that scenes can name.
-
-    Attributes:
-        about: what a plan calls it.
-        made: makes it for a plan.
-        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
-            None: why it gives none at all.
-    """
-
-    about: str
-    made: Callable[[Plan, Progress, Clock], Method]
-    refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+__all__ = ["METHODS", "MODES", "Method", "MethodKind"]
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:

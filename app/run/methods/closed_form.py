@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
-from galinx.app.run.methods import Solver
+from galinx.app.run.methods.method import Solver
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Surface
 
@@ -30,7 +30,7 @@ class ClosedForm:
 class _AtSpeed:
     task: Task
 
-    def states(self, g: NDArray) -> "FlatPunches | ShapedPunches":
+    def states(self, g: NDArray) -> Any:
         return (FlatPunches if self.task.body.flat else ShapedPunches)(self.task, g)
 
     def record(self) -> dict[str, Any]:
@@ -38,8 +38,8 @@ class _AtSpeed:
 
 
 @dataclass(frozen=True)
-class FlatPunches:
-    """Flat punches with several frictions, exact.
+class Punches:
+    """Punches with several frictions.
 
     Attributes:
         task: their speed.
@@ -51,8 +51,12 @@ class FlatPunches:
 
     @cached_property
     def local(self) -> FlatPunch:
-        """The punches; at an edge there is nothing else."""
+        """The edges, where every sharp punch is like a flat one."""
         return FlatPunch(self.task.response, self.g)
+
+
+class FlatPunches(Punches):
+    """Flat punches, exact."""
 
     @property
     def K_I(self) -> NDArray[np.float64]:
@@ -74,17 +78,8 @@ class FlatPunches:
         return self._over_places.inside(*self.task.places.points.T)
 
 
-@dataclass(frozen=True)
-class ShapedPunches:
-    """Punches with a profile and two sharp edges, by collocation.
-
-    Attributes:
-        task: their speed.
-        g: σ_XY/σ_YY, (states,).
-    """
-
-    task: Task
-    g: NDArray[np.float64]
+class ShapedPunches(Punches):
+    """Punches with a profile and two sharp edges, by collocation."""
 
     @cached_property
     def _expansions(self) -> list[Any]:
@@ -92,10 +87,6 @@ class ShapedPunches:
 
         body, response = self.task.body, self.task.response
         return [solve(response, value, TERMS, body.slope) for value in self.g.tolist()]
-
-    @property
-    def local(self) -> FlatPunch:
-        return FlatPunch(self.task.response, self.g)
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
+from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.fem import FiniteElements
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -19,7 +19,7 @@ from galinx.solvers.solution import Surface
 
 
 @contextmanager
-def solver(work: FiniteElements, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
+def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
     """Solve for every load; a pressure of the user's own is one load for every g."""
     # One degree above the rule: no measured error corrects it here.
     loaded = LoadedHalfPlane(work.space(work.plan.degrees[task.number] + 1), task.response)
@@ -36,7 +36,7 @@ def solver(work: FiniteElements, task: Task, g: NDArray) -> Iterator["LoadsAtSpe
 
 @contextmanager
 def one_state(
-    work: FiniteElements, task: Task, g: float, degree: int
+    work: Discretisation, task: Task, g: float, degree: int
 ) -> Iterator[tuple[Space, Any, NDArray]]:
     """Space, fields and weights of one state."""
     loaded = LoadedHalfPlane(work.space(degree), task.response)

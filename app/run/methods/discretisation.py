@@ -1,0 +1,80 @@
+"""The meshes and spaces that all speeds of a plan share."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from mpi4py import MPI
+
+from galinx.app.console.progress import Progress
+from galinx.app.plan.fem import FemPlan
+from galinx.app.plan.task import Plan
+from galinx.clock import Clock
+from galinx.meshes.cells import check_cells
+from galinx.meshes.rings import TAGS
+from galinx.meshes.store import obtain
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.space import Space
+
+
+class Discretisation:
+    """Meshes and spaces for a plan; collective over the ranks that share a mesh.
+
+    Args:
+        plan: the plan, with finite elements.
+        progress: is told about the work.
+        clock: takes wall time by step.
+
+    Attributes:
+        plan: the finite elements' part.
+        chunk: states that are treated at once.
+        comm: the ranks that share a mesh.
+    """
+
+    def __init__(self, plan: Plan, progress: Progress, clock: Clock) -> None:
+        assert plan.fem
+        self.plan: FemPlan = plan.fem
+        self.chunk, self.clock = plan.chunk, clock
+        self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
+        self._progress = progress
+        self._meshes: dict[int, tuple[Any, Any]] = {}
+        self._spaces: dict[tuple[int, int], Space] = {}
+
+    def space(self, degree: int, cuts: int = 1) -> Space:
+        """The space of a degree on a mesh; speeds share it, its form and its numbering."""
+        if (degree, cuts) not in self._spaces:
+            with quiet_compiler():
+                self._spaces[degree, cuts] = Space(
+                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock
+                )
+        return self._spaces[degree, cuts]
+
+    def mesh(self, cuts: int) -> tuple[Any, Any]:
+        """The mesh with every cell cut, shared out over ranks, and its facet tags."""
+        if cuts not in self._meshes:
+            self._progress.say(f"mesh: {self.plan.mesh}")
+            with self.clock("mesh"):
+                self._meshes[cuts] = self._made(cuts)
+        return self._meshes[cuts]
+
+    def _made(self, cuts: int) -> tuple[Any, Any]:
+        comm, kind, pattern = self.comm, self.plan.kind, self.plan.pattern
+        check_cells(pattern)
+        if cuts > 1:  # gmsh's copy of a cut mesh would only be large
+            return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
+        return distribute(obtain(pattern) if comm.rank == 0 else None, comm)
+
+
+@contextmanager
+def quiet_compiler() -> Iterator[None]:
+    """FFCx's build tools announce compilations on the root logger, whose level they set themselves."""
+    disabled, warnings = logging.root.manager.disable, logging.getLogger("py.warnings")
+    level = warnings.level
+    logging.disable(logging.INFO)
+    warnings.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logging.disable(disabled)
+        warnings.setLevel(level)

@@ -1,0 +1,60 @@
+"""What a method is: it answers each task of a plan, one speed, with a solver of friction states."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from galinx.app.console.progress import Progress
+from galinx.app.plan.task import Plan, Task
+from galinx.app.scene.scene import Scene
+from galinx.clock import Clock
+from galinx.postprocess.quantities import Quantity
+from galinx.solvers.solution import Body, Solution
+
+
+class Solver(Protocol):
+    """Friction states at one speed."""
+
+    def states(self, g: NDArray) -> Solution:
+        """The states with these values of σ_XY/σ_YY.
+
+        Raises:
+            SolveError: they could not be found.
+        """
+
+    def record(self) -> dict[str, Any]:
+        """Numbers of the work that was done, as ``postprocess.quantities.RECORD`` names them; or none."""
+
+
+class Method(Protocol):
+    """A way to solve the contact, for one plan."""
+
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
+        """A solver at one speed.
+
+        Args:
+            task: the speed.
+            g: all values of σ_XY/σ_YY that will be asked for, sorted.
+
+        Raises:
+            SolveError: the equations could not be solved there.
+        """
+
+
+@dataclass(frozen=True)
+class MethodKind:
+    """A method that scenes can name.
+
+    Attributes:
+        about: what a plan calls it.
+        made: makes it for a plan.
+        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
+            None: why it gives none at all.
+    """
+
+    about: str
+    made: Callable[[Plan, Progress, Clock], Method]
+    refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""

@@ -1,5 +1,6 @@
 """Models by the name that scenes use."""
 
+from collections.abc import Mapping
 from typing import TypeVar
 
 Model = TypeVar("Model")
@@ -10,11 +11,11 @@ class Registry(dict[str, Model]):
 
     Args:
         noun: what a model is, for messages.
-        models: those that are built in.
+        models: the first ones.
     """
 
-    def __init__(self, noun: str, models: dict[str, Model]) -> None:
-        super().__init__(models)
+    def __init__(self, noun: str, models: Mapping[str, Model] | None = None) -> None:
+        super().__init__(models or {})
         self.noun = noun
 
     def register(self, name: str, model: Model) -> Model:

@@ -1,10 +1,7 @@
 """Meshes of the half-plane, by the name that scenes use."""
 
-from galinx.meshes.confocal import CONFOCAL, UNIFORM
-from galinx.meshes.graded import BOX, GRADED
-from galinx.meshes.kind import MeshKind
-from galinx.registry import Registry
+from galinx.meshes import confocal, graded  # noqa: F401 - each adds its meshes
+from galinx.meshes.confocal import CONFOCAL
+from galinx.meshes.kind import MESHES, MeshKind
 
-MESHES: Registry[MeshKind] = Registry(
-    "mesh", {"confocal": CONFOCAL, "graded": GRADED, "box": BOX, "uniform": UNIFORM}
-)
+__all__ = ["CONFOCAL", "MESHES", "MeshKind"]

@@ -3,10 +3,13 @@
 from math import pi
 
 from galinx.meshes.charts import Confocal
-from galinx.meshes.kind import MeshKind
+from galinx.meshes.kind import MESHES, MeshKind
 
 CONFOCAL = MeshKind("confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0)
 
 UNIFORM = MeshKind(
     "confocal, squares all over", Confocal(), ratio=0.5, column=pi / 4.0, rings=False
 )  # fmt: skip
+
+MESHES.register("confocal", CONFOCAL)
+MESHES.register("uniform", UNIFORM)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes.charts import Confocal, Physical
-from galinx.meshes.kind import MeshKind
+from galinx.meshes.kind import MESHES, MeshKind
 from galinx.meshes.rings import Refinement
 
 #: Width and depth of the study's block over the half-width: l_p/W = 0.01, l_p/H = 0.02, l_p = 2a.
@@ -42,3 +42,6 @@ BOX = MeshKind(
     sectors=lambda _: 2,  # an even number puts a vertex into the block's corners
     walls=BOX_DEPTH,
 )  # fmt: skip
+
+MESHES.register("graded", GRADED)
+MESHES.register("box", BOX)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from galinx.meshes.charts import Confocal, Physical
 from galinx.meshes.pieces import cut
 from galinx.meshes.rings import QuadMesh, Refinement, rectangle
+from galinx.registry import Registry
 
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
@@ -114,3 +115,7 @@ class MeshKind:
     def _of_cells(self, tolerance: float) -> float:
         """What the cells have to reach: beside walls, which set the error, nothing more."""
         return min(tolerance, self.truncation(tolerance) / 1000.0) if self.walls else tolerance
+
+
+#: Meshes by the name that scenes use; every mesh adds itself.
+MESHES: Registry[MeshKind] = Registry("mesh")

@@ -90,7 +90,8 @@ class ModelSection(Section):
     """A section that describes a model of a registry: the model's parameters are keys of the section.
 
     Args:
-        chosen: key that names the model; the first of the registry is its default.
+        chosen: key that names the model.
+        default: the model of a section that names none.
         models: classes by name.
         build: makes the section from the model's class, the model's values by key, and the other values.
         keys: of the section besides, by name.
@@ -102,6 +103,7 @@ class ModelSection(Section):
     def __init__(
         self,
         chosen: str,
+        default: str,
         models: Registry[Any],
         build: Callable[..., Any],
         keys: Mapping[str, Key],
@@ -110,7 +112,7 @@ class ModelSection(Section):
         or_else: str = "",
     ) -> None:
         super().__init__(build, keys, or_else)
-        self._chosen, self._models, self._several = chosen, models, several
+        self._chosen, self._default, self._models, self._several = chosen, default, models, several
         self._defaults = defaults or {}
 
     @property
@@ -120,7 +122,7 @@ class ModelSection(Section):
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         name = given.get(self._chosen)
         known = isinstance(name, str) and name in self._models
-        return self._of(str(name) if known else next(iter(self._models)))
+        return self._of(str(name) if known else self._default)
 
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
         wanted = given.get(self._chosen) if isinstance(given, dict) else None
@@ -137,7 +139,7 @@ class ModelSection(Section):
     def _of(self, model: str) -> dict[str, Key]:
         kind = self._models[model]
         own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
-        chosen = Key(Choice(self._models), self._models.noun, next(iter(self._models)))
+        chosen = Key(Choice(self._models), self._models.noun, self._default)
         return {**own, self._chosen: chosen, **self._keys}
 
     def _key(self, known: Parameter, model: Any) -> Key:

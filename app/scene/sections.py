@@ -126,9 +126,13 @@ _OUTPUT_KEYS = {
 
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Section] = {
-    "solid": ModelSection("kind", SOLIDS, _solid, _SOLID_KEYS, or_else=", or solid.material"),
-    "punch": ModelSection("profile", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}),
-    "friction": ModelSection("model", LAWS, Friction, _FRICTION_KEYS, several=True),
+    "solid": ModelSection(
+        "kind", "isotropic", SOLIDS, _solid, _SOLID_KEYS, or_else=", or solid.material"
+    ),
+    "punch": ModelSection(
+        "profile", "flat", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}
+    ),
+    "friction": ModelSection("model", "dahl", LAWS, Friction, _FRICTION_KEYS, several=True),
     "motion": Section(Motion, _MOTION_KEYS),
     "solve": Section(Solve, _SOLVE_KEYS),
     "output": Section(Output, _OUTPUT_KEYS),

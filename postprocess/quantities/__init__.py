@@ -3,36 +3,20 @@
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
-from galinx.postprocess.quantities import runs, states, stresses
+from galinx.postprocess.quantities import runs, states, stresses  # noqa: F401 - each adds its own
 from galinx.postprocess.quantities.quantity import (
     FRICTION_ALONE,
     INSIDE,
     INTENSITIES,
     POINT,
+    QUANTITIES,
     STATE,
     Quantity,
 )
-from galinx.registry import Registry
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 
 __all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "table"]
-
-
-class Table(Registry[Quantity]):
-    """Quantities by their path."""
-
-    def add(self, quantity: Quantity) -> Quantity:
-        """Add a quantity of one's own, and return it.
-
-        Raises:
-            ValueError: its path is taken.
-        """
-        return self.register(quantity.path, quantity)
-
-
-#: All but the parameters of friction laws.
-QUANTITIES = Table("quantity", {row.path: row for part in (states, stresses, runs) for row in part.ROWS})
 
 
 def column(name: str) -> str:

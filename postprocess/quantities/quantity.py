@@ -6,6 +6,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from galinx.registry import Registry
+
 #: Dimensions of datasets, in words.
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
@@ -62,17 +64,25 @@ class Quantity:
         return self.of is not None or self.of_data is not None
 
 
-def rows(names: Mapping[str, Any]) -> tuple[Quantity, ...]:
-    """All quantities among a module's names, single ones and those by method."""
-    found: list[Quantity] = []
-    for value in names.values():
-        if isinstance(value, Quantity):
-            found.append(value)
-        elif isinstance(value, dict):
-            for entry in value.values():
-                found += [q for q in (entry if isinstance(entry, tuple) else (entry,)) if _is(q)]
-    return tuple(found)
+class Table(Registry[Quantity]):
+    """Quantities by their path."""
+
+    def add(self, quantity: Quantity) -> Quantity:
+        """Add a quantity, and return it.
+
+        Raises:
+            ValueError: its path is taken.
+        """
+        return self.register(quantity.path, quantity)
+
+    def add_all(self, names: Mapping[str, Any]) -> None:
+        """Add all quantities among a module's names, single ones and those by method."""
+        for value in list(names.values()):
+            for entry in value.values() if isinstance(value, dict) else (value,):
+                for one in entry if isinstance(entry, tuple) else (entry,):
+                    if isinstance(one, Quantity):
+                        self.add(one)
 
 
-def _is(value: Any) -> bool:
-    return isinstance(value, Quantity)
+#: All quantities but the parameters of friction laws; every module adds its own.
+QUANTITIES = Table("quantity")

@@ -1,6 +1,6 @@
 """What a run says of itself, and the friction loops that its states lie on."""
 
-from galinx.postprocess.quantities.quantity import FEM, LOOP, SPEED, STATE, STEP, Quantity, rows
+from galinx.postprocess.quantities.quantity import FEM, LOOP, QUANTITIES, SPEED, STATE, STEP, Quantity
 
 #: Dimensions of what is told in words, and of times.
 LINE, TIMED = "lines", "steps"
@@ -43,4 +43,4 @@ SKIPPED = Quantity("run/skipped", "none", "steps skipped, and why", (LINE,))
 SECONDS = Quantity("run/seconds", "s", "wall time of the steps done, in the order of run/steps", (TIMED,))
 STEPS = Quantity("run/steps", "none", "names of the timed steps", (TIMED,))
 
-ROWS = rows(globals())
+QUANTITIES.add_all(globals())

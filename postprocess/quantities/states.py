@@ -11,9 +11,9 @@ from galinx.postprocess.quantities.quantity import (
     CLOSED_FORM,
     FEM,
     LOCAL,
+    QUANTITIES,
     STATE,
     Quantity,
-    rows,
 )
 from galinx.postprocess.stresses import flatness
 
@@ -112,4 +112,4 @@ SLOPE = Quantity(
     compared=("slope under the punch",),
 )  # fmt: skip
 
-ROWS = rows(globals())
+QUANTITIES.add_all(globals())

@@ -6,9 +6,9 @@ from galinx.postprocess.quantities.quantity import (
     FEM,
     INSIDE,
     POINT,
+    QUANTITIES,
     STATE,
     Quantity,
-    rows,
 )
 
 #: Words of output.quantities.
@@ -79,4 +79,4 @@ STRESSES_INSIDE = {
     for method, source in ((CLOSED_FORM, "from the potentials"), (FEM, "from the displacement"))
 }
 
-ROWS = rows(globals())
+QUANTITIES.add_all(globals())

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw
 from galinx.solvers.parameters import check, parameter
 
 
@@ -72,3 +72,6 @@ class Dahl(FrictionLaw):
     def stiffness(self, z: NDArray, s: int, V: float = 0.0) -> float:
         y0 = max(1.0, abs(1.0 - s * float(z[0]) / self.μ_C))
         return self.λ * self.δ * y0 ** (self.δ - 1.0) / self.μ_C
+
+
+LAWS.register("dahl", Dahl)

@@ -5,6 +5,9 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.registry import Registry
+from galinx.solvers.parameters import parameters
+
 
 class FrictionLaw(Protocol):
     """A law of dynamic friction, per normal force: f = F/N.
@@ -43,3 +46,28 @@ class FrictionLaw(Protocol):
         Runge-Kutta's steps are stable where it is known to be small.
         """
         return None
+
+
+class Laws(Registry[type[FrictionLaw]]):
+    """Friction laws; parameters of one name are one column of archives, whatever the law."""
+
+    def register(self, name: str, model: type[FrictionLaw]) -> type[FrictionLaw]:
+        """Add a law of one's own, and return it.
+
+        Raises:
+            ValueError: the name is taken, or another law has that parameter in another unit.
+        """
+        for other, law in self.items():
+            known = parameters(law)
+            for key, parameter in parameters(model).items():
+                if other != name and key in known and known[key].unit != parameter.unit:
+                    raise ValueError(
+                        f"the parameter {key!r} of the friction law {other!r} has the unit "
+                        f"{known[key].unit or '1'!r}, {name!r} wants {parameter.unit or '1'!r}: name it "
+                        "apart"
+                    )
+        return super().register(name, model)
+
+
+#: Laws by the name that scenes use; every law adds itself.
+LAWS = Laws("friction law")

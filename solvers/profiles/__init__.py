@@ -1,7 +1,6 @@
 """Profiles of punches, by the name that scenes use."""
 
-from galinx.registry import Registry
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.profile import Profile
+from galinx.solvers.profiles import flat  # noqa: F401 - each adds its profile
+from galinx.solvers.profiles.profile import PROFILES, Profile
 
-PROFILES: Registry[type[Profile]] = Registry("profile of the punch", {"flat": Flat})
+__all__ = ["PROFILES", "Profile"]

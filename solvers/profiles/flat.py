@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.parameters import check, parameter
+from galinx.solvers.profiles.profile import PROFILES
 
 
 @dataclass(frozen=True)
@@ -35,3 +36,6 @@ class Flat:
 
     def words(self) -> str:
         return f"flat punch, half-width {self.half_width:g} m"
+
+
+PROFILES.register("flat", Flat)

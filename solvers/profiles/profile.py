@@ -4,6 +4,8 @@ from typing import ClassVar, Protocol
 
 from numpy.typing import NDArray
 
+from galinx.registry import Registry
+
 
 class Profile(Protocol):
     """A rigid punch: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
@@ -26,3 +28,7 @@ class Profile(Protocol):
 
     def words(self) -> str:
         """The punch in a sentence's middle, with units."""
+
+
+#: Profiles by the name that scenes use; every profile adds itself.
+PROFILES: Registry[type[Profile]] = Registry("profile of the punch")

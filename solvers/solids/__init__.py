@@ -1,7 +1,7 @@
 """Elastic solids, by the name that scenes use, and their response at speed."""
 
-from galinx.registry import Registry
+from galinx.solvers.solids import isotropic  # noqa: F401 - each adds its solid
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.solid import Solid
+from galinx.solvers.solids.solid import SOLIDS, Solid
 
-SOLIDS: Registry[type[Solid]] = Registry("kind of solid", {"isotropic": Isotropic})
+__all__ = ["SOLIDS", "Isotropic", "Solid"]

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.parameters import check, choice, parameter
+from galinx.solvers.solids.solid import SOLIDS
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04
@@ -197,3 +198,6 @@ def rayleigh_speed(κ: float) -> float:
     from scipy.optimize import brentq  # slow to import, and seldom needed
 
     return brentq(lambda c: MovingFrame(κ, c).r, 0.1, 1.0 - 1e-15, xtol=1e-16, rtol=1e-15)
+
+
+SOLIDS.register("isotropic", Isotropic)

@@ -5,6 +5,8 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.registry import Registry
+
 
 class Response(Protocol):
     """A half-plane of a solid seen from a load that moves over it, lengths over a, stresses over N/(2a).
@@ -97,3 +99,7 @@ class Solid(Protocol):
 
     def words(self) -> str:
         """The solid in a sentence's middle, with units."""
+
+
+#: Solids by the name that scenes use; every solid adds itself.
+SOLIDS: Registry[type[Solid]] = Registry("kind of solid")

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.plan.fem import FemPlan
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities.quantity import INSIDE, POINT
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places
@@ -65,6 +66,17 @@ class Plan:
     def asks(self, word: str) -> bool:
         """Is a quantity computed that this word of output.quantities asks for?"""
         return any(quantity.asked_by == word for quantity in self.quantities)
+
+    @property
+    def positions(self) -> dict[str, NDArray]:
+        """Datasets of where stresses are archived, by path."""
+        found = {}
+        if self.asks(stresses.ON_SURFACE):
+            found[stresses.SURFACE_X.path] = self.places.X
+        if self.asks(stresses.BELOW):
+            X, Y = self.places.points.T
+            found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+        return found
 
     @property
     def rules(self) -> frozenset[str]:

@@ -72,13 +72,10 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
     sink.put(runs.LOOP_OF_STATE.path, states.loop)
     sink.put(runs.LOOP_X.path, states.travel)
     sink.put(runs.LOOP_F.path, states.loops)
-    if plan.asks(stresses.ON_SURFACE):
-        sink.put(stresses.SURFACE_X.path, plan.places.X)
-    if plan.asks(stresses.BELOW):
-        for i, row in enumerate((stresses.INSIDE_X, stresses.INSIDE_Y)):
-            sink.put(row.path, plan.places.points[:, i])
-        if scene.output.map:
-            sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
+    for path, positions in plan.positions.items():
+        sink.put(path, positions)
+    if plan.asks(stresses.BELOW) and scene.output.map:
+        sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
 
 
 def _parts(

@@ -13,7 +13,7 @@ from galinx.app.run.methods.method import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare
 from galinx.postprocess.journal import Part
-from galinx.postprocess.quantities import states, stresses
+from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
@@ -104,7 +104,7 @@ class Work:
         }
 
     def _compared(self, data: dict[str, NDArray], g: NDArray) -> list[compare.Comparison]:
-        given = {states.RATIO.path: g, stresses.SURFACE_X.path: self.plan.places.X}
+        given = {states.RATIO.path: g} | self.plan.positions
         return compare.comparisons(data | given, self.plan.body.load, self.plan.rules)
 
 

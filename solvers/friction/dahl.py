@@ -58,16 +58,17 @@ class Dahl(FrictionLaw):
         y0 = 1.0 - s * float(z[0]) / self.μ_C
         p = 1.0 - self.δ
         if y0 == 0.0:
-            y = np.zeros_like(x)
+            decay = np.zeros_like(x)
         elif abs(p) * max(1.0, abs(np.log(abs(y0)))) < 1e-9:
             # Both formulas agree to the last digits here, and the power would divide by p ≈ 0.
-            y = y0 * np.exp(-x)
+            decay = -x
         else:
             # |y| = |y₀| (1 - p x |y₀|^(-p))^(1/p), through log1p so that p → 0 keeps its digits.
             base = np.maximum(-p * x * abs(y0) ** -p, -1.0)
             with np.errstate(divide="ignore"):
-                y = y0 * np.exp(np.log1p(base) / p)
-        return s * self.μ_C * (1.0 - y)
+                decay = np.log1p(base) / p
+        # y = y₀ exp(decay); what is added to f keeps its digits where it is small.
+        return float(z[0]) - s * self.μ_C * y0 * np.expm1(decay)
 
     def stiffness(self, z: NDArray, s: int, V: float = 0.0) -> float:
         y0 = max(1.0, abs(1.0 - s * float(z[0]) / self.μ_C))

@@ -11,6 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
 
+#: c² below which its part in the difference of the potentials, over c², has no digit left.
+_AT_REST = 1e-30
+
+
 def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
     """σ_XX, σ_YY, σ_XY over N/(2a) at points below the surface.
 
@@ -69,7 +73,7 @@ def _potentials(
     z = X + 1j * frame.β_s * Y
     Φ: Any = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
     δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
-    if c2 == 0.0:
+    if c2 < _AT_REST:
         return Φ, Φ * δ * (α / (z - 1.0) + β / (z + 1.0))
     growth = α * log1p(c2 * δ / (z - 1.0)) + β * log1p(c2 * δ / (z + 1.0))
     return Φ, Φ * np.expm1(growth) / c2

@@ -78,3 +78,16 @@ def test_the_stability_limit_is_that_of_the_steepest_slope(f0, s, δ):
 def test_parameters_outside_their_range_are_refused(values):
     with pytest.raises(ValueError, match="> 0"):
         Dahl(*values)
+
+
+@pytest.mark.parametrize("δ", [0.3, 1.0, 2.5])
+@pytest.mark.parametrize("x", [1e-300, 1e-12, 1e-3, 0.7])
+def test_small_friction_keeps_its_digits(δ, x):
+    """From rest f = μ_C (1 - y), and 1 - y is nearly x = λ d/μ_C where that is small."""
+    mpmath = pytest.importorskip("mpmath")
+    mpmath.mp.dps = 400
+    law, d = Dahl(0.7, 0.7, δ), x
+    p, X = 1 - mpmath.mpf(δ), mpmath.mpf(law.λ) * mpmath.mpf(d) / mpmath.mpf(law.μ_C)
+    y = mpmath.exp(-X) if p == 0 else (1 - p * X) ** (1 / p)
+    wanted = mpmath.mpf(law.μ_C) * (1 - y)
+    assert exact(law, 0.0, 1, d) == pytest.approx(float(wanted), rel=1e-14)

@@ -79,3 +79,10 @@ def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
     }
     for name, identity in identities.items():
         assert identity.applyfunc(sp.cancel).is_zero_matrix, name
+
+
+@pytest.mark.parametrize("c", [1e-200, 1e-162, 3e-155, 1e-155, 1e-154, 1e-150, 1e-16, 1e-12])
+def test_at_the_slowest_speeds_the_field_is_that_of_rest(c):
+    """c² may be below the smallest number, or have lost its digits there."""
+    still, slow = (FlatPunch(MovingFrame(2.0, speed), -0.6).inside(0.3, -0.2) for speed in (0.0, c))
+    np.testing.assert_allclose(slow, still, rtol=1e-14)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
@@ -74,9 +75,10 @@ def _imbalance(data: dict[str, Any], load: float) -> float:
     return off.max()
 
 
-def _exponents(data: dict[str, Any], _: float) -> float:
+def _exponents(data: dict[str, Any], _: float) -> float | None:
     pairs = (of.FITTED_ALPHA, of.ALPHA), (of.FITTED_BETA, of.BETA)
-    return np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs]).max()
+    off = np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs])
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: none could be fitted
 
 
 def _tension(data: dict[str, Any], _: float) -> float | None:
@@ -107,9 +109,16 @@ def _inside(data: dict[str, Any], _: float) -> float:
     return (np.abs(fem - exact).max(axis=(0, 2)) / np.abs(exact).max(axis=(0, 2))).max()
 
 
+def _not_finite(data: dict[str, Any], _: float) -> float | None:
+    return 1.0 if not_finite(data) else None
+
+
 def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
     return lambda data, _: data[row.path].max()
 
+
+#: The rule by which every quantity is judged.
+FINITE = "finite"
 
 #: A balance of nodal forces further off than its limit, over N, is a fault whatever the tolerance.
 BALANCE = Rule(
@@ -122,6 +131,10 @@ RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
+        FINITE: Rule(
+            "values that are not finite where they have to be: 1 for some",
+            (), _not_finite, limit=0.0, own_pressure=True,
+        ),
         "K_I": Rule(
             "K_I at both ends, relative",
             (*of.K_I_LEFT.values(), *of.K_I_RIGHT.values()),

@@ -49,6 +49,11 @@ class FemPlan:
     shared_speeds: bool
 
     @property
+    def own_pressure(self) -> bool:
+        """Is a pressure of the user's own put in?"""
+        return self.mode == "traction" and self.pressure != "closed_form"
+
+    @property
     def pattern(self) -> QuadMesh:
         """The mesh before it is cut."""
         return self.kind.build(self.refinement)

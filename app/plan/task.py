@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.fem import FemPlan
+from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities.quantity import INSIDE, POINT
 from galinx.solvers.solids.solid import Response
@@ -80,8 +81,13 @@ class Plan:
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which what is computed is compared."""
-        return frozenset(rule for quantity in self.quantities for rule in quantity.compared)
+        """Names of the rules by which what is computed is compared.
+
+        A pressure of the user's own is held against nothing: it need not even carry the load.
+        """
+        names = {FINITE, *(rule for quantity in self.quantities for rule in quantity.compared)}
+        own = self.fem is not None and self.fem.own_pressure
+        return frozenset(name for name in names if RULES[name].own_pressure or not own)
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a state's entry."""

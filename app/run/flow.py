@@ -112,6 +112,7 @@ def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
         "scene_sha256": scene.sha256,
         "title": scene.title,
         "load": scene.punch.load,
+        "rules": json.dumps(sorted(plan.rules)),
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
         "comparisons": json.dumps(judge.worst, ensure_ascii=False),

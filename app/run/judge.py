@@ -23,12 +23,11 @@ class Judge:
     def __init__(self, scene: Scene, names: Iterable[str]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
-        own, mode = scene.solve.own_pressure, scene.solve.mode
         rules = {name: RULES[name] for name in names}
         limits = {
             name: rule.allowed(scene.solve.tolerance)
             for name, rule in rules.items()
-            if rule.mode in ("", mode) and (rule.own_pressure or not own)
+            if rule.mode in ("", scene.solve.mode)
         }
         self._limits = {name: limit for name, limit in limits.items() if limit is not None}
         self._judged: dict[str, float] = {}

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
-
 #: c² below which its part in the difference of the potentials, over c², has no digit left.
 _AT_REST = 1e-30
 

@@ -5,6 +5,7 @@ import pytest
 from support import computed
 
 from galinx.postprocess import compare
+from galinx.solvers.solids import Isotropic
 
 #: One state of scenes/tables4_5.toml.
 SINGLE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.8}
@@ -146,3 +147,14 @@ def test_a_pressure_that_pulls_fails():
     assert result.verdict == "FAIL"
     told = "tension under the punch, over N/(2a): 1.0e+00, at most 0"
     assert told in result.attributes["verdict_reasons"]
+
+
+@pytest.mark.parametrize("ν", [-0.9, 0.45, 0.48, 0.5])
+def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
+    """At 0.9995 c_R residuals are up to 1e-7 of the forces, which says nothing of K_I."""
+    c = 0.9995 * Isotropic(1.0, ν, 1.0).limit()
+    changes = {"solid.nu": ν, "motion.c": c, "friction.mu_c": 0.5, "motion.strokes": ["forward"]}
+    result = computed("tables4_5", changes)
+    true, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
+    assert result.verdict == "PASS" and (true <= estimate).all()
+    assert disagreement(result)["sigma_XX"] <= 1e-6

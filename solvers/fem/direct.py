@@ -14,9 +14,9 @@ PREFIX = "galinx_"
 #: PETSc's options for MUMPS: in the plane the last front is too small to be spread over all ranks.
 OPTIONS = {"mat_mumps_icntl_13": 1}
 
-#: A direct solve that leaves more than this of its right-hand side has met a singular matrix, which leaves
-#: about all of it. What less means for the results is measured on them: near the Rayleigh speed the body
-#: moves far, so that a sound factor leaves 1e-7 where K_I has its seven digits.
+#: A direct solve that leaves more than this of its right-hand side has met a singular matrix, which
+#: leaves about all of it. What less means for the results is measured on them: near the Rayleigh speed
+#: the body moves far, so that a sound factor leaves 1e-7 where K_I has its seven digits.
 RESIDUAL_LIMIT = 1e-4
 
 #: Unknowns up to which the condition number is estimated; it then costs next to nothing.

@@ -69,7 +69,8 @@ def _quantities(
     """What is read off the solutions, and what a method cannot give, with the reason."""
     asked: dict[str, Quantity] = {}
     refused = []
-    for path, quantity in QUANTITIES.items():
+    # What is computed from others comes after them, wherever it stands in the table.
+    for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         wanted = (
             bool(methods)
             and quantity.solved

@@ -26,7 +26,7 @@ class Solver(Protocol):
         """
 
     def record(self) -> dict[str, Any]:
-        """Numbers of the work that was done, as ``postprocess.quantities.runs.RECORD`` names them; or none."""
+        """Numbers of the work that was done, by the names of ``quantities.runs.RECORD``; or none."""
 
 
 class Method(Protocol):

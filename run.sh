@@ -21,7 +21,8 @@ packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h
   libopenblas0-serial openmpi-bin gcc libc6-dev)
 docs_packages=(mkdocs)
 test_packages=(python3-pytest python3-pytest-xdist python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
-  python3-vtk9 python3-nbclient python3-ipykernel "${docs_packages[@]}")
+  python3-vtk9 python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel
+  "${docs_packages[@]}")
 
 missing() { # the packages of the arguments that are not installed
   local installed package
@@ -50,7 +51,10 @@ set_up() {
   fi
 }
 
-export PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
+PYTHONPATH="$home${PYTHONPATH:+:$PYTHONPATH}"
+# An empty entry, as PYTHONPATH=$PYTHONPATH:... leaves it, would mean the current folder.
+while [[ $PYTHONPATH = *::* ]]; do PYTHONPATH=${PYTHONPATH//::/:}; done
+export PYTHONPATH=${PYTHONPATH%:}
 # How messages name this command: through bin/galinx it is called galinx.
 GALINX_COMMAND=${0##*/}
 [ "$GALINX_COMMAND" != run.sh ] || GALINX_COMMAND=./run.sh

@@ -12,7 +12,7 @@ import click
 from galinx import __version__
 from galinx.app import errors, ranks
 from galinx.app.commands import begin, compute, look, options
-from galinx.app.console.program import program
+from galinx.app.console.program import as_called, program
 from galinx.app.errors import BadInput, MachineFailure
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
@@ -49,7 +49,7 @@ def cli(extensions: tuple[Path, ...]) -> None:
 
 
 for _command in (*begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS):
-    _command.help = _command.help.replace("./run.sh", program())
+    _command.help = as_called(_command.help)
     cli.add_command(_command)
 
 

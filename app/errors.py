@@ -24,7 +24,7 @@ def finite_elements_installed() -> Iterator[None]:
     except ImportError as error:
         raise MachineFailure(
             f"finite elements need {error.name}, which is not installed; "
-            "run.sh installs what is missing, or see the page on installation"
+            "./run.sh in galinx's folder installs what is missing, or see its docs/install.md"
         ) from error
 
 

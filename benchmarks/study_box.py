@@ -9,13 +9,11 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from galinx.app.run.compute import compute
-from galinx.meshes.halfplane import MESHES, check_cells
-from galinx.meshes.refine import refinement
 from mpi4py import MPI
 
-from galinx.app.run.collector import Memory
-from galinx.app.scene.scene import parse
+import galinx
+from galinx.meshes import MESHES
+from galinx.meshes.cells import check_cells
 from galinx.meshes.gmsh_model import through_gmsh
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
 from galinx.postprocess.pressure import contact_recovery, from_moments
@@ -29,20 +27,17 @@ from galinx.solvers.solids.isotropic import MovingFrame
 ELEMENTS = 145_106
 #: σ_XY/σ_YY of the largest friction in Tables 4 and 5.
 G = -0.66
-
-
-#: The same state, by default settings.
-SCENE = """
-solid = {E = "193 GPa", nu = 0.25, rho = "7860 kg/m^3"}
-friction = {mu_c = 0.7, sigma0_over_load = "25000 1/m"}
-motion = {c = 0.0, strokes = ["forward"], X_over_L = 0.8}
-output = {quantities = ["sif"]}
-"""
+#: The scene of that state and what else it gets; settings are the default ones.
+SCENE = "tables4_5"
+CHANGES = {
+    "motion.c": 0.0, "motion.strokes": ["forward"], "motion.X_over_L": 0.8,
+    "output.quantities": ["sif"],
+}  # fmt: skip
 
 
 def block() -> QuadMesh:
     """The box pattern with its rings and columns cut until it has the wanted number of cells."""
-    coarse = refinement("box", 1e-2, 1.0)
+    coarse = MESHES["box"].refinement(1e-2, 1.0)
     rings = 4 * coarse.sectors * coarse.levels
     k = round((ELEMENTS / (rings + 2 * coarse.sectors * len(coarse.columns))) ** 0.5)
     sectors, levels = k * coarse.sectors, k * coarse.levels
@@ -57,9 +52,10 @@ def study() -> tuple[float, int, int]:
     pattern, chart = block(), MESHES["box"].chart
     check_cells(pattern)
     space = Space(*distribute(through_gmsh(pattern), MPI.COMM_SELF), TAGS, chart, 2)
-    punch = SlidingPunch(space, 2.0, 0.0)
+    response = MovingFrame(2.0, 0.0)
+    punch = SlidingPunch(space, response)
     recovery = contact_recovery(space.contact.s, 2, chart, np.array([0.0]))
-    local = FlatPunch(MovingFrame(2.0, 0.0), np.array([G]))
+    local = FlatPunch(response, np.array([G]))
     pressure = from_moments(punch.states(G).normal @ recovery.moments, local.α, local.β)
     punch.destroy()
     return float(np.abs(pressure.K_I / local.K_I - 1.0).max()), space.cells, space.size
@@ -67,8 +63,7 @@ def study() -> tuple[float, int, int]:
 
 def default() -> tuple[float, int, int]:
     """The same of galinx's default, its measured error and the closed form included."""
-    data = Memory()
-    compute(parse(SCENE), data)
+    data = galinx.compute(galinx.template(SCENE, CHANGES)).data
     cells, unknowns = (int(data[f"run/fem/{name}"][0]) for name in ("cells", "unknowns"))
     return float(data["states/fem/true_error"][0]), cells, unknowns
 

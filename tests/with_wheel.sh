@@ -17,7 +17,8 @@ newest() { # the newest Python that the wheel is made for and that can make envi
   return 1
 }
 
-if [ ! -x "$folder/bin/mpirun" ]; then
+# Made again when what is needed has changed, or where it was interrupted.
+if ! cmp --silent "$home/pyproject.toml" "$folder/made_for.toml"; then
   if ! found=$(newest); then
     echo "skipped: the wheel of dolfinx needs Python 3.12 or newer, none was found"
     exit 0
@@ -25,6 +26,7 @@ if [ ! -x "$folder/bin/mpirun" ]; then
   "$found" -m venv "$folder"
   "$folder/bin/pip" install --quiet "dolfinx-solver-real==0.11.*" mpi4py gmsh "$home[test,docs]"
   "$folder/bin/pip" uninstall --quiet --yes galinx
+  cp "$home/pyproject.toml" "$folder/made_for.toml"
 fi
 export GALINX_PYTHON="$folder/bin/python"
 echo "with $("$folder/bin/pip" list 2>/dev/null | grep -i '^dolfinx' | tr -s ' ')"

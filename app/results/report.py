@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from galinx.app.console.program import program
 from galinx.app.errors import MachineFailure
 from galinx.app.results.drawings import Drawing
 from galinx.app.scene.scene import Scene
@@ -70,6 +71,7 @@ class Report:
                 "skipped": data[runs.SKIPPED.path].tolist(),
                 "versions": _versions(attributes),
                 "scene": data[runs.SCENE.path],
+                "program": program(),
             }
         )
 

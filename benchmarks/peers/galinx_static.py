@@ -9,16 +9,18 @@ import time
 from statistics import median
 
 import numpy as np
-from galinx.meshes.halfplane import MESHES, check_cells
 from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
+from galinx.meshes import MESHES
+from galinx.meshes.cells import check_cells
 from galinx.meshes.gmsh_model import through_gmsh
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.pressure import contact_recovery
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Degree, levels, ratio, columns, outer ξ; one sector.
 CONFIGURATIONS = [
@@ -40,7 +42,7 @@ def solve(degree: int, levels: int, ratio: float, columns: int, outer: float) ->
     cells = kind.build(Refinement(levels, ratio, 1, (width,) * columns))
     check_cells(cells)
     space = Space(*distribute(through_gmsh(cells), MPI.COMM_SELF), TAGS, kind.chart, degree)
-    punch = SlidingPunch(space, KAPPA, 0.0)
+    punch = SlidingPunch(space, MovingFrame(KAPPA, 0.0))
     recovery = contact_recovery(space.contact.s, degree, space.chart, np.zeros(0))
     moments = punch.states(G).normal[0] @ recovery.moments[:, :6]
     punch.destroy()

@@ -1,0 +1,112 @@
+"""What pip installs: one package, with all that it needs, which calls itself galinx."""
+
+import shutil
+import subprocess
+import sys
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from support import HOME, clean_environment
+
+#: What a wheel is made of.
+SOURCES = (
+    "app", "galinx", "meshes", "postprocess", "scenes", "solvers",
+    "pyproject.toml", "README.md", "LICENSE",
+)  # fmt: skip
+ROOMS = ("app", "meshes", "postprocess", "scenes", "solvers")
+
+
+@pytest.fixture(scope="module")
+def names_and_site(tmp_path_factory):
+    """Names of a wheel's files, and a folder that it is unpacked into, as pip does."""
+    if missing := [name for name in ("pip", "setuptools", "wheel") if not find_spec(name)]:
+        pytest.skip(f"{', '.join(missing)} not installed")
+    folder = tmp_path_factory.mktemp("install")
+    source, site = folder / "source", folder / "site"
+    source.mkdir()
+    for name in SOURCES:  # a copy: setuptools leaves its work beside what it packages
+        if (HOME / name).is_dir():
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(HOME / name, source / name, symlinks=True, ignore=ignored)
+        else:
+            shutil.copy(HOME / name, source)
+    made = subprocess.run(
+        [
+            sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index",
+            "-w", str(folder), str(source),
+        ],
+        env=clean_environment(), capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert made.returncode == 0, made.stderr
+    with zipfile.ZipFile(next(folder.glob("*.whl"))) as wheel:
+        wheel.extractall(site)
+        return wheel.namelist(), site
+
+
+def installed(site, *arguments, **variables):
+    """Python with what is installed and without the source tree, in another folder."""
+    environment = clean_environment() | {"PYTHONPATH": str(site)} | variables
+    environment.pop("GALINX_COMMAND", None)
+    return subprocess.run(
+        [sys.executable, "-P", *arguments], cwd=site.parent, env=environment,
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+
+
+def test_one_package_is_installed(names_and_site):
+    names, _ = names_and_site
+    roots = {name.split("/")[0] for name in names}
+    assert {root for root in roots if not root.endswith(".dist-info")} == {"galinx"}
+    assert len(names) == len(set(names))
+
+
+def test_every_file_of_a_room_is_installed_once(names_and_site):
+    names, _ = names_and_site
+    wanted = {
+        path.relative_to(HOME).as_posix()
+        for room in ROOMS
+        for path in (HOME / room).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    wanted |= {path.name for path in (HOME / "galinx").glob("*.py")}
+    found = [name.removeprefix("galinx/") for name in names if name.startswith("galinx/")]
+    assert sorted(found) == sorted(wanted)
+
+
+def test_what_is_installed_works_elsewhere(names_and_site):
+    _, site = names_and_site
+    script = (
+        "import galinx, galinx.app.cli\n"
+        "from galinx.app.scene.materials import LIBRARY\n"
+        "from galinx.app.study.published import published\n"
+        "result = galinx.compute(galinx.template('tables4_5', {'solve.methods': ['closed_form']}))\n"
+        "result.save('tables.h5'), result.report('tables.html')\n"
+        "print(galinx.__file__, 'T302' in LIBRARY, 'table4' in published(), len(result.dataset.f))\n"
+    )
+    done = installed(site, "-c", script)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [str(site / "galinx" / "__init__.py"), "True", "True", "12"]
+    assert "galinx run scene.toml" in (site.parent / "tables.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (("run", "--help"), "mpirun -n 2 galinx run "),
+        (("init", "own_material"), "galinx plan own_material.toml"),
+        (("init",), "tables4_5"),
+    ],
+)
+def test_an_installed_command_calls_itself_galinx(names_and_site, arguments, said):
+    _, site = names_and_site
+    done = installed(site, "-m", "galinx", *arguments, COLUMNS="80")
+    assert done.returncode == 0, done.stderr
+    assert said in done.stdout and "run.sh" not in done.stdout
+
+
+def test_the_command_is_declared(names_and_site):
+    _, site = names_and_site
+    told = next(Path(site).glob("*.dist-info/entry_points.txt")).read_text(encoding="utf-8")
+    assert "galinx = galinx.app.cli:run_from_shell" in told

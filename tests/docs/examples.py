@@ -19,6 +19,7 @@ NOT_RUN = ("test", "bench", "stress", "docs")
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _COMMAND = re.compile(r"\s*(\w+=\S+ |for .*; do )*\./run\.sh\b")
+_INDENTED = re.compile(r"(?<=\n\n)(?: {4}.*\n)+")
 _NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: No windows, and no compiled files beside the pages.
@@ -61,6 +62,15 @@ def commands(page):
         elif _COMMAND.match(line) and (language == "console" or (not language and line[:4] == "    ")):
             found.append(line.strip())
     return found
+
+
+def quotes(page):
+    """Output that a page quotes: text blocks and, if it has commands, indented blocks without any."""
+    quoted = blocks(page, "text")
+    if commands(page):
+        indented = _INDENTED.findall(_FENCE.sub("", text_of(page)))
+        quoted += [block for block in indented if not any(map(_COMMAND.match, block.splitlines()))]
+    return quoted
 
 
 def words_of(command):

@@ -19,9 +19,11 @@ from examples import (
     file_of,
     folder_for,
     name_of,
+    quotes,
     run_page,
     words_of,
 )
+from quotes import fault
 from support import HOME, clean_environment
 
 from galinx.app.cli import cli
@@ -47,17 +49,16 @@ def outputs(request, tmp_path_factory):
         pool.shutdown(cancel_futures=True)
 
 
-def without_numbers(text):
-    """For comparison of output: numbers and line breaks may differ."""
-    return " ".join(re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", text).split())
-
-
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
-    told = without_numbers(outputs[page].result())
-    for block in blocks(page, "text"):
-        for piece in block.split("…\n"):
-            assert without_numbers(piece) in told, f"{page.name} quotes what is not printed:\n{piece}"
+    told = outputs[page].result()
+    faults = [
+        f"{page.name} quotes {found}:\n{piece}"
+        for block in quotes(page)
+        for piece in block.split("…\n")
+        if (found := fault(piece, told))
+    ]
+    assert not faults, "\n".join(faults)
 
 
 def test_only_long_words_are_left_out():

@@ -52,8 +52,8 @@ class Work:
     def parts(self, task: Task) -> Iterator[Part]:
         """Results at one speed.
 
-        The last part has the speed's record: numbers by the names of ``quantities.runs.RECORD``, the ``speed``,
-        and a ``failure`` where it could not be solved.
+        The last part has the speed's record: numbers by the names of ``quantities.runs.RECORD``, the
+        ``speed``, and a ``failure`` where it could not be solved.
         """
         failures: dict[str, str] = {}
         with ExitStack() as stack:

@@ -5,11 +5,15 @@ mkdocs loads it as a hook, so the program is imported only where pages are made.
 """
 
 import json
+import os
 from pathlib import Path
 from textwrap import fill
 from typing import Any
 
 HOME = Path(__file__).resolve().parent.parent
+
+# Pages name the command as it is called in the tree.
+os.environ["GALINX_COMMAND"] = "./run.sh"
 
 _COMMANDS = """\
 # Commands
@@ -102,7 +106,8 @@ with h5py.File("out.h5") as file:
 Other ways are in [Read archives](howto_read_archive.md).
 
 Root attributes: `program`, `version`, `schema_version`, `created`, `complete`, `scene_sha256`, `title`,
-`verdict`, `verdict_reasons` and `warnings` (JSON lists), `comparisons` and `versions` (JSON objects),
+`verdict`, `verdict_reasons`, `warnings` and `rules`, by which
+results were compared (JSON lists), `comparisons` and `versions` (JSON objects),
 `machine`, `load` (N/m).
 
 Datasets that nothing asks for are absent; the column "there with" says what does: a name of

@@ -15,7 +15,7 @@ from support import HOME, SCENE, command, computed
 
 #: Where tests compute no finite elements and start no process.
 FAST = (
-    "app/plan/", "app/scene/", "app/study/test_published.py", "docs/test_docs.py",
+    "app/plan/", "app/scene/", "app/study/test_published.py", "docs/test_docs.py", "docs/test_quotes.py",
     "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
     "solvers/sie/", "solvers/solids/", "test_architecture.py",
 )  # fmt: skip

@@ -31,6 +31,7 @@ class FemPlan:
         tolerance: wanted relative accuracy of K_I and of the pressure's moments.
         mode: ``"contact"`` or ``"traction"``.
         pressure: of the traction mode: ``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)].
+        own_pressure: is it one of the user's own that is put in?
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
     """
@@ -46,12 +47,8 @@ class FemPlan:
     tolerance: float
     mode: str
     pressure: Any
+    own_pressure: bool
     shared_speeds: bool
-
-    @property
-    def own_pressure(self) -> bool:
-        """Is a pressure of the user's own put in?"""
-        return self.mode == "traction" and self.pressure != "closed_form"
 
     @property
     def pattern(self) -> QuadMesh:
@@ -97,7 +94,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, tolerance=solve.tolerance,
-        mode=solve.mode, pressure=solve.pressure, shared_speeds=shared,
+        mode=solve.mode, pressure=solve.pressure, own_pressure=solve.own_pressure,
+        shared_speeds=shared,
     )  # fmt: skip
 
 

@@ -40,7 +40,11 @@ def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
     A = space.assemble(MovingFrame(KAPPA, c))
     b = hold(A, space)  # the frictionless punch
     start = time.perf_counter()
-    solver = Factor(A, Clock()) if kind == "mumps" else Multigrid(A, Clock(), kind, space.rigid_motions)
+    solver = (
+        Factor(A, Clock())
+        if kind == "mumps"
+        else Multigrid(A, Clock(), kind, space.rigid_motions(response))
+    )
     ready = time.perf_counter()
     solver.solve(b).destroy()
     done = time.perf_counter()

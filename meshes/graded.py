@@ -34,12 +34,16 @@ def box(points: NDArray, refinement: Refinement) -> NDArray[np.float64]:
 
 
 GRADED = MeshKind(
-    "straight-sided, graded towards the edges", Physical(), ratio=0.5, column=1.0, place=image, fan=True
+    "straight-sided, graded towards the edges",
+    Physical(contracts=True),
+    ratio=0.5,
+    column=1.0,
+    place=image,
+    fan=True,
 )
 
 BOX = MeshKind(
     "the block of the study, with walls at 100 a", Physical(), ratio=0.5, column=0.7, place=box, fan=True,
-    sectors=lambda _: 2,  # an even number puts a vertex into the block's corners
     walls=BOX_DEPTH,
 )  # fmt: skip
 

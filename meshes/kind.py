@@ -20,9 +20,28 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     return points
 
 
-def by_turning(β_s: float) -> int:
-    """Cells along each leg of an L: fields turn within an angle of β_s = √(1 - c²)."""
-    return 2 if β_s > 0.5 else 3
+#: Tolerance of stresses below which derivatives ask for gentler rings and more cells in angle: these converge
+#: half as fast as moments of the pressure, and the highest degree is not high enough for the rest.
+_FINE = 3e-7
+
+#: Power of the rings' ratio by which they are gentler.
+_GENTLER = 2.0 / 3.0
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a mesh has to be good for.
+
+    Attributes:
+        tolerance: relative accuracy.
+        nearest: least distance over a from a punch edge of a place where stresses are wanted; None where
+            K_I and the pressure's moments are wanted alone.
+        farthest: largest coordinate over a of such a place.
+    """
+
+    tolerance: float
+    nearest: float | None = None
+    farthest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -38,7 +57,7 @@ class MeshKind:
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
-        sectors: cells along each leg of an L, by √(1 - c²) at the highest speed.
+        sectors: cells along each leg of an L.
         walls: distance of the far boundary over a; None where the tolerance sets it.
     """
 
@@ -49,7 +68,7 @@ class MeshKind:
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
     fan: bool = False
     rings: bool = True
-    sectors: Callable[[float], int] = by_turning
+    sectors: int = 2
     walls: float | None = None
 
     def build(self, refinement: Refinement, cuts: int = 1, part: int = 0, parts: int = 1) -> QuadMesh:
@@ -63,58 +82,64 @@ class MeshKind:
         piece = cut(rectangle(refinement, self.fan), cuts, part, parts)
         return QuadMesh(self.place(piece.points, refinement), piece.cells, piece.edges)
 
-    def refinement(self, tolerance: float, β_s: float) -> Refinement:
-        """Refinement that reaches ``tolerance`` with :meth:`degree`.
-
-        Args:
-            tolerance: wanted relative accuracy of K_I and of the pressure's moments.
-            β_s: √(1 - c²) at the highest speed.
-        """
+    def refinement(self, wanted: Wanted) -> Refinement:
+        """Refinement that reaches what is wanted with :meth:`degree`."""
+        tolerance = self._of_cells(wanted)
         # The energy in a ring falls with its size squared.
-        innermost = (self._of_cells(tolerance) / 3.0) ** 0.5
-        levels = ceil(log(pi / 2.0 / innermost) / -log(self.ratio))
-        reach = self._outer_ξ(tolerance) - pi / 2.0
+        innermost = (tolerance / 3.0) ** 0.5
+        ratio, sectors = self.ratio, self.sectors
+        if wanted.nearest is not None:
+            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses, as
+            # measured 35² times the square of their size over the distance, both in this chart.
+            innermost = min(innermost, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
+            if tolerance < _FINE:
+                ratio, sectors = ratio**_GENTLER, sectors + 1
+        levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
+        reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
         first = min(self.column, 1.0)
         count = ceil((reach - first) / self.column)
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        return Refinement(levels, self.ratio, self.sectors(β_s), columns)
+        return Refinement(levels, ratio, sectors, columns)
 
-    def degree(self, tolerance: float, margin: float) -> int:
-        """Polynomial degree that should reach ``tolerance``; the measured error may ask for more.
+    def degree(self, wanted: Wanted, margin: float) -> int:
+        """Polynomial degree that should reach what is wanted; the measured error may ask for more.
 
         Args:
-            tolerance: wanted relative accuracy.
+            wanted: what.
             margin: of the solid's response, in (0, 1]; errors grow as it falls.
         """
-        digits = -log10(self._of_cells(tolerance))
+        digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
         wanted = ceil(3.4 - 0.4 * lost + (0.7 + 0.23 * lost) * digits)
         return min(max(wanted, DEGREES[0]), DEGREES[1])
 
-    def reach(self, tolerance: float) -> float:
+    def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
-        return exp(self._outer_ξ(tolerance)) / 2.0
+        return exp(self._outer_ξ(wanted)) / 2.0
 
-    def truncation(self, tolerance: float, margin: float = 1.0) -> float:
+    def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Estimated relative error of K_I from the finite outer radius R, times σ_XY/σ_YY.
 
         a/R at rest; it was seen to grow as the root of the response's margin falls.
         """
-        return 1.0 / (self.reach(tolerance) * sqrt(margin))
+        return 1.0 / (self.reach(wanted) * sqrt(margin))
 
-    def _outer_ξ(self, tolerance: float) -> float:
+    def _outer_ξ(self, wanted: Wanted) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
         if self.walls:
             return log(2.0 * self.walls)
-        # Truncation at radius R costs about a/R in K_I; a hundredth of the tolerance is left to it.
-        return log(2.0 * 100.0 / tolerance)
+        # Truncation at radius R costs about a/R in K_I and, at a distance r, r/R in the stresses; a
+        # hundredth of the tolerance is left to it.
+        return log(2.0 * 100.0 / wanted.tolerance * max(1.0, wanted.farthest))
 
-    def _of_cells(self, tolerance: float) -> float:
+    def _of_cells(self, wanted: Wanted) -> float:
         """What the cells have to reach: beside walls, which set the error, nothing more."""
-        return min(tolerance, self.truncation(tolerance) / 1000.0) if self.walls else tolerance
+        if self.walls:
+            return min(wanted.tolerance, self.truncation(wanted) / 1000.0)
+        return wanted.tolerance
 
 
 #: Meshes by the name that scenes use; every mesh adds itself.

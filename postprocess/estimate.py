@@ -14,15 +14,6 @@ TYPICAL = 0.25
 SAFETY = 2.0
 
 
-def differences(coarse: NDArray, fine: NDArray) -> NDArray[np.float64]:
-    """Largest difference of each state's quantities between two degrees, (states,).
-
-    Args:
-        coarse, fine: (states, quantities).
-    """
-    return np.abs(fine - coarse).max(axis=1)
-
-
 def remaining(first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray]) -> NDArray[np.float64]:
     """What is left of the errors after two successive differences, by a geometric series.
 

@@ -4,13 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from galinx.app import ranks
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
-from galinx.meshes import MESHES, MeshKind
+from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.solvers.solids.solid import Response
+from galinx.solvers.solution import Places
+
+#: Distance over a from a punch edge that no mesh resolves: rounding of positions.
+_NEAREST = 1e-12
 
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
@@ -28,7 +34,7 @@ class FemPlan:
         solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
-        tolerance: wanted relative accuracy of K_I and of the pressure's moments.
+        wanted: what the mesh has to be good for.
         mode: ``"contact"`` or ``"traction"``.
         pressure: of the traction mode: ``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)].
         own_pressure: is it one of the user's own that is put in?
@@ -44,11 +50,16 @@ class FemPlan:
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
-    tolerance: float
+    wanted: Wanted
     mode: str
     pressure: Any
     own_pressure: bool
     shared_speeds: bool
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted relative accuracy."""
+        return self.wanted.tolerance
 
     @property
     def pattern(self) -> QuadMesh:
@@ -67,12 +78,13 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[Response], places: Places) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
+        places: where stresses are asked for.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -80,10 +92,10 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
     solve, kind = scene.solve, MESHES[scene.solve.mesh]
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
-    refinement = kind.refinement(solve.tolerance, min(response.β_s for response in responses))
+    wanted = wanted_for(solve.tolerance, places)
+    refinement = kind.refinement(wanted)
     degrees = tuple(
-        solve.degree or max(kind.degree(solve.tolerance, response.margin), 4 + mixed)
-        for response in responses
+        solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
     )
     size = _size(refinement, solve.cuts * max(degrees))
     shared = shares_speeds(size, len(responses))
@@ -93,10 +105,19 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, tolerance=solve.tolerance,
+        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=solve.mode, pressure=solve.pressure, own_pressure=solve.own_pressure,
         shared_speeds=shared,
     )  # fmt: skip
+
+
+def wanted_for(tolerance: float, places: Places) -> Wanted:
+    """What a mesh has to be good for where stresses are asked for at some places."""
+    X, Y = np.concatenate([np.column_stack([places.X, 0.0 * places.X]), places.points]).T
+    if not len(X):
+        return Wanted(tolerance)
+    nearest = np.hypot(np.abs(X) - 1.0, Y).min()
+    return Wanted(tolerance, max(float(nearest), _NEAREST), float(np.hypot(X, Y).max()))
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

@@ -36,7 +36,7 @@ def make_plan(scene: Scene) -> Plan:
     if "fem" in methods:
         check_mode(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses)
+        fem = plan_fem(scene, responses, _asked(scene, places))
         warnings += warnings_of(fem)
     tasks = tuple(
         Task(i, body, response, places, slice(i * count, (i + 1) * count))
@@ -53,6 +53,12 @@ def make_plan(scene: Scene) -> Plan:
 def _contact(scene: Scene) -> bool:
     """Does anything ask for contact mechanics?"""
     return bool(set(scene.output.quantities) - {FRICTION_ALONE})
+
+
+def _asked(scene: Scene, places: Places) -> Places:
+    """Those places whose stresses are asked for."""
+    surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
+    return Places(places.X[: len(places.X) * surface], places.points[: len(places.points) * below])
 
 
 def _methods(scene: Scene, body: Body) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from galinx.postprocess.quantities.quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    INTENSITIES,
     LOCAL,
     QUANTITIES,
     STATE,
@@ -87,8 +88,9 @@ INDENTATION = Quantity(
     lambda s, body: s.v0 * body.displacement, FEM, _CONTACT,
 )  # fmt: skip
 ESTIMATE = Quantity(
-    "states/fem/estimate", "1", "estimated relative error of K_I and moments, no closed form used",
-    (STATE,), lambda s, _: s.estimate, FEM, _CONTACT, compared=("estimate",),
+    "states/fem/estimate", "1",
+    "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
+    (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
 )  # fmt: skip
 
 

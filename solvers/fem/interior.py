@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
+from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -42,7 +42,8 @@ class InteriorGradients:
     def __init__(
         self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
-        x = space.chart.from_physical(points)
+        chart = space.contracted(response)
+        x = chart.from_physical(points)
         vertices = space.vertices[..., :2]
         held = _locate(vertices, x)
         found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
@@ -59,7 +60,7 @@ class InteriorGradients:
             np.add.at(gradients, held.point[here], in_plane)
         # On the border between cells the gradient jumps; it is their mean.
         gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-        self._basis = to_physical_axes(space.chart, x, gradients)
+        self._basis = chart.physical_gradients(x, gradients)
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""

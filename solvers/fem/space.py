@@ -15,10 +15,10 @@ from petsc4py import PETSc
 from galinx.clock import Clock
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import adapter
-from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.chart import Chart, Contracted
 from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
-from galinx.solvers.fem.forms import FORMS
+from galinx.solvers.fem.forms import FORMS, gradient
 from galinx.solvers.fem.matrix import empty_matrix
 from galinx.solvers.solids.solid import Response
 
@@ -114,12 +114,15 @@ class Space:
         owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
         return np.arange(first, first + 2 * owned, dtype=np.int32)
 
-    @property
-    def rigid_motions(self) -> NDArray[np.float64]:
+    def contracted(self, response: Response) -> Contracted:
+        """The chart at a speed."""
+        return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
+
+    def rigid_motions(self, response: Response) -> NDArray[np.float64]:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
         owned = len(self.node_dofs) // 2
         mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
-        X, Y = self.chart.to_physical(self.coordinates[mine]).T  # in the order of their numbers
+        X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
         modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
         modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
         modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
@@ -140,7 +143,9 @@ class Space:
     def _compiled(self) -> tuple[Any, list[fem.Constant]]:
         """The compiled form with its constants, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
-        constants = [fem.Constant(self.mesh, 0.0) for _ in self.form.constants]
+        p, constants = (
+            [fem.Constant(self.mesh, 0.0) for _ in names] for names in ("XY", self.form.constants)
+        )
         trial: Any
         test: Any
         if self.mixed:
@@ -150,9 +155,11 @@ class Space:
             trial, test = ufl.TrialFunctions(W), ufl.TestFunctions(W)
         else:
             trial, test = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-        form = self.form.stiffness(trial, test, self.chart, x, constants, self.degree)
+        form = self.form.stiffness(
+            trial, test, lambda u: gradient(u, self.chart, x, p), constants, self.degree
+        )
         with self.clock("forms"), compiling(self.comm) as options:
-            return adapter.compile_form(form, options), constants
+            return adapter.compile_form(form, options), [*p, *constants]
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
@@ -245,8 +252,10 @@ class Space:
 
     def _condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
         form, constants = self._compiled
-        for name, constant in zip(self.form.constants, constants):
-            constant.value = getattr(response, name)
+        p = self.contracted(response).p
+        values = [p.real, p.imag, *(getattr(response, name) for name in self.form.constants)]
+        for constant, value in zip(constants, values):
+            constant.value = value
         return self._kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:

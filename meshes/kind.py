@@ -20,9 +20,12 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     return points
 
 
-#: Tolerance of stresses below which derivatives ask for gentler rings and more cells in angle: these converge
-#: half as fast as moments of the pressure, and the highest degree is not high enough for the rest.
+#: Tolerance of stresses below which they ask for gentler rings and more cells in angle: derivatives
+#: converge half as fast as moments of the pressure, and the highest degree is not high enough.
 _FINE = 3e-7
+
+#: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
+_STRONGEST = -0.95
 
 #: Power of the rings' ratio by which they are gentler.
 _GENTLER = 2.0 / 3.0
@@ -37,11 +40,13 @@ class Wanted:
         nearest: least distance over a from a punch edge of a place where stresses are wanted; None where
             K_I and the pressure's moments are wanted alone.
         farthest: largest coordinate over a of such a place.
+        exponent: of the strongest singularity of the pressure, in (-1, -1/2].
     """
 
     tolerance: float
     nearest: float | None = None
     farthest: float = 0.0
+    exponent: float = -0.5
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,10 @@ class MeshKind:
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
+        innermost: share of the tolerance that is left to the innermost cells. Where these cannot follow
+            the singularity it hardly falls with the degree, so that no estimate sees it.
+        smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
+            positions leaves enough digits.
         sectors: cells along each leg of an L.
         walls: distance of the far boundary over a; None where the tolerance sets it.
     """
@@ -68,6 +77,8 @@ class MeshKind:
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
     fan: bool = False
     rings: bool = True
+    innermost: float = 1.0 / 3.0
+    smallest: float = 1e-6
     sectors: int = 2
     walls: float | None = None
 
@@ -85,15 +96,15 @@ class MeshKind:
     def refinement(self, wanted: Wanted) -> Refinement:
         """Refinement that reaches what is wanted with :meth:`degree`."""
         tolerance = self._of_cells(wanted)
-        # The energy in a ring falls with its size squared.
-        innermost = (tolerance / 3.0) ** 0.5
+        innermost = float((self.innermost * tolerance) ** (1.0 / self._power(wanted)))
         ratio, sectors = self.ratio, self.sectors
         if wanted.nearest is not None:
-            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses, as
-            # measured 35² times the square of their size over the distance, both in this chart.
+            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
+            # measured as 35² times the square of their size over the distance, both in this chart.
             innermost = min(innermost, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
             if tolerance < _FINE:
                 ratio, sectors = ratio**_GENTLER, sectors + 1
+        innermost = max(innermost, self.smallest)
         levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
@@ -113,8 +124,8 @@ class MeshKind:
         """
         digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
-        wanted = ceil(3.4 - 0.4 * lost + (0.7 + 0.23 * lost) * digits)
-        return min(max(wanted, DEGREES[0]), DEGREES[1])
+        degree = ceil(3.4 - 0.2 * lost + (0.7 + 0.12 * lost) * digits)
+        return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
@@ -123,9 +134,18 @@ class MeshKind:
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Estimated relative error of K_I from the finite outer radius R, times σ_XY/σ_YY.
 
-        a/R at rest; it was seen to grow as the root of the response's margin falls.
+        a/R at rest; it was seen to grow as the cubic root of the response's margin falls.
         """
-        return 1.0 / (self.reach(wanted) * sqrt(margin))
+        return 1.0 / (self.reach(wanted) * margin ** (1.0 / 3.0))
+
+    def unseen(self, wanted: Wanted) -> float:
+        """Estimated relative error of K_I that the innermost cells leave at any degree."""
+        share = max(self.innermost * self._of_cells(wanted), self.smallest ** self._power(wanted))
+        return 0.3 * share if self.fan else 0.0
+
+    def _power(self, wanted: Wanted) -> float:
+        """Of a ring's size, with which the energy in it falls."""
+        return 4.0 * (1.0 + max(wanted.exponent, _STRONGEST))
 
     def _outer_ξ(self, wanted: Wanted) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""

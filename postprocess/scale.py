@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact import from_edge
 
-#: Distance over a from a punch edge within which stresses, infinite at the edge, stand for themselves only.
+#: Distance over a from a punch edge within which stresses, infinite there, stand for themselves only.
 NEAR = 1e-2
 
 #: Share of the largest below which the smooth factor of a pressure, which may vanish, is not measured

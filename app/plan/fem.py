@@ -12,6 +12,7 @@ from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Places
 
@@ -78,13 +79,16 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response], places: Places) -> FemPlan:
+def plan_fem(
+    scene: Scene, responses: Sequence[Response], places: Places, g: tuple[float, float]
+) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
         places: where stresses are asked for.
+        g: smallest and largest σ_XY/σ_YY.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -92,7 +96,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places) -> Fem
     solve, kind = scene.solve, MESHES[scene.solve.mesh]
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
-    wanted = wanted_for(solve.tolerance, places)
+    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
+    wanted = wanted_for(solve.tolerance, places, exponent)
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -111,13 +116,14 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places) -> Fem
     )  # fmt: skip
 
 
-def wanted_for(tolerance: float, places: Places) -> Wanted:
+def wanted_for(tolerance: float, places: Places, exponent: float) -> Wanted:
     """What a mesh has to be good for where stresses are asked for at some places."""
     X, Y = np.concatenate([np.column_stack([places.X, 0.0 * places.X]), places.points]).T
     if not len(X):
-        return Wanted(tolerance)
+        return Wanted(tolerance, exponent=exponent)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
-    return Wanted(tolerance, max(float(nearest), _NEAREST), float(np.hypot(X, Y).max()))
+    farthest = float(np.hypot(X, Y).max())
+    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent)
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
 from galinx.app.plan.limits import check_mode, check_places, check_speeds, warnings_of
-from galinx.app.plan.states import speeds, states_a_speed
+from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
@@ -36,7 +36,8 @@ def make_plan(scene: Scene) -> Plan:
     if "fem" in methods:
         check_mode(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses, _asked(scene, places))
+        g = enumerate_states(scene).g
+        fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
     tasks = tuple(
         Task(i, body, response, places, slice(i * count, (i + 1) * count))

@@ -54,8 +54,8 @@ ESTIMATE_IN_PLANE = Quantity(
 )  # fmt: skip
 ESTIMATE_INSIDE = Quantity(
     "states/fem/estimate_inside", "1",
-    "estimated error of stresses inside over the largest one there or further than 0.01 a from the edges, "
-    "no closed form used",
+    "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
+    "from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
 )  # fmt: skip
 

@@ -15,7 +15,7 @@ class Form:
     """A weak form.
 
     Attributes:
-        stiffness: the form from trial and test functions, what takes their gradients, constants and degree.
+        stiffness: the form from trial and test functions, what takes gradients, constants and degree.
         constants: what these are called in a solid's response.
         pressure: with an unknown pressure in each cell besides the displacement.
     """

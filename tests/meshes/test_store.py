@@ -3,14 +3,14 @@ import sys
 import numpy as np
 import pytest
 
-from galinx.meshes import MESHES, store
+from galinx.meshes import MESHES, Wanted, store
 from galinx.meshes.rings import QuadMesh
 
 
 @pytest.fixture
 def pattern(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return MESHES["graded"].build(MESHES["graded"].refinement(1e-3, 1.0))
+    return MESHES["graded"].build(MESHES["graded"].refinement(Wanted(1e-3)))
 
 
 def same(one, other):

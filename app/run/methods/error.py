@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import remaining
+from galinx.postprocess.estimate import OF_DEGREES, Rate, of_cuts, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 
 #: States, spread over all of a speed, whose measured error decides the degree.
@@ -67,7 +67,9 @@ class MeasuredError:
         """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
         truncation = self._truncation(g)
         return {
-            word: remaining(*pair, self._sample[word]) + truncation[word] + self._rounding[word]
+            word: remaining(*pair, self._sample[word], self._rate(word))
+            + truncation[word]
+            + self._rounding[word]
             for word, pair in self._changes(g).items()
         }
 
@@ -80,14 +82,24 @@ class MeasuredError:
             bool((found[word] > np.maximum(tolerance, 1.1 * truncation[word])).any()) for word in found
         )
 
+    def _rate(self, word: str) -> Rate:
+        ladder = self._ladder
+        if not ladder.work.plan.fixed:
+            return OF_DEGREES
+        return of_cuts(ladder.degree, 2 if word == INTENSITIES else 1)
+
     def _truncation(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors from the finite outer radius, (states,)."""
+        """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
         plan, response = self._ladder.work.plan, self._ladder.task.response
         at_edges = plan.kind.truncation(plan.wanted, response.margin)
         gauges = self._ladder.levels[-1].measured(g)
+        # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
+        of_edges = 2.0 * np.abs(g) + 1.3 * at_edges
+        unseen = plan.kind.unseen(plan.wanted)
         return {
-            gauge.word: at_edges
-            * (np.abs(g) if gauge.word == INTENSITIES else 1.0 / gauge.scale.min(axis=1))
+            gauge.word: unseen
+            + at_edges
+            * (of_edges if gauge.word == INTENSITIES else 0.4 + of_edges + 1.0 / gauge.scale.min(axis=1))
             for gauge in gauges
         }
 

@@ -1,4 +1,4 @@
-"""What the error of finite elements is measured on: numbers of some states, and what they are relative to."""
+"""What the error of finite elements is measured on: numbers of states, and what they are relative to."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from galinx.solvers.fem.space import Space
 #: Points inside on which the error is measured; of more, so many are picked.
 _POINTS = 400
 
-#: Positions r under the punch at which the smooth factor of the pressure is measured, both edges among them.
+#: Positions r under the punch at which the pressure's smooth factor is measured, both edges among them.
 _ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
 
 
@@ -95,16 +95,16 @@ class StressGauges:
         return found
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
-        """The same, seen from the other side where the sign is negative; points inside have no mirror image.
+        """The same, seen from the other side where the sign is negative.
 
-        Those on the surface have: σ_XX there stands for both.
+        Points inside have no mirror image, those on the surface have: σ_XX there stands for both.
         """
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
         return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
 
 
 def gauged(task: Task) -> Task:
-    """The task at fewer points inside: every so many of them, and those nearest to the edges and farthest."""
+    """The task at fewer points inside: some at all distances from the edges, from nearest to farthest."""
     points = task.places.points
     if len(points) <= _POINTS:
         return task

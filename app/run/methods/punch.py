@@ -22,7 +22,6 @@ from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Body, Surface
 
-
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
 #: most keeps results on any number of ranks equal to 1e-9.
 NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10

@@ -30,7 +30,7 @@ class Rate:
 
 
 #: From one degree to the next.
-OF_DEGREES = Rate(0.2, 0.2)
+OF_DEGREES = Rate(0.16, 0.16)
 
 
 def of_cuts(degree: int, order: int) -> Rate:
@@ -41,7 +41,7 @@ def of_cuts(degree: int, order: int) -> Rate:
         order: 2 for resultants and moments, 1 for derivatives.
     """
     halved = 2.0 ** (-order * degree)
-    return Rate(3.5 * halved, 16.0 * halved)
+    return Rate(3.5 * halved, min(8.0 * halved, 0.25))
 
 
 def remaining(

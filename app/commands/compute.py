@@ -134,14 +134,18 @@ def paper(folder: Path, progress: Progress, quiet: bool) -> int:
 
 @click.command()
 @options.folder("stress")
-def stress(folder: Path) -> int:
+@click.option("--seed", type=int, default=1, show_default=True, help="Of the random scenes.")
+@click.option(
+    "--scenes", type=click.IntRange(4), default=300, show_default=True, help="Number of random scenes."
+)
+def stress(folder: Path, seed: int, scenes: int) -> int:
     """Try extremes of every parameter, and say whether the promises hold there.
 
     Example: ./run.sh stress -o stress
     """
     from galinx.app.extremes import matrix
 
-    return errors.GOOD if matrix.stress(folder) else errors.FAILED_VERDICT
+    return errors.GOOD if matrix.stress(folder, seed, scenes) else errors.FAILED_VERDICT
 
 
 COMMANDS: tuple[Any, ...] = (run, plan, paper, stress)

@@ -1,28 +1,36 @@
 """Run the matrix, print its table, write its archive and figures."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.extremes import friction_law, mechanics, resolution
+from galinx.app.extremes.random_scenes import random_scenes
 from galinx.app.extremes.row import Row
 
-#: Every row, cheap ones first.
+#: Every row but the random scenes, cheap ones first.
 ROWS: tuple[Callable[[], Row], ...] = (
     friction_law.exact_law, friction_law.runge_kutta_steps, mechanics.units, mechanics.frictions,
     mechanics.speeds, mechanics.solids, resolution.edges, resolution.radii, resolution.degrees,
 )  # fmt: skip
 
 
-def stress(folder: Path) -> bool:
-    """Whether every row keeps its word; archive, figures and table go into ``folder``."""
+def stress(folder: Path, seed: int = 1, scenes: int = 300) -> bool:
+    """Whether every row keeps its word; archive, figures and table go into ``folder``.
+
+    Args:
+        folder: is made.
+        seed, scenes: random number seed and number of the random scenes.
+    """
+    makers: tuple[Callable[[], Row], ...] = (*ROWS, partial(random_scenes, seed, scenes))
     rows = []
     with Progress() as progress:
-        for i, make in enumerate(ROWS):
-            progress.say((make.__doc__ or make.__name__).splitlines()[0])
+        for i, make in enumerate(makers):
+            progress.say((getattr(make, "func", make).__doc__ or repr(make)).splitlines()[0])
             rows.append(make())
-            progress.done(i + 1, len(ROWS))
+            progress.done(i + 1, len(makers))
     good = all(verdict.holds for row in rows for verdict in row.verdicts)
     if ranks.is_root():
         _write(folder, rows, good)

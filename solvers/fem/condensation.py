@@ -70,7 +70,7 @@ class CellMatrices:
             # The first of the two pressures that stay is the mean; the rest is orthogonal to it.
             n = self.pressures
             modes, _ = np.linalg.qr(np.column_stack([np.ones(n), np.eye(n)[:, 1:]]))
-            # Over a cell's size, so that small cells' pressures weigh as much as large ones' in the matrix.
+            # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
             scaled = modes / _size(corners)[:, None, None]
             K[:, -n:] = scaled.transpose(0, 2, 1) @ K[:, -n:]
             K[:, :, -n:] = K[:, :, -n:] @ scaled

@@ -41,7 +41,7 @@ def of_cuts(degree: int, order: int) -> Rate:
         order: 2 for resultants and moments, 1 for derivatives.
     """
     halved = 2.0 ** (-order * degree)
-    return Rate(3.5 * halved, min(8.0 * halved, 0.25))
+    return Rate(3.5 * halved, min(16.0 * halved, 0.25))
 
 
 def remaining(

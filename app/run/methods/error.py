@@ -94,12 +94,12 @@ class MeasuredError:
         at_edges = plan.kind.truncation(plan.wanted, response.margin)
         gauges = self._ladder.levels[-1].measured(g)
         # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
-        of_edges = 2.0 * np.abs(g) + 1.3 * at_edges
+        of_edges = 2.4 * np.abs(g) + 1.3 * at_edges
         unseen = plan.kind.unseen(plan.wanted)
         return {
             gauge.word: unseen
             + at_edges
-            * (of_edges if gauge.word == INTENSITIES else 0.4 + of_edges + 1.0 / gauge.scale.min(axis=1))
+            * (of_edges if gauge.word == INTENSITIES else 0.4 + of_edges + 3.0 / gauge.scale.min(axis=1))
             for gauge in gauges
         }
 

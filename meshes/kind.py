@@ -20,15 +20,11 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     return points
 
 
-#: Tolerance of stresses below which they ask for gentler rings and more cells in angle: derivatives
-#: converge half as fast as moments of the pressure, and the highest degree is not high enough.
-_FINE = 3e-7
-
 #: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
 _STRONGEST = -0.95
 
-#: Power of the rings' ratio by which they are gentler.
-_GENTLER = 2.0 / 3.0
+#: Power of the rings' ratio by which they are gentler for stresses.
+_GENTLER = 0.6
 
 
 @dataclass(frozen=True)
@@ -64,6 +60,8 @@ class MeshKind:
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
         innermost: share of the tolerance that is left to the innermost cells. Where these cannot follow
             the singularity it hardly falls with the degree, so that no estimate sees it.
+        gentle: tolerance below which stresses ask for gentler rings and more cells in angle: derivatives
+            converge half as fast as moments of the pressure, and degrees are not high enough.
         smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
             positions leaves enough digits.
         sectors: cells along each leg of an L.
@@ -78,6 +76,7 @@ class MeshKind:
     fan: bool = False
     rings: bool = True
     innermost: float = 1.0 / 3.0
+    gentle: float = 3e-7
     smallest: float = 1e-6
     sectors: int = 2
     walls: float | None = None
@@ -95,17 +94,10 @@ class MeshKind:
 
     def refinement(self, wanted: Wanted) -> Refinement:
         """Refinement that reaches what is wanted with :meth:`degree`."""
-        tolerance = self._of_cells(wanted)
-        innermost = float((self.innermost * tolerance) ** (1.0 / self._power(wanted)))
         ratio, sectors = self.ratio, self.sectors
-        if wanted.nearest is not None:
-            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
-            # measured as 35² times the square of their size over the distance, both in this chart.
-            innermost = min(innermost, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
-            if tolerance < _FINE:
-                ratio, sectors = ratio**_GENTLER, sectors + 1
-        innermost = max(innermost, self.smallest)
-        levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
+        if wanted.nearest is not None and self._of_cells(wanted) < self.gentle:
+            ratio, sectors = ratio**_GENTLER, sectors + 1
+        levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
         first = min(self.column, 1.0)
@@ -114,6 +106,16 @@ class MeshKind:
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
         return Refinement(levels, ratio, sectors, columns)
+
+    def _innermost(self, wanted: Wanted) -> float:
+        """Size of the innermost cells that is small enough."""
+        tolerance = self._of_cells(wanted)
+        size = float((self.innermost * tolerance) ** (1.0 / self._power(wanted)))
+        if wanted.nearest is not None:
+            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
+            # measured as 35² times the square of their size over the distance, both in this chart.
+            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
+        return max(size, self.smallest)
 
     def degree(self, wanted: Wanted, margin: float) -> int:
         """Polynomial degree that should reach what is wanted; the measured error may ask for more.
@@ -124,7 +126,8 @@ class MeshKind:
         """
         digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
-        degree = ceil(3.4 - 0.2 * lost + (0.7 + 0.12 * lost) * digits)
+        stresses = wanted.nearest is not None
+        degree = ceil(3.4 - 0.2 * lost + (0.7 + 0.12 * lost) * digits) + stresses
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:
@@ -140,8 +143,8 @@ class MeshKind:
 
     def unseen(self, wanted: Wanted) -> float:
         """Estimated relative error of K_I that the innermost cells leave at any degree."""
-        share = max(self.innermost * self._of_cells(wanted), self.smallest ** self._power(wanted))
-        return (0.3 if self.fan else 3e-4) * share  # a chart with smooth fields has little to leave
+        # A chart with smooth fields has little to leave.
+        return float((0.3 if self.fan else 3e-4) * self._innermost(wanted) ** self._power(wanted))
 
     def _power(self, wanted: Wanted) -> float:
         """Of a ring's size, with which the energy in it falls."""

@@ -23,14 +23,26 @@ class Rate:
     Attributes:
         usual: ratio of successive differences that is counted on, at least.
         believed: what is seen below it is a lucky coincidence or a level that was too coarse.
+        least: a second difference below this share of the first is not believed itself.
     """
 
     usual: float
     believed: float
+    least: float = 0.0
 
 
-#: From one degree to the next.
-OF_DEGREES = Rate(0.16, 0.16)
+#: Ratio of successive differences below which those of derivatives are not believed: what one cell does
+#: at the places that are looked at is not what the next one does.
+_ERRATIC = 0.1
+
+
+def of_degrees(order: int) -> Rate:
+    """From one degree to the next.
+
+    Args:
+        order: 2 for resultants and moments, 1 for derivatives.
+    """
+    return Rate(0.16, 0.16) if order == 2 else Rate(0.33, 0.33, _ERRATIC)
 
 
 def of_cuts(degree: int, order: int) -> Rate:
@@ -61,6 +73,7 @@ def remaining(
     Returns:
         Errors of the last level, (states,).
     """
+    second = np.maximum(second, rate.least * first)
     largest = max(sample[0].max(), np.finfo(float).tiny)
     common = sample[1].max() / largest
     own = second / np.maximum(first, TYPICAL * largest)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import OF_DEGREES, Rate, of_cuts, remaining
+from galinx.postprocess.estimate import Rate, of_cuts, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 
 #: States, spread over all of a speed, whose measured error decides the degree.
@@ -84,9 +84,8 @@ class MeasuredError:
 
     def _rate(self, word: str) -> Rate:
         ladder = self._ladder
-        if not ladder.work.plan.fixed:
-            return OF_DEGREES
-        return of_cuts(ladder.degree, 2 if word == INTENSITIES else 1)
+        order = 2 if word == INTENSITIES else 1
+        return of_cuts(ladder.degree, order) if ladder.work.plan.fixed else of_degrees(order)
 
     def _truncation(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""

@@ -1,6 +1,5 @@
 """What the file system says when it refuses."""
 
-import os
 import shutil
 from contextlib import suppress
 from pathlib import Path
@@ -12,12 +11,11 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
     """The failure to raise, with the reason, and the space that is needed and free.
 
     Args:
-        target: the archive.
+        target: the file.
         error: what the file system or HDF5 raised.
         needed: bytes, where they are known.
     """
-    number = getattr(error, "errno", None)
-    reason = os.strerror(number) if number else str(error)
+    reason = getattr(error, "strerror", None) or str(error)
     space = f"; it needs {needed / 1e6:.3g} MB" if needed else ""
     with suppress(OSError):
         space += f"; {shutil.disk_usage(target.parent).free / 1e6:.3g} MB are free"

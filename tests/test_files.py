@@ -2,44 +2,14 @@
 
 import errno
 import os
-import resource
-import signal
 import socket
 import stat
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from support import at_once, full_disk
 
 from galinx import files
-
-
-@contextmanager
-def full_disk(size):
-    """No file may grow beyond ``size``, which is what a full disk does in the end."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    earlier = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-        signal.signal(signal.SIGXFSZ, earlier)
-
-
-@contextmanager
-def at_once(seconds=5):
-    """The block ends by itself; one that waits for somebody is ended with a failure."""
-
-    def late(*_):
-        raise TimeoutError("it waits")
-
-    signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
 
 
 def test_what_is_written_is_there_and_nothing_else(tmp_path):

@@ -1,10 +1,12 @@
 """What a long run tells: a bar on a terminal, lines for who wants them, a log file."""
 
 import logging
+import os
 import sys
 from pathlib import Path
 from typing import Any
 
+from galinx import files
 from galinx.app import ranks
 from galinx.app.errors import MachineFailure
 
@@ -41,10 +43,7 @@ class Progress:
         elif not self._quiet and sys.stderr.isatty():
             self._bar, self._task = _start_bar()
         if self._log:
-            try:
-                self._add(logging.FileHandler(self._log, encoding="utf-8"), "%(asctime)s %(message)s")
-            except OSError as error:
-                raise MachineFailure(f"cannot write the log {self._log}: {error.strerror}") from None
+            self._add(_LogFile(self._log), "%(asctime)s %(message)s")
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -74,6 +73,38 @@ class Progress:
     def _add(self, handler: logging.Handler, form: str) -> None:
         handler.setFormatter(logging.Formatter(form))
         self._logger.addHandler(handler)
+
+
+class _LogFile(logging.Handler):
+    """Adds lines to a file; a disk that becomes full ends the log, not the run.
+
+    Args:
+        path: the file; one that is there is added to.
+
+    Raises:
+        MachineFailure: it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path, self._full = path, False
+        try:
+            handle = files.open_file(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+        except OSError as error:
+            raise MachineFailure(f"cannot write the log {path}: {error.strerror}") from None
+        self._file = open(handle, "ab", buffering=0)  # noqa: SIM115 - closed by close
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            if not self._full:
+                self._file.write(f"{self.format(record)}\n".encode())
+        except OSError as error:
+            self._full = True
+            print(f"warning: the log {self._path} ends here: {error.strerror}", file=sys.stderr)
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
 
 
 def _start_bar() -> tuple[Any, Any]:

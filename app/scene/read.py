@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from galinx import files
 from galinx.app.errors import BadInput
 from galinx.app.scene.keys import nearest
 from galinx.app.scene.materials import LIBRARY
@@ -24,9 +25,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         BadInput: the file cannot be read, or the scene has faults; all are listed.
     """
     try:
-        data = path.read_bytes()
-    except IsADirectoryError:
-        raise BadInput(f"{path} is a folder, expected a scene (TOML file)") from None
+        data = files.read(path)
     except OSError as error:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
     try:

@@ -16,7 +16,15 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
         needed: bytes, where they are known.
     """
     reason = getattr(error, "strerror", None) or str(error)
-    space = f"; it needs {needed / 1e6:.3g} MB" if needed else ""
+    space = f"; it needs {_size(needed)}" if needed else ""
     with suppress(OSError):
-        space += f"; {shutil.disk_usage(target.parent).free / 1e6:.3g} MB are free"
+        space += f"; {_size(shutil.disk_usage(target.parent).free)} are free"
     return UnwritableArchive(f"cannot write {target}: {reason}{space}")
+
+
+def _size(count: float) -> str:
+    for unit in ("bytes", "kB", "MB"):
+        if count < 999.5:
+            return f"{count:.3g} {unit}"
+        count /= 1000.0
+    return f"{count:.3g} GB"

@@ -18,6 +18,7 @@ FAST = (
     "app/plan/", "app/scene/", "app/study/test_published.py", "docs/test_docs.py", "docs/test_quotes.py",
     "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
     "solvers/sie/", "solvers/solids/", "test_architecture.py", "test_files.py",
+    "test_texts.py",
 )  # fmt: skip
 #: Fixtures that compute; what asks for one is not fast wherever it is.
 SLOW = {"tables_run", "map_run", "inside_run", "archives"}

@@ -12,6 +12,7 @@ from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sections import SECTIONS
 from galinx.app.scene.sense import contradictions
+from galinx.app.scene.texts import control_characters
 
 
 def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
@@ -51,7 +52,7 @@ def parse(text: str, name: str = "scene") -> Scene:
         tree = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BadInput(f"{name} is not TOML: {error}") from None
-    faults: list[str] = []
+    faults = list(control_characters(tree))
     _fill_in_material(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):

@@ -35,7 +35,7 @@ def test_a_refused_file_is_said_and_leaves_nothing(tmp_path):
     (tmp_path / "file.hdf").write_text("precious")
     with pytest.raises(Occupied, match="exists; name another"):
         vtkhdf.write(tmp_path / "file.hdf", square, {})
-    with full_disk(1000), pytest.raises(UnwritableArchive, match=r"File too large; it needs .* MB"):
+    with full_disk(1000), pytest.raises(UnwritableArchive, match=r"File too large; it needs .* kB"):
         vtkhdf.write(Target(tmp_path / "file.hdf", FIELDS, overwrite=True), square, {})
     assert (tmp_path / "file.hdf").read_text() == "precious"
     assert [entry.name for entry in tmp_path.iterdir()] == ["file.hdf"]

@@ -42,14 +42,15 @@ def _kind(noun: str, looks: bytes) -> Kind:
     return Kind(noun, re.compile(looks, re.DOTALL))
 
 
-_HDF5 = rb"\x89HDF\r\n\x1a\n"
+#: How HDF5 files begin, and how the names in the root of one go on whose only group is VTK's.
+_HDF5, _VTK = rb"\x89HDF\r\n\x1a\n", rb".{,2000}HEAP.{,60}\0VTKHDF\0"
 #: With its digest before it, or without.
-ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb".*galinx")
-FIELDS = _kind("a file of fields of galinx", _HDF5 + rb".{,2000}VTKHDF")
+ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
+FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK)
 PAGE = _kind("a report of galinx", rb'<!doctype html>.{,500}<meta name="generator" content="galinx')
 PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
 PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
-TABLES = _kind("tables of galinx", rb"\s*Table 1")
+TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
 
 

@@ -30,9 +30,9 @@ the folder you are in. Exit status:
 | 2 | bad input: the message says which key or option, and what was expected |
 | 3 | failure of program or machine |
 
-A file appears under its name when it is whole. What is made from an archive is made again unasked; scenes,
-archives and what galinx did not make are replaced with `--overwrite` only. Files that a command reads, folders,
-devices and FIFOs are never replaced, links are followed, and `--log` adds to logs only.
+A file appears under its name when it is whole. What is made from an archive is made again unasked; what
+galinx did not make, scenes and archives are replaced with `--overwrite` only. Files that a command reads,
+folders, devices and FIFOs never are, links are followed, and `--log` adds to logs only.
 
 Words that `run.sh` knows besides the commands:
 

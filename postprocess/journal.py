@@ -18,6 +18,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx import files
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import ArchiveInUse, LeftOver
@@ -63,13 +64,13 @@ class Journal:
         #: Where the parts are, and what else belongs to the unfinished run.
         self.folder = target.with_name(f".{target.name}.work")
         self._resume, self._overwrite = resume, overwrite
-        self._lock: IO[str] | None = None
+        self._lock: IO[bytes] | None = None
         self._complete = self._stop = False
 
     def __enter__(self) -> "Journal":
         try:
             self.folder.mkdir(exist_ok=True)
-            self._lock = (self.folder / "lock").open("w", encoding="utf-8")
+            self._lock = open(files.open_file(self.folder / "lock", os.O_RDWR | os.O_CREAT), "r+b")
             try:
                 fcntl.lockf(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
@@ -79,6 +80,7 @@ class Journal:
             self._check_left_over()
             (self.folder / "key").write_text(self._key, encoding="utf-8")
         except OSError as error:
+            self.__exit__()
             raise refused(self.target, error) from error
         return self
 

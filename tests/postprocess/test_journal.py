@@ -1,9 +1,12 @@
 """Parts that an interrupted run keeps."""
 
+import os
+
 import numpy as np
 import pytest
+from support import at_once, full_disk
 
-from galinx.postprocess.errors import LeftOver
+from galinx.postprocess.errors import LeftOver, UnwritableArchive
 from galinx.postprocess.journal import Journal, Part
 
 
@@ -53,3 +56,16 @@ def test_a_damaged_part_is_computed_again(tmp_path):
     first.write_bytes(data)
     with Journal(target, "key", resume=True) as journal:
         assert [p.rows for p in journal.parts()] == [slice(3, 5)]
+
+
+def test_a_full_disk_leaves_nothing_where_nothing_is_kept(tmp_path):
+    with full_disk(0), pytest.raises(UnwritableArchive, match="File too large"):
+        Journal(tmp_path / "a.h5", "key").__enter__()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lock_that_is_a_fifo_is_not_waited_for(tmp_path):
+    (tmp_path / ".a.h5.work").mkdir()
+    os.mkfifo(tmp_path / ".a.h5.work" / "lock")
+    with at_once(), pytest.raises(UnwritableArchive, match="it is a FIFO"):
+        Journal(tmp_path / "a.h5", "key").__enter__()

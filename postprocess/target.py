@@ -83,6 +83,8 @@ class Target:
         self._another = f"name another file with {option}"
         self.place = self._followed()
         self._earlier = self._there()
+        if not self._earlier and not self.place.parent.is_dir():
+            raise Occupied(f"the folder {self.place.parent} does not exist; make it, or {self._another}")
         if any(_same(self.place, one) for one in inputs):
             raise Occupied(f"{path} is also a file that this command reads or writes; {self._another}")
         if self._earlier:
@@ -125,7 +127,7 @@ class Target:
             raise refused(self.path, error, needed) from error
 
     def _followed(self) -> Path:
-        if not self.path.is_symlink():
+        if not os.path.islink(self.path):  # what cannot be asked is none, and refused below
             return self.path
         try:
             return self.path.resolve(strict=True)
@@ -140,7 +142,6 @@ class Target:
         try:
             found = os.lstat(self.place)
         except (FileNotFoundError, NotADirectoryError):
-            self._check_folder()
             return None
         except OSError as error:
             raise refused(self.path, error) from error
@@ -150,17 +151,12 @@ class Target:
             )
         return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
 
-    def _check_folder(self) -> None:
-        if not self.place.parent.is_dir():
-            raise Occupied(f"the folder {self.place.parent} does not exist; make it, or {self._another}")
-
     def _check_replaceable(self) -> None:
-        if self._overwrite and os.access(self.place, os.W_OK):
-            return
-        asked = not self._kind or self._kind.asked
-        or_else = ", or add --overwrite" if asked and not self._overwrite else ""
         if not os.access(self.place, os.W_OK):
             raise Occupied(f"{self.path} is protected against writing; {self._another}")
+        if self._overwrite:
+            return
+        or_else = ", or add --overwrite" if not self._kind or self._kind.asked else ""
         if not self._kind:
             raise Occupied(f"{self.path} exists; {self._another}{or_else}")
         try:

@@ -14,6 +14,9 @@ from galinx.app.scene.sections import SECTIONS
 from galinx.app.scene.sense import contradictions
 from galinx.app.scene.texts import control_characters
 
+#: Bytes of a scene; a million speeds fit, and what has no end is not read for ever.
+_LARGEST = 50 * 10**6
+
 
 def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
     """Read and check a scene file.
@@ -26,9 +29,11 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         BadInput: the file cannot be read, or the scene has faults; all are listed.
     """
     try:
-        data = files.read(path)
+        data = files.read(path, _LARGEST + 1)
     except OSError as error:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
+    if len(data) > _LARGEST:
+        raise BadInput(f"{path} is larger than {_LARGEST // 10**6} MB, expected a scene (TOML file)")
     try:
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:

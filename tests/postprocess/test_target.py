@@ -154,6 +154,19 @@ def test_what_appears_at_the_last_moment_is_kept(tmp_path, monkeypatch):
     assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
 
 
+def test_a_folder_that_is_gone_meanwhile_is_said(tmp_path):
+    (tmp_path / "a").mkdir()
+    target = Target(tmp_path / "a" / "b")
+    (tmp_path / "a").rmdir()
+    with pytest.raises(UnwritableArchive, match="No such file or directory"):
+        target.write(b"new")
+
+
+def test_a_name_that_is_too_long_is_said(tmp_path):
+    with pytest.raises(UnwritableArchive, match="File name too long"):
+        Target(tmp_path / (300 * "n"))
+
+
 def test_a_full_disk_is_said_and_leaves_what_was_there(tmp_path):
     (tmp_path / "a").write_bytes(FOREIGN)
     target = Target(tmp_path / "a", overwrite=True)

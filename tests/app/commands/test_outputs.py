@@ -199,6 +199,15 @@ def test_a_scene_may_come_from_a_pipe(made, tmp_path):
         assert done.returncode == 0 and "friction" in done.stdout, done.stderr
 
 
+def test_a_scene_without_an_end_is_not_read_for_ever(tmp_path):
+    with open("/dev/zero") as endless:
+        done = subprocess.run(
+            [HOME / "run.sh", "plan", "/dev/stdin"], env=clean_environment(), capture_output=True,
+            text=True, timeout=60, stdin=endless,
+        )  # fmt: skip
+    assert done.returncode == 2 and "/dev/stdin is larger than 50 MB" in done.stderr
+
+
 def test_a_file_that_appears_during_a_run_is_kept(tmp_path):
     """It appears before the archive gets its name; what is computed is kept, too."""
     words = ["run", str(SCENE), "-o", "out.h5", "--set", 'solve.methods=["closed_form"]']

@@ -95,11 +95,15 @@ class _LogFile(logging.Handler):
         self._file = open(handle, "ab", buffering=0)  # noqa: SIM115 - closed by close
 
     def emit(self, record: logging.LogRecord) -> None:
+        if self._full:
+            return
+        line, start = memoryview(f"{self.format(record)}\n".encode()), self._file.seek(0, os.SEEK_END)
         try:
-            if not self._full:
-                self._file.write(f"{self.format(record)}\n".encode())
+            while line:  # a disk that becomes full takes a part
+                line = line[self._file.write(line) :]
         except OSError as error:
             self._full = True
+            self._file.truncate(start)
             print(f"warning: the log {self._path} ends here: {error.strerror}", file=sys.stderr)
 
     def close(self) -> None:

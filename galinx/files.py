@@ -12,6 +12,9 @@ _OPEN = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
 #: What file systems without hard links answer to a request for one.
 _NO_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS}
 
+#: Hidden names of files in the making.
+_unfinished: set[Path] = set()
+
 
 class NewFile:
     """A file in the making: it has a hidden name until :meth:`publish` gives it its own.
@@ -35,12 +38,14 @@ class NewFile:
         self.temporary = (folder or path.parent) / f".{os.getpid()}-{secrets.token_hex(4)}.partial"
 
     def __enter__(self) -> "NewFile":
+        _unfinished.add(self.temporary)
         os.close(os.open(self.temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666))
         return self
 
     def __exit__(self, *_: object) -> None:
         with suppress(OSError):
             self.temporary.unlink()
+        _unfinished.discard(self.temporary)
 
     def publish(self, replace: bool) -> None:
         """Bring the file to the disk, then give it its name, at once.
@@ -84,6 +89,13 @@ def write(path: Path, data: bytes, replace: bool = True) -> None:
     with NewFile(path) as new:
         new.temporary.write_bytes(data)
         new.publish(replace)
+
+
+def give_up() -> None:
+    """Remove all files in the making, for a process that ends where it stands."""
+    for path in _unfinished:
+        with suppress(OSError):
+            path.unlink()
 
 
 def synchronise(path: Path) -> None:

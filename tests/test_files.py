@@ -58,6 +58,17 @@ def test_a_full_disk_leaves_what_was_there(tmp_path):
     assert (tmp_path / "a").read_bytes() == b"precious" and os.listdir(tmp_path) == ["a"]
 
 
+def test_a_process_that_ends_where_it_stands_leaves_no_unfinished_file(tmp_path):
+    files.write(tmp_path / "a", b"one")
+    if not (child := os.fork()):
+        with files.NewFile(tmp_path / "a") as new:
+            new.temporary.write_bytes(b"two")
+            files.give_up()
+            os._exit(0)
+    assert os.waitpid(child, 0)[1] == 0
+    assert (tmp_path / "a").read_bytes() == b"one" and os.listdir(tmp_path) == ["a"]
+
+
 def test_it_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
     done, rename, synchronise = [], os.replace, os.fsync
     monkeypatch.setattr(os, "fsync", lambda handle: (synchronise(handle), done.append("synchronised")))

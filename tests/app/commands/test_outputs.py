@@ -94,11 +94,11 @@ def limited():
     resource.setrlimit(resource.RLIMIT_FSIZE, (20, 20))
 
 
-def ended(arguments, cwd, full=False, timeout=60):
+def ended(arguments, cwd, full=False):
     """A finished command, which was told once what is wrong if anything was."""
     done = subprocess.run(
         [HOME / "run.sh", *arguments], cwd=cwd, env=clean_environment(), capture_output=True, text=True,
-        timeout=timeout, stdin=subprocess.DEVNULL, preexec_fn=limited if full else None,
+        timeout=300, stdin=subprocess.DEVNULL, preexec_fn=limited if full else None,
     )  # fmt: skip
     assert "Traceback" not in done.stderr, done.stderr
     assert done.returncode in (0, 1, 2, 3), done.stderr
@@ -182,7 +182,7 @@ def test_what_is_no_place_is_said(made, tmp_path, words, message):
     with (tmp_path / "scene.toml").open() as scene:
         done = subprocess.run(
             [HOME / "run.sh", *words], cwd=tmp_path, env=clean_environment(), capture_output=True,
-            text=True, timeout=60, stdin=scene,
+            text=True, timeout=300, stdin=scene,
         )  # fmt: skip
     assert done.returncode == 2 and message in done.stderr and done.stderr.count("error: ") == 1
     assert content(tmp_path) == before
@@ -194,7 +194,7 @@ def test_a_scene_may_come_from_a_pipe(made, tmp_path):
     for part in script.split(" && "):
         done = subprocess.run(
             ["bash", "-c", part], env=clean_environment(), capture_output=True, text=True, input=scene,
-            timeout=60,
+            timeout=300,
         )  # fmt: skip
         assert done.returncode == 0 and "friction" in done.stdout, done.stderr
 
@@ -203,7 +203,7 @@ def test_a_scene_without_an_end_is_not_read_for_ever(tmp_path):
     with open("/dev/zero") as endless:
         done = subprocess.run(
             [HOME / "run.sh", "plan", "/dev/stdin"], env=clean_environment(), capture_output=True,
-            text=True, timeout=60, stdin=endless,
+            text=True, timeout=300, stdin=endless,
         )  # fmt: skip
     assert done.returncode == 2 and "/dev/stdin is larger than 50 MB" in done.stderr
 
@@ -225,7 +225,7 @@ def test_a_file_that_appears_during_a_run_is_kept(tmp_path):
     environment = clean_environment()
     done = subprocess.run(
         [sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True,
-        timeout=60,
+        timeout=300,
     )  # fmt: skip
     assert done.returncode == 3 and done.stderr.count("error: ") == 1 and "Traceback" not in done.stderr
     assert "something appeared there meanwhile" in done.stderr

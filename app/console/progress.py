@@ -64,6 +64,14 @@ class Progress:
             self._logger.log(_NOTE, "%s", text)
             self._last = text
 
+    def warn(self, text: str) -> None:
+        """What everybody should know, at once and whatever rank found it."""
+        if self._bar:
+            self._bar.console.print(f"warning: {text}", markup=False, highlight=False, soft_wrap=True)
+        elif not self._verbose:
+            print(f"warning: {text}", file=sys.stderr, flush=True)
+        self.note(f"warning: {text}")
+
     def done(self, states: int, of: int) -> None:
         """So many states are finished."""
         if self._bar:

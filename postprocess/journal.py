@@ -110,12 +110,13 @@ class Journal:
             UnwritableArchive: the file system refused.
             KeyboardInterrupt: the run was asked to stop; the part is kept.
         """
-        path, temporary = self.folder / _name(part.rows), self.folder / "part"
+        path = self.folder / _name(part.rows)
         try:
-            # Not synchronised: what a power cut tears does not fit its digest, and is computed again.
-            with temporary.open("wb") as file:
-                file.writelines(_packed(part, self._key))
-            os.replace(temporary, path)
+            with files.NewFile(path) as new:
+                with new.temporary.open("wb") as file:
+                    file.writelines(_packed(part, self._key))
+                # Not synchronised: what a power cut tears does not fit its digest, and is computed again.
+                os.replace(new.temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
         self._rows.add((part.rows.start, part.rows.stop))

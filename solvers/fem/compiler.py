@@ -30,7 +30,7 @@ from galinx.solvers.errors import CompilerError
 
 #: The kernels are long loops of multiply-adds; full vectorisation makes them three times faster.
 _FLAGS = ["-O3", "-march=native"]
-#: Seconds until it is said that another run's compiler is waited for, and until it is waited for.
+#: Seconds until it is said that another run is waited for, and until it no longer is.
 _SAID, _PATIENCE = 10.0, 60.0
 #: Seconds after which what is no finished form is a ruin.
 _DAY = 86400.0

@@ -21,7 +21,7 @@ from galinx.solvers.fem import compiler
 from galinx.solvers.fem.compiler import compiling
 
 #: Bits that are flipped in compiled forms; GALINX_THOROUGH=1 asks for as many as a release does.
-FLIPS = 500 if os.environ.get("GALINX_THOROUGH") else 3
+FLIPS = 500 if os.environ.get("GALINX_THOROUGH") else 2
 
 
 @pytest.fixture

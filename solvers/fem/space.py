@@ -1,6 +1,6 @@
 """The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -52,6 +52,7 @@ class Space:
         degree: polynomial degree, at least 1.
         form: name of the weak form that a solid asks for.
         clock: takes the time of what is done with the space.
+        say: is told on rank 0 what the user should know of the compiler.
 
     Raises:
         MeshError: a part of the boundary has no facet.
@@ -66,15 +67,15 @@ class Space:
         degree: int,
         form: str = "isotropic",
         clock: Clock | None = None,
+        say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.mixed = self.form.pressure
-        self.clock = Clock() if clock is None else clock
+        self.clock, self._say = Clock() if clock is None else clock, say
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        with self.clock("forms"), compiling(self.comm) as options:
-            self.V = adapter.vector_space(mesh, degree, options)
+        self.V = self._functions(adapter.vector_element(degree))
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -150,16 +151,19 @@ class Space:
         test: Any
         if self.mixed:
             # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
-            with self.clock("forms"), compiling(self.comm) as options:
-                W = adapter.mixed_space(self.mesh, self.degree, self.degree - 2, options)
+            W = self._functions(adapter.mixed_element(self.degree, self.degree - 2))
             trial, test = ufl.TrialFunctions(W), ufl.TestFunctions(W)
         else:
             trial, test = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
         form = self.form.stiffness(
             trial, test, lambda u: gradient(u, self.chart, x, p), constants, self.degree
         )
-        with self.clock("forms"), compiling(self.comm) as options:
+        with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
             return adapter.compile_form(form, options), [*p, *constants]
+
+    def _functions(self, element: Any) -> Any:
+        with self.clock("forms"), compiling(self.comm, repr(element), self._say) as options:
+            return adapter.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.

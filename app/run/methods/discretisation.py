@@ -50,8 +50,9 @@ class Discretisation:
         if (degree, cuts) not in self._spaces:
             with quiet_compiler():
                 self._spaces[degree, cuts] = Space(
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock
-                )
+                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
+                    self.clock, self._progress.warn,
+                )  # fmt: skip
         return self._spaces[degree, cuts]
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
@@ -67,7 +68,7 @@ class Discretisation:
         check_cells(pattern)
         if cuts > 1:  # gmsh's copy of a cut mesh would only be large
             return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
-        return distribute(obtain(pattern) if comm.rank == 0 else None, comm)
+        return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)
 
 
 @contextmanager

@@ -43,7 +43,7 @@ def run(
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from galinx.postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.reader import read
     from galinx.postprocess.journal import Journal
 
     journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)

@@ -169,6 +169,6 @@ def load(path: Path | str, stresses: bool = True) -> Result:
     Raises:
         UnreadableArchive: no archive, a damaged one, or one of a newer layout.
     """
-    from galinx.postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.reader import read
 
     return Result(*read(Path(path), stresses))

@@ -28,14 +28,14 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
     from galinx.app.results.report import Report, write_report
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
-    from galinx.postprocess.hdf5 import archive
+    from galinx.postprocess.hdf5 import archive, reader
 
     folder.mkdir(parents=True, exist_ok=True)
     results = []
     for name, scene in (("study", study), ("inside", inside)):
         with archive.Writer(folder / f"{name}.h5") as writer:
             writer.finish(compute(scene, writer, progress))
-        results.append(archive.read(folder / f"{name}.h5"))
+        results.append(reader.read(folder / f"{name}.h5"))
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)

@@ -7,11 +7,15 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+from galinx.solvers.parameters import Range
 
 #: Dimensions of datasets, in words.
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
+
+#: What a dataset is made of.
+TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
 #: Methods, and what is known without solving: the local analysis of the punch's edges.
 CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
@@ -42,6 +46,8 @@ class Quantity:
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
         compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
+        whole: are its numbers integers?
+        range: where its numbers may lie.
     """
 
     path: str
@@ -57,6 +63,13 @@ class Quantity:
     nan_allowed: str = NEVER
     compared: tuple[str, ...] = ()
     symbol: str = ""
+    whole: bool = False
+    range: Range = Range()
+
+    @property
+    def type(self) -> str:
+        """``TEXT``, ``WHOLE`` or ``NUMBER``."""
+        return TEXT if self.unit == "none" else WHOLE if self.whole else NUMBER
 
     @property
     def solved(self) -> bool:

@@ -10,6 +10,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
+from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
 ON_SURFACE, BELOW = "surface", "interior"
@@ -51,11 +52,11 @@ INSIDE_X = Quantity(
 )  # fmt: skip
 INSIDE_Y = Quantity(
     "interior/Y_over_a", "1", "positions inside, outwards, over the half-width; negative", (INSIDE,),
-    asked_by=BELOW,
+    asked_by=BELOW, range=Range(at_most=0.0),
 )  # fmt: skip
 MAP = Quantity(
     "interior/map", "1", "rows and columns of the grid that the first points inside form, by rows",
-    ("2",), asked_by=BELOW,
+    ("2",), asked_by=BELOW, whole=True, range=Range(at_least=1.0),
 )  # fmt: skip
 
 

@@ -79,8 +79,7 @@ def _of_names(
 ) -> Iterator[str]:
     for name in datasets.keys() - known.keys():
         yield (
-            f"dataset {name!r}: not in the table of quantities; a file of yours that registers it is named "
-            "with -x"
+            f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         )
     listed = {row.path for row in _ALWAYS}
     if "datasets" in attributes and ATTRIBUTES["datasets"].fits(attributes["datasets"]):

@@ -172,8 +172,8 @@ def _refuse(path: Path, faults: list[str]) -> None:
         more = f"\n  and {len(faults) - _TOLD} more" if len(faults) > _TOLD else ""
         lines = "".join(f"\n  {fault}" for fault in faults[:_TOLD])
         raise UnreadableArchive(
-            f"{path} is not as galinx writes archives: it is damaged, or was changed; take another copy, or "
-            f"run again{lines}{more}"
+            f"{path} is not as galinx writes archives: damaged, or changed; take another copy or rerun"
+            f"{lines}{more}"
         )
 
 

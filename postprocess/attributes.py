@@ -9,9 +9,6 @@ from typing import Any
 
 import numpy as np
 
-#: Verdicts of a run.
-PASS, FAIL, NOT_JUDGED = "PASS", "FAIL", "not judged"
-
 
 @dataclass(frozen=True)
 class Attribute:
@@ -101,8 +98,8 @@ ATTRIBUTES = {
     ),
     "verdict": Attribute(
         "on the comparisons",
-        f"{PASS}, {FAIL} or {NOT_JUDGED}",
-        _one_of(PASS, FAIL, NOT_JUDGED),
+        "PASS, FAIL or not judged",
+        _one_of("PASS", "FAIL", "not judged"),
     ),
     "verdict_reasons": Attribute("the comparisons that it rests on", _LIST, _list),
     "warnings": Attribute("what was told before the run", _LIST, _list),

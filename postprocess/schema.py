@@ -18,6 +18,7 @@ from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import Quantity, runs, states, stresses, table
+from galinx.postprocess.quantities.quantity import INSIDE, POINT
 from galinx.solvers.parameters import Range
 
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
@@ -28,6 +29,8 @@ _ALWAYS = (
     runs.SCENE, states.MOTION, states.POSITION, states.SPEED, states.FRICTION, states.RATIO,
     runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F, runs.DONE, runs.SKIPPED, runs.SECONDS, runs.STEPS,
 )  # fmt: skip
+#: What says where values of these dimensions are.
+_POSITIONS = {POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y)}
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ def _of_names(
             f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         )
     listed = {row.path for row in _ALWAYS}
+    for name in datasets.keys() & known.keys():
+        listed |= {row.path for over in known[name].over for row in _POSITIONS.get(over, ())}
     if "datasets" in attributes and ATTRIBUTES["datasets"].fits(attributes["datasets"]):
         listed |= set(json.loads(attributes["datasets"]))
         for name in datasets.keys() & known.keys() - listed:
@@ -128,18 +133,17 @@ def faults_of_values(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> 
     """What is wrong with the values of some datasets.
 
     Args:
-        data: by path; those without points, and those of all states or of some with points.
+        data: by path, of all states or some; the positions on the surface and the failures among them.
         attributes: of the root, without faults.
     """
     known = table()
     found = [fault for name, values in data.items() for fault in _out_of_range(values, known[name])]
     excused = _says_so_itself(data, attributes)
-    found += [
+    return found + [
         f"{name}: found a number that is not finite, expected none"
         for name in not_finite(dict(data))
         if not (excused and known[name].solved)
     ]
-    return [*found, *_between(data, attributes)]
 
 
 def _out_of_range(values: Any, row: Quantity) -> Iterator[str]:
@@ -155,8 +159,13 @@ def _says_so_itself(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> b
     return len(data.get(runs.FAILURES.path, ())) > 0 or bool(told.get(RULES[FINITE].text))
 
 
-def _between(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> Iterator[str]:
-    """What one dataset says of another."""
+def faults_between(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Where one dataset does not fit another.
+
+    Args:
+        data: by path, of all states.
+        attributes: of the root, without faults.
+    """
     digest = hashlib.sha256(data[runs.SCENE.path].encode()).hexdigest()
     if digest != attributes["scene_sha256"]:
         yield f"{runs.SCENE.path}: found a text of the hash {digest}, expected that of scene_sha256"

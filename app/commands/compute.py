@@ -50,7 +50,7 @@ def run(
     with progress:
         progress.note(f"scene: {scene}")
         verdict = _archived(checked, journal, progress)
-    data, attributes = read(target, stresses=False)
+    data, attributes = read(target, stresses=False, just_sealed=True)
     print_summary(data, attributes, quiet)
     if not quiet:
         print_times(data)

@@ -40,11 +40,10 @@ def of_archive(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Every figure that an archive's data allow, one after the other."""
     loops = Loops(data)
     yield Drawing("friction", "Friction along the strokes.", loops_figure([("", loops.distinct())]))
-    if there(data, stresses.SURFACE_X) and all(
-        any(there(data, row) for row in rows.values()) for rows in (stresses.PRESSURE, stresses.IN_PLANE)
-    ):
+    surface = (stresses.PRESSURE, stresses.IN_PLANE)
+    if all(any(there(data, row) for row in rows.values()) for rows in surface):
         yield _surface(data, loops)
-    if there(data, stresses.MAP, stresses.INSIDE_X, stresses.INSIDE_Y) and _methods_inside(data):
+    if there(data, stresses.MAP) and _methods_inside(data):
         yield inside(data, scene)
     if there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE):
         yield _degrees(data)

@@ -35,7 +35,7 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
     for name, scene in (("study", study), ("inside", inside)):
         with archive.Writer(folder / f"{name}.h5") as writer:
             writer.finish(compute(scene, writer, progress))
-        results.append(reader.read(folder / f"{name}.h5"))
+        results.append(reader.read(folder / f"{name}.h5", just_sealed=True))
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)

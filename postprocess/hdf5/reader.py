@@ -16,6 +16,8 @@ from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import seal, walk
 from galinx.postprocess.quantities import large, of_states, table
 from galinx.postprocess.quantities.quantity import STATE, TEXT
+from galinx.postprocess.quantities.runs import FAILURES
+from galinx.postprocess.quantities.stresses import SURFACE_X
 
 #: Faults that a message tells.
 _TOLD = 8
@@ -44,6 +46,7 @@ class Archive:
         self.names = list(described)
         self.data = {name: self._read(name) for name in self.names if not large(name)}
         _refuse(path, schema.faults_of_values(self.data, self.attributes))
+        _refuse(path, [*schema.faults_between(self.data, self.attributes)])
 
     def all(self) -> dict[str, Any]:
         """Every dataset by path.
@@ -51,7 +54,7 @@ class Archive:
         Raises:
             UnreadableArchive: a large one does not fit the schema.
         """
-        return self._with_large(self.names, slice(None))
+        return {name: self._large(name) if large(name) else self.data[name] for name in self.names}
 
     def rows(self, rows: slice) -> dict[str, Any]:
         """Datasets of some states by path, and positions that all states share.
@@ -59,18 +62,19 @@ class Archive:
         Raises:
             UnreadableArchive: a large one does not fit the schema.
         """
-        return self._with_large([name for name in self.names if of_states(name)], rows)
-
-    def _with_large(self, names: list[str], rows: slice) -> dict[str, Any]:
         found, known = {}, table()
-        for name in names:
-            wanted = rows if known[name].over[:1] == (STATE,) else slice(None)
-            if name not in self.data:
-                found[name] = self._read(name, wanted)
+        for name in filter(of_states, self.names):
+            if large(name):
+                found[name] = self._large(name, rows)
             else:
-                found[name] = self.data[name][wanted] if known[name].over else self.data[name]
-        _refuse(self._path, schema.faults_of_values(self.data | found, self.attributes))
+                found[name] = self.data[name][rows if STATE in known[name].over else slice(None)]
         return found
+
+    def _large(self, name: str, rows: slice = slice(None)) -> Any:
+        values = self._read(name, rows)
+        needed = {row.path: self.data[row.path] for row in (SURFACE_X, FAILURES) if row.path in self.data}
+        _refuse(self._path, schema.faults_of_values(needed | {name: values}, self.attributes))
+        return values
 
     def _read(self, name: str, rows: slice = slice(None)) -> Any:
         with _told(self._path):
@@ -80,8 +84,8 @@ class Archive:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Archive]:
-    """An archive as long as it is open.
+def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
+    """An archive as long as it is open; for the arguments see :func:`read`.
 
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
@@ -89,7 +93,7 @@ def opened(path: Path) -> Iterator[Archive]:
     if not path.is_file():
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
     with _told(path):
-        sealed = seal.is_sealed(path)
+        sealed = just_sealed or seal.is_sealed(path)
         if not sealed:
             _walk(path)
         file = h5py.File(path, "r")
@@ -97,12 +101,15 @@ def opened(path: Path) -> Iterator[Archive]:
         yield Archive(path, file, sealed)
 
 
-def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
+def read(
+    path: Path, stresses: bool = True, just_sealed: bool = False
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """What an archive holds.
 
     Args:
         path: the file.
         stresses: also those on the surface and inside, which can be large.
+        just_sealed: by this very process, which need not do the sum of all bytes once more.
 
     Returns:
         Arrays and text by path, and the root's attributes.
@@ -110,7 +117,7 @@ def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, A
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
     """
-    with opened(path) as archive:
+    with opened(path, just_sealed) as archive:
         return archive.all() if stresses else archive.data, archive.attributes
 
 

@@ -17,13 +17,17 @@ _TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-def put(path: Path) -> None:
+def put(path: Path, seal: bytes | None = None) -> None:
     """Seal a file that was made with this room.
+
+    Args:
+        path: the file, closed.
+        seal: what :func:`made` gave for it; made here if not given.
 
     Raises:
         OSError: the file system refused.
     """
-    seal = _of(path)
+    seal = seal or made(path)
     with path.open("r+b") as file:
         file.write(seal)
 
@@ -44,7 +48,7 @@ def is_sealed(path: Path) -> bool:
             f"{path} begins neither as an archive of galinx does nor as HDF5: it is something else, or "
             "damaged; expected a file that galinx wrote"
         )
-    if start != _of(path):
+    if start != made(path):
         raise UnreadableArchive(
             f"{path} is damaged: its bytes are not those that its digest is of; one was changed since it "
             "was written, or it was cut short; take another copy, or run again"
@@ -52,7 +56,12 @@ def is_sealed(path: Path) -> bool:
     return True
 
 
-def _of(path: Path) -> bytes:
+def made(path: Path) -> bytes:
+    """The seal that fits a file.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
     with path.open("rb", buffering=0) as file:
         file.seek(ROOM)
         digest = hashlib.file_digest(file, "sha256").hexdigest()

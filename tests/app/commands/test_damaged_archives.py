@@ -78,7 +78,7 @@ def again(file, name, data):
     if data.dtype.kind in "OU":
         made = file.create_dataset(name, data=data.astype(object), dtype=h5py.string_dtype())
     else:
-        chunks = tuple(max(1, n) for n in data.shape) or None
+        chunks = data.shape if data.size and data.shape else None
         made = file.create_dataset(name, data=data, chunks=chunks, fletcher32=bool(chunks))
     made.attrs.update(told)
 
@@ -113,9 +113,7 @@ def other_value(file, name, choose):
 
 
 def renamed(file, name, choose):
-    file.move(
-        name, choose.choice([name + "_", name.upper(), name[:-1], f"other/{name}", f"{name}/{name}"])
-    )
+    file.move(name, choose.choice([name + "_", name.upper(), name[:-1], f"other/{name}"]))
 
 
 DATASETS = (
@@ -188,7 +186,7 @@ def test_tampered_archives(content, path, capsys):
 @pytest.fixture
 def older(map_run, path, monkeypatch):
     """An archive as schema version 1 had it: without digest, without a list of its datasets."""
-    monkeypatch.setattr(seal, "put", lambda path: None)
+    monkeypatch.setattr(seal, "put", lambda *_: None)
     monkeypatch.setattr(archive, "VERSION", 1)
     map_run.save(path)
     with h5py.File(path, "r+") as file:

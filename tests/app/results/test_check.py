@@ -21,6 +21,11 @@ def whole(inside_run, tmp_path):
     return path
 
 
+def test_states_may_be_looked_at_a_few_at_a_time(whole, monkeypatch):
+    monkeypatch.setattr(check, "_ROWS", 1)
+    assert check.faults(whole) == []
+
+
 def change(name, value, at=0):
     def apply(file):
         file[name][at] = value

@@ -35,7 +35,7 @@ def show(archive: Path, as_json: bool) -> int:
 @click.command()
 @options.archive
 def check(archive: Path) -> int:
-    """Verify ARCHIVE: checksums, completeness, layout, finite values, balances, verdict.
+    """Verify ARCHIVE: digest, layout, values; friction, comparisons and verdict once more.
 
     Example: ./run.sh check tables.h5
     """

@@ -46,7 +46,7 @@ class Quantity:
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
         compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
-        whole: are its numbers integers?
+        whole: are its numbers integers? None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
     """
 

@@ -114,23 +114,24 @@ names rows of [Comparisons](#comparisons). Quantities of your own come beside th
 _WHOLE = """\
 ## What is read
 
-Every command reads archives through one door, `postprocess/hdf5/reader.py`. What does not come through is not
-shown: one message names the fault, exit status 2.
+Every command reads archives through one door, `postprocess/hdf5/reader.py`. What does not come through
+is not shown: one message names the fault, exit status 2.
 
 1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow: numbers,
-   texts, names, units, attributes. It is verified before HDF5 opens the file. By hand:
-   `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum` gives it.
-2. Names, types, shapes, units and ranges are held against the tables of this page, texts and JSON of attributes
-   against theirs. Sizes that go by the same word are the same everywhere, and no number is NaN or infinite but
-   where this page allows it, or where `run/failures` or `comparisons` tell of it.
+   texts, names, units, attributes. It is verified before HDF5 opens the file. By hand: `head -n 3
+   out.h5` shows it, `tail -c +513 out.h5 | sha256sum` gives it.
+2. Names, types, shapes, units and ranges are held against the tables of this page, texts and JSON of
+   attributes against theirs. Sizes that go by the same word are the same everywhere, and no number is
+   NaN or infinite but where this page allows it, or where `run/failures` or `comparisons` tell of it.
 
-`check` goes on: friction is followed once more, what was compared is compared again, the verdict judged again;
-of its own version it also knows which datasets the scene asks for. What contradicts that is a fault, exit
-status 1. Who changes numbers so that they fit each other and the schema, and makes the digest again, has made
-another archive.
+`check` goes on: friction is followed once more, what was compared is compared again, the verdict judged
+again; of its own version it also knows which datasets the scene asks for. What contradicts that is a
+fault, exit status 1. Who changes numbers so that they fit each other and the schema, and makes the
+digest again, has made another archive.
 
-Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another process first
-since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is not found in them.
+Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another
+process first since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is
+not found in them.
 """
 
 _ATTRIBUTES = """\

@@ -36,7 +36,12 @@ def is_text(value: Any) -> bool:
 
 
 def _number(value: Any) -> bool:
-    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        return False
+    try:
+        return isinstance(float(value), float)
+    except OverflowError:  # JSON's integers have no end
+        return False
 
 
 def _moment(value: Any) -> bool:

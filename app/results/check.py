@@ -1,4 +1,4 @@
-"""Does an archive say what its own scene and numbers say? For one without faults of its layout."""
+"""Does an archive say what its own scene and numbers say? Asked of one that fits the schema."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from galinx import __version__
 from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states
+from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
 from galinx.app.run.judge import Judge
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
@@ -44,6 +44,10 @@ def faults(path: Path) -> list[str]:
 
 def _of_states(data: Mapping[str, Any], scene: Scene) -> Iterator[str]:
     """Friction is followed once more."""
+    count, found = len(speeds(scene)) * states_a_speed(scene), len(data[SPEED.path])
+    if count != found:
+        yield f"it holds {found} states, its scene has {count}"
+        return
     states = enumerate_states(scene)
     expected = {column(name): values for name, values in states.columns.items()} | {
         runs.LOOP_OF_STATE.path: states.loop,
@@ -72,12 +76,13 @@ def _of_plan(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     for name, value in given.items():
         if attributes[name] != value:
             yield f"{name} says {attributes[name]!r}, its scene gives {value!r}"
-    solved = {quantity.path for quantity in plan.quantities}
     for name, positions in plan.positions.items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"
-    if missing := sorted(solved - set(archive.names)):
-        yield f"missing: {', '.join(missing)}"
+    known, asked = table(), {quantity.path for quantity in plan.quantities}
+    held = {name for name in archive.names if known[name].solved}
+    yield from (f"{name} is missing, its scene asks for it" for name in sorted(asked - held))
+    yield from (f"{name} is not what its scene asks for" for name in sorted(held - asked))
 
 
 def _of_numbers(archive: reader.Archive) -> Iterator[str]:

@@ -34,11 +34,10 @@ class Archive:
         attributes: of the root.
         data: datasets by path, but for large ones.
         names: of all datasets.
-        sealed: had it a digest of all its bytes?
     """
 
     def __init__(self, path: Path, file: h5py.File, sealed: bool) -> None:
-        self._path, self._file, self.sealed = path, file, sealed
+        self._path, self._file = path, file
         self.attributes, described = _described(path, file)
         if not sealed and self.attributes["schema_version"] >= schema.SEALED:
             _refuse(path, ["its digest: missing, expected in its first bytes"])
@@ -190,6 +189,8 @@ def _told(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno:
+            raise UnreadableArchive(f"cannot read {path}: {error.strerror}") from error
         raise UnreadableArchive(
             f"{path} is not a whole HDF5 file ({error}); it is damaged or was cut short, run again"
         ) from error

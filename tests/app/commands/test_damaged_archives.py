@@ -123,7 +123,7 @@ DATASETS = (
     renamed,
     lambda file, name, choose: file.pop(name),
     lambda file, name, choose: file[name].attrs.__setitem__(
-        "units", choose.choice(["inch", "", 1.0, b"1", [1, 2], h5py.Empty("f")])
+        "units", choose.choice(["inch", "", 1.0, b"\xff", [1, 2], h5py.Empty("f")])
     ),
     lambda file, name, choose: file[name].attrs.__delitem__(choose.choice(["units", "long_name"])),
     lambda file, name, choose: file[name].attrs.__setitem__(choose.choice(["scale", "unitS"]), 2.0),

@@ -61,6 +61,12 @@ def other_scene(file):
     file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
 
 
+def more_states(file):
+    text = file["scene/text"].asstr()[()].replace("X_over_L = 0.8", "X_over_L = [0.7, 0.8]")
+    file["scene/text"][()] = text
+    file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
+
+
 def lost(file):
     del file["states/fem/v0"]
     names = json.loads(file.attrs["datasets"])
@@ -77,7 +83,8 @@ def lost(file):
         (times("loops/f", 1.001), "loops/f holds something else"),
         (change("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
         (other_scene, "states/f holds something else"),
-        (lost, "missing: states/fem/v0"),
+        (more_states, "it holds 2 states, its scene has 4"),
+        (lost, "states/fem/v0 is missing, its scene asks for it"),
         (change("states/fem/normal_force", -1.0), "nodal forces against the load"),
         (change("states/fem/K_I_left", 0.1), "its comparisons say"),
         (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),

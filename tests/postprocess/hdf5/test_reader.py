@@ -200,6 +200,7 @@ TAMPERED = {
     "complete in words": (attribute("complete", "no"), "attribute complete: found 'no', expected true"),
     "no JSON": (attribute("warnings", "[1, "), "attribute warnings: found '.1, ', expected a JSON list"),
     "other JSON": (attribute("comparisons", "[]"), "attribute comparisons: found '..', expected a"),
+    "endless number": (attribute("comparisons", '{"x": 1' + 400 * "0" + "}"), "comparisons: found"),
     "deep JSON": (attribute("warnings", "[" * 20000), "attribute warnings: found"),
     "texts of no text": (attribute("rules", '["\\ud800"]'), "attribute rules: found"),
     "load": (attribute("load", "55300"), "attribute load: found '55300', expected a finite number"),

@@ -68,7 +68,7 @@ def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Described]) -> 
 def _of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
     version = attributes["schema_version"]
     expected = {name: row for name, row in ATTRIBUTES.items() if row.since <= version}
-    for name in attributes.keys() - expected.keys():
+    for name in sorted(attributes.keys() - expected.keys()):
         yield f"attribute {name!r}: no archive has one of that name"
     for name, row in expected.items():
         if name not in attributes:
@@ -80,7 +80,7 @@ def _of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
 def _of_names(
     attributes: Mapping[str, Any], datasets: Mapping[str, Described], known: Mapping[str, Quantity]
 ) -> Iterator[str]:
-    for name in datasets.keys() - known.keys():
+    for name in sorted(datasets.keys() - known.keys()):
         yield (
             f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         )
@@ -89,7 +89,7 @@ def _of_names(
         listed |= {row.path for over in known[name].over for row in _POSITIONS.get(over, ())}
     if "datasets" in attributes and ATTRIBUTES["datasets"].fits(attributes["datasets"]):
         listed |= set(json.loads(attributes["datasets"]))
-        for name in datasets.keys() & known.keys() - listed:
+        for name in sorted(datasets.keys() & known.keys() - listed):
             yield f"{name}: not in the attribute datasets, which lists all"
     for name in sorted(listed - datasets.keys()):
         yield f"{name!r}: missing"
@@ -103,7 +103,7 @@ def _of_dataset(name: str, dataset: Described, row: Quantity) -> Iterator[str]:
     units = dataset.attributes.get("units")
     if not isinstance(units, str) or units != row.unit:
         yield f"{name}: found units {short(units)}, expected {row.unit!r}"
-    for other in dataset.attributes.keys() ^ {"units", "long_name"}:
+    for other in sorted(dataset.attributes.keys() ^ {"units", "long_name"}):
         there = "found an attribute" if other in dataset.attributes else "expected the attribute"
         yield f"{name}: {there} {other!r}, expected units and long_name"
 

@@ -141,7 +141,8 @@ def _described(path: Path, file: h5py.File) -> tuple[dict[str, Any], dict[str, s
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset):
-            found[name] = schema.Described(_type(item), item.shape, dict(item.attrs), _whole(item))
+            shape = item.shape or ()  # None: without any room
+            found[name] = schema.Described(_type(item), shape, dict(item.attrs), _whole(item))
 
     with _told(path):
         attributes = dict(file.attrs)

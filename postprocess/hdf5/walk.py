@@ -36,7 +36,8 @@ def _read(dataset: h5py.Dataset) -> None:
 
 def is_there(dataset: h5py.Dataset) -> bool:
     """Has the file room for all values that a dataset says it has?"""
-    return dataset.id.get_storage_size() >= dataset.size * dataset.dtype.itemsize
+    room = dataset.id.get_storage_size()
+    return dataset.shape is not None and room >= dataset.size * dataset.dtype.itemsize
 
 
 if __name__ == "__main__":

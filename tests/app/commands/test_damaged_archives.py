@@ -106,7 +106,7 @@ def other_shape(file, name, choose):
 def other_value(file, name, choose):
     row = table()[name]
     if row.type == TEXT:
-        again(file, name, np.array("x" if not row.over else ["x"] * 99999))
+        again(file, name, np.zeros(file[name].shape))
     else:
         place = tuple(choose.randrange(n) for n in file[name].shape)
         file[name][place] = -7 if row.type == WHOLE else choose.choice([np.inf, -np.inf])

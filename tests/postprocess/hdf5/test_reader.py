@@ -169,6 +169,7 @@ TAMPERED = {
     "no texts": (numbers("states/motion", np.zeros(12)), "states/motion: found float64, expected text"),
     "no checksum": (made("states/f", np.zeros(12)), "states/f: found no checksum"),
     "no values": (without_values, "states/f: found no checksum or not all of its values"),
+    "no room": (made("states/f", h5py.Empty("f8")), "states/f: found no checksum or not all of its values"),
     "no UTF-8": (invalid, "not a whole HDF5 file"),
     # shapes
     "a row lost": (numbers("states/f", np.zeros(11)), r"states/f: found shape \(11,\), expected \(12,\)"),

@@ -100,7 +100,7 @@ def other_shape(file, name, choose):
     if data.ndim and table()[name].over != (LINE,):
         ways += [lambda: data[:-1], lambda: np.concatenate([data, data[:1]]), lambda: data[:0]]
         ways += [lambda: data[0], lambda: np.moveaxis(data[..., None], -1, 0)]
-    again(file, name, choose.choice(ways)())
+    again(file, name, np.asarray(choose.choice(ways)()))
 
 
 def other_value(file, name, choose):

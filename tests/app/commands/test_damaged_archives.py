@@ -113,7 +113,7 @@ def other_value(file, name, choose):
 
 
 def renamed(file, name, choose):
-    file.move(name, choose.choice([name + "_", name.upper(), name[:-1], f"other/{name}"]))
+    file.move(name, choose.choice([name + "_", name.upper(), f"{name}s", f"other/{name}"]))
 
 
 DATASETS = (

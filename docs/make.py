@@ -26,8 +26,8 @@ the folder you are in. Exit status:
 | status | meaning |
 |---|---|
 | 0 | good |
-| 1 | the verdict is FAIL, or an archive has faults |
-| 2 | bad input: the message says which key or option, and what was expected |
+| 1 | the verdict is FAIL, or an archive contradicts itself |
+| 2 | bad input: the message says which key, option or part of an archive, and what was expected |
 | 3 | failure of program or machine |
 
 A file appears under its name when it is whole. What is made from an archive is made again unasked; what
@@ -93,7 +93,7 @@ _ARCHIVE = """\
 Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
 
 One HDF5 file a run. It appears under its name only when it is whole: it is written beside it, read back,
-compared and renamed. Every numerical dataset carries a checksum, every dataset `units` ("1" for
+compared, sealed and renamed. Every numerical dataset carries a checksum, every dataset `units` ("1" for
 dimensionless) and `long_name`. An archive, and how to read it in Python:
 
     ./run.sh run scenes/tables4_5.toml -o out.h5
@@ -108,15 +108,38 @@ with h5py.File("out.h5") as file:
 
 Other ways are in [Read archives](howto_read_archive.md).
 
-Root attributes: `program`, `version`, `schema_version`, `created`, `complete`, `scene_sha256`, `title`,
-`verdict`, `verdict_reasons`, `warnings` and `rules`, by which
-results were compared (JSON lists), `comparisons` and `versions` (JSON objects),
-`machine`, `load` (N/m).
-
 Datasets that nothing asks for are absent; the column "there with" says what does: a name of
 `solve.methods`, `solve.mode` or `friction.model`, or a word of `output.quantities`. The column "compared"
 names rows of [Comparisons](#comparisons). Quantities of your own come beside these, see
 [Extend galinx](howto_extend.md).
+"""
+
+_WHOLE = """\
+## What is read
+
+Every command reads archives through one door, `postprocess/hdf5/reader.py`. What does not come through
+is not shown: one message names the fault, exit status 2.
+
+1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow: numbers,
+   texts, names, units, attributes. It is verified before HDF5 opens the file. By hand: `head -n 3
+   out.h5` shows it, `tail -c +513 out.h5 | sha256sum` gives it.
+2. Names, types, shapes, units and ranges are held against the tables of this page, texts and JSON of
+   attributes against theirs. Sizes that go by the same word are the same everywhere, and no number is
+   NaN or infinite but where this page allows it, or where `run/failures` or `comparisons` tell of it.
+
+`check` goes on: friction is followed once more, what was compared is compared again, the verdict judged
+again; of its own version it also knows which datasets the scene asks for. What contradicts that is a
+fault, exit status 1. Who changes numbers so that they fit each other and the schema, and makes the
+digest again, has made another archive.
+
+Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another
+process first since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is
+not found in them.
+"""
+
+_ATTRIBUTES = """\
+## Attributes of the root
+
 """
 
 _COMPARISONS = """\
@@ -166,14 +189,17 @@ def scene_page() -> str:
 
 
 def archive_page() -> str:
-    """Every dataset of an archive, and every comparison."""
+    """Every attribute and dataset of an archive, and every comparison."""
+    from galinx.postprocess.attributes import ATTRIBUTES
     from galinx.postprocess.compare import RULES
     from galinx.postprocess.quantities import table
 
-    parts, known = [_ARCHIVE], table()
+    parts, known = [_ARCHIVE, _WHOLE], table()
+    told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
+    parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
         rows = [_dataset(path, row) for path, row in known.items() if path.startswith(f"{group}/")]
-        heads = ("dataset", "what", "shape", "unit", "there with", "compared")
+        heads = ("dataset", "what", "shape", "unit", "values", "there with", "compared")
         parts += [f"## /{group}\n", _table(heads, rows)]
     rules = [
         (name, rule.text, ", ".join(f"`{row.path}`" for row in rule.needs), _limit(rule))
@@ -258,13 +284,15 @@ def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
 def _dataset(path: str, row: Any) -> tuple[str, ...]:
     """A dataset's row."""
     from galinx.postprocess.compare import RULES
-    from galinx.postprocess.quantities.quantity import ANYWHERE
+    from galinx.postprocess.quantities.quantity import ANYWHERE, NUMBER, TEXT, WHOLE
 
     what = row.about + "; tells states apart" * bool(row.symbol)
     what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
     compared = ", ".join(name for name, rule in RULES.items() if row in rule.needs)
     shape, unit = " × ".join(row.over), row.unit.replace("none", "")
-    return f"`/{path}`", what, shape, unit, _there(row), compared
+    kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
+    values = " ".join(filter(None, (kinds[row.type], str(row.range))))
+    return f"`/{path}`", what, shape, unit, values, _there(row), compared
 
 
 def _there(row: Any) -> str:

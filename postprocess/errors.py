@@ -2,7 +2,7 @@
 
 
 class UnreadableArchive(Exception):
-    """No archive, a damaged one, or one of a newer layout; the message says what to do."""
+    """No archive, a damaged or changed one, or one of a newer layout; the message says what to do."""
 
 
 class UnwritableArchive(Exception):

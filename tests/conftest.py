@@ -84,6 +84,12 @@ def inside_run():
 
 
 @pytest.fixture(scope="session")
+def exact_run():
+    """The result of scenes/tables4_5.toml by the closed form alone; takes a moment."""
+    return computed(changes={"solve.methods": ["closed_form"]})
+
+
+@pytest.fixture(scope="session")
 def map_run():
     """The same with a map of stresses inside, so that it has every figure."""
     changes = {

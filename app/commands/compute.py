@@ -44,14 +44,14 @@ def run(
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from galinx.postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.reader import read
     from galinx.postprocess.journal import Journal
 
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
     with progress:
         progress.note(f"scene: {scene}")
         verdict = _archived(checked, target, journal, progress)
-    data, attributes = read(path, stresses=False)
+    data, attributes = read(path, stresses=False, just_sealed=True)
     print_summary(data, attributes, quiet)
     if not quiet:
         print_times(data)

@@ -20,7 +20,7 @@ def show(archive: Path, as_json: bool) -> int:
 
     Example: ./run.sh show tables.h5 --json
     """
-    from galinx.postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.reader import read
 
     data, attributes = read(archive, stresses=False)
     if ranks.is_root():
@@ -34,11 +34,11 @@ def show(archive: Path, as_json: bool) -> int:
 @click.command()
 @options.archive
 def check(archive: Path) -> int:
-    """Verify ARCHIVE: checksums, completeness, layout, finite values, balances, verdict.
+    """Verify ARCHIVE: digest, layout, values; friction, comparisons and verdict once more.
 
     Example: ./run.sh check tables.h5
     """
-    from galinx.postprocess.check import faults
+    from galinx.app.results.check import faults
 
     found = faults(archive)
     if ranks.is_root():

@@ -40,14 +40,26 @@ def of_archive(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Every figure that an archive's data allow, one after the other."""
     loops = Loops(data)
     yield Drawing("friction", "Friction along the strokes.", loops_figure([("", loops.distinct())]))
-    if stresses.SURFACE_X.path in data:
+    surface = (stresses.PRESSURE, stresses.IN_PLANE)
+    if all(any(there(data, row) for row in rows.values()) for rows in surface):
         yield _surface(data, loops)
-    if stresses.MAP.path in data:
+    if there(data, stresses.MAP) and _methods_inside(data):
         yield inside(data, scene)
-    if runs.CHANGES.path in data:
+    if there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE):
         yield _degrees(data)
-    if runs.RECORD["degree"].path in data:
+    if make_plan(scene).fem:
         yield mesh(scene)
+
+
+def there(data: dict[str, Any], *rows: Quantity) -> bool:
+    """Does an archive hold all of these?"""
+    return all(row.path in data for row in rows)
+
+
+def _methods_inside(data: dict[str, Any]) -> dict[str, str]:
+    """Methods whose stresses inside an archive holds, by what they are called."""
+    known = (("closed form", CLOSED_FORM), ("finite elements", FEM))
+    return {label: name for label, name in known if there(data, *stresses.STRESSES_INSIDE[name])}
 
 
 def mesh(scene: Scene) -> Drawing:
@@ -170,8 +182,7 @@ def inside(data: dict[str, Any], scene: Scene) -> Drawing:
         state = int(np.argmax(data[states.SPEED.path] == c))
         found = {
             label: _components(data, scene, method, state, shape)
-            for label, method in (("closed form", CLOSED_FORM), ("finite elements", FEM))
-            if stresses.STRESSES_INSIDE[method][0].path in data
+            for label, method in _methods_inside(data).items()
         }
         scale = next(iter(found.values()))
         rows += [Row(f"c = {c:g}\n{label}", values, scale) for label, values in found.items()]
@@ -202,12 +213,11 @@ def _degrees(data: dict[str, Any]) -> Drawing:
     def largest(row: Quantity) -> NDArray:
         return np.array([data[row.path][c_of == speed].max() for speed in c])
 
-    known = states.TRUE_ERROR.path in data
     figure = degrees_figure(
         c,
         data[runs.CHANGES.path],
         data[runs.RECORD["degree"].path],
         largest(states.ESTIMATE),
-        largest(states.TRUE_ERROR) if known else None,
+        largest(states.TRUE_ERROR) if there(data, states.TRUE_ERROR) else None,
     )
     return Drawing("degrees", "How the numbers settle as the polynomial degree rises.", figure)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from galinx.app.console.program import program
-from galinx.app.results.drawings import Drawing
+from galinx.app.results.drawings import Drawing, there
 from galinx.app.scene.scene import Scene
 from galinx.app.study.published import (
     INTENSITIES,
@@ -83,10 +83,9 @@ class Report:
             f"{scene.punch.load:g} N/m, that slides at c = {moving} (over the shear wave speed) on a "
             f"half-plane with {scene.solid.words()}."
         )
-        if runs.RECORD["unknowns"].path in data:
-            cells, degree, unknowns = (
-                int(data[runs.RECORD[name].path].max()) for name in ("cells", "degree", "unknowns")
-            )
+        record = [runs.RECORD[name] for name in ("cells", "degree", "unknowns")]
+        if there(data, *record):
+            cells, degree, unknowns = (int(data[row.path].max()) for row in record)
             text += (
                 f" Finite elements: {scene.solve.mesh} mesh, {cells} cells of degree up to {degree}, "
                 f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
@@ -103,6 +102,6 @@ def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
 
 
 def _versions(attributes: dict[str, Any]) -> str:
-    told = {"galinx": attributes["version"], **json.loads(attributes.get("versions", "{}"))}
+    told = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
     text = ", ".join(f"{name} {version}" for name, version in told.items())
-    return f"{text}; {attributes.get('machine', 'machine unknown')}; {attributes.get('created', '')}"
+    return f"{text}; {attributes['machine']}; {attributes.get('created', 'not archived')}"

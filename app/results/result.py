@@ -129,10 +129,9 @@ class Result:
 
     def _degree(self, state: int) -> int | None:
         """Degree that was used at a state's speed, None without finite elements."""
-        c, used = self.data[states.SPEED.path], self.data.get(runs.RECORD["degree"].path)
-        if used is None or not 0 <= state < len(c):
-            return None
-        return int(used[self.data[runs.RECORD["c"].path] == c[state]][0]) or None
+        c = self.data[states.SPEED.path]
+        used = dict(zip(*(self.data.get(runs.RECORD[name].path, ()) for name in ("c", "degree"))))
+        return int(used.get(c[state], 0)) or None if 0 <= state < len(c) else None
 
 
 def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:
@@ -181,8 +180,8 @@ def load(path: Path | str, stresses: bool = True) -> Result:
     """An archive's result; ``stresses`` on the surface and inside can be left out.
 
     Raises:
-        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
+        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
     """
-    from galinx.postprocess.hdf5.archive import read
+    from galinx.postprocess.hdf5.reader import read
 
     return Result(*read(Path(path), stresses), (Path(path),))

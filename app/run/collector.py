@@ -90,7 +90,8 @@ class Collector:
         if not self._plan.fem:
             return
         for name, quantity in RECORD.items():
-            self._sink.put(quantity.path, np.array([record[name] for record in records]))
+            values = np.array([record[name] for record in records], quantity.type)
+            self._sink.put(quantity.path, values)
         changes = [record.get("change_by_degree", []) for record in records]
         if longest := max(map(len, changes)):
             padded = [change + [0.0] * (longest - len(change)) for change in changes]

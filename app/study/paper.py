@@ -37,13 +37,13 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
-    from galinx.postprocess.hdf5 import archive
+    from galinx.postprocess.hdf5 import archive, reader
 
     results = []
     for name, scene in (("study.h5", study), ("inside.h5", inside)):
         with archive.Writer(targets[name]) as writer:
             writer.finish(compute(scene, writer, progress))
-        results.append(archive.read(targets[name].path))
+        results.append(reader.read(targets[name].path, just_sealed=True))
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)

@@ -1,11 +1,13 @@
-"""HDF5 result archives, the one place that meets h5py.
+"""Result archives are written.
 
 An archive appears under its final name only when it is complete: it is written beside it, closed,
-opened again and compared, synchronised with the disk and renamed.
+opened again and compared, sealed, synchronised with the disk and renamed.
 """
 
+import json
 import zlib
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,14 +19,12 @@ from numpy.typing import NDArray
 
 from galinx.files import NewFile
 from galinx.postprocess.disk import refused
-from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
+from galinx.postprocess.errors import UnwritableArchive
+from galinx.postprocess.hdf5 import seal
 from galinx.postprocess.hdf5.patient import PatientFile
-from galinx.postprocess.quantities import declared, large, of_states
-from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.quantities import declared
+from galinx.postprocess.schema import VERSION
 from galinx.postprocess.target import Target, as_target
-
-#: Version of the layout; a reader refuses a newer one.
-SCHEMA_VERSION = 1
 
 
 class Writer:
@@ -48,12 +48,13 @@ class Writer:
         self.path = self._target.path
         self._new = NewFile(self._target.place, folder)
         self._bytes = 0
+        self._names: list[str] = []
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
         with self._told():
             self._disk = PatientFile(self._new.__enter__().temporary)
-            self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"))
+            self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"), userblock_size=seal.ROOM)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -107,13 +108,18 @@ class Writer:
         """Complete the archive and give it its name; ``attributes`` are the root's own."""
         with self._told():
             created = datetime.now(UTC).isoformat(timespec="seconds")
-            common = {"program": "galinx", "schema_version": SCHEMA_VERSION, "created": created}
-            self._file.attrs.update(common | attributes | {"complete": True})
+            common = {"program": "galinx", "created": created}
+            layout = {"schema_version": VERSION, "datasets": json.dumps(self._names), "complete": True}
+            self._file.attrs.update(common | attributes | layout)
             self._close()
-            self._compare()
+            with ThreadPoolExecutor(1) as beside:  # both read all of it, on two cores
+                made = beside.submit(seal.made, self._new.temporary)
+                self._compare()
+                seal.put(self._new.temporary, made.result())
             self._target.publish(self._new, self._bytes)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
+        self._names.append(name)
         if about is None:
             row = declared(name)
             about = row.unit, row.about
@@ -145,93 +151,4 @@ class Writer:
 
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:
-    return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).tobytes())
-
-
-def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What an archive holds.
-
-    Args:
-        path: the file.
-        stresses: also those on the surface and inside, which can be large.
-
-    Returns:
-        Arrays and text by path, and the root's attributes.
-
-    Raises:
-        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
-    """
-    with _opened(path) as file:
-        data = {
-            name: _values(dataset, slice(None))
-            for name, dataset in _datasets(file)
-            if stresses or not large(name)
-        }
-        return data, dict(file.attrs)
-
-
-def read_rows(path: Path, rows: slice) -> dict[str, Any]:
-    """Datasets of some states by path, and those that all states share.
-
-    Raises:
-        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
-    """
-    with _opened(path) as file:
-        states = len(file[RATIO.path])
-        return {
-            name: _values(dataset, rows if dataset.shape[:1] == (states,) else slice(None))
-            for name, dataset in _datasets(file)
-            if of_states(name)
-        }
-
-
-def described(path: Path) -> dict[str, tuple[str, tuple[int, ...]]]:
-    """Unit and shape of every dataset by path.
-
-    Raises:
-        UnreadableArchive: no archive, a damaged one, or one of a newer layout.
-    """
-    with _opened(path) as file:
-        return {
-            name: (str(dataset.attrs.get("units", "")), dataset.shape)
-            for name, dataset in _datasets(file)
-        }
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[h5py.File]:
-    """An archive of this program whose layout this version knows."""
-    if not path.is_file():
-        raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
-    try:
-        with h5py.File(path, "r") as file:
-            attributes = dict(file.attrs)
-            if attributes.get("program") != "galinx":
-                raise UnreadableArchive(f"{path} is HDF5, but not an archive of galinx")
-            if attributes["schema_version"] > SCHEMA_VERSION:
-                raise UnreadableArchive(
-                    f"{path} has schema version {attributes['schema_version']}, this program reads up "
-                    f"to {SCHEMA_VERSION}; install a newer one"
-                )
-            yield file
-    except (OSError, RuntimeError, KeyError) as error:
-        raise UnreadableArchive(
-            f"{path} is not a whole HDF5 file ({error}); it is damaged or was cut short, run again"
-        ) from error
-
-
-def _datasets(file: h5py.File) -> list[tuple[str, h5py.Dataset]]:
-    found: list[tuple[str, h5py.Dataset]] = []
-
-    def visit(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset):
-            found.append((name, item))
-
-    file.visititems(visit)
-    return found
-
-
-def _values(dataset: h5py.Dataset, rows: slice) -> Any:
-    wanted = rows if dataset.shape else ()
-    text = h5py.check_string_dtype(dataset.dtype) is not None
-    return dataset.asstr()[wanted] if text else dataset[wanted]
+    return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).data)

@@ -27,10 +27,13 @@ def column(name: str) -> str:
 def table() -> dict[str, Quantity]:
     """Every quantity by its path, the parameters of all known friction laws among them."""
     of_laws = {
-        column(key): Quantity(column(key), known.unit or "1", known.about, (STATE,), symbol=known.symbol)
+        column(key): Quantity(
+            column(key), "none" if known.options else known.unit or "1", known.about, (STATE,),
+            symbol=known.symbol, range=known.range,
+        )
         for law in LAWS.values()
         for key, known in parameters(law).items()
-    }
+    }  # fmt: skip
     return of_laws | QUANTITIES
 
 
@@ -56,7 +59,7 @@ def of_states(path: str) -> bool:
 def large(path: str) -> bool:
     """Does it hold a value at every point of every state?"""
     row = table().get(path)
-    return row is not None and bool({POINT, INSIDE} & set(row.over))
+    return row is not None and STATE in row.over and bool({POINT, INSIDE} & set(row.over))
 
 
 class _Words(Collection[str]):

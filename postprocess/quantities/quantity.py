@@ -7,12 +7,16 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+from galinx.solvers.parameters import Range
 from galinx.texts import unseen
 
 #: Dimensions of datasets, in words.
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
+
+#: What a dataset is made of.
+TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
 #: Methods, and what is known without solving: the local analysis of the punch's edges.
 CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
@@ -43,6 +47,8 @@ class Quantity:
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
         compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
+        whole: are its numbers integers? None that a solution gives: NaN says that there is none.
+        range: where its numbers may lie.
     """
 
     path: str
@@ -58,6 +64,13 @@ class Quantity:
     nan_allowed: str = NEVER
     compared: tuple[str, ...] = ()
     symbol: str = ""
+    whole: bool = False
+    range: Range = Range()
+
+    @property
+    def type(self) -> str:
+        """``TEXT``, ``WHOLE`` or ``NUMBER``."""
+        return TEXT if self.unit == "none" else WHOLE if self.whole else NUMBER
 
     @property
     def solved(self) -> bool:

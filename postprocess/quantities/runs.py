@@ -1,23 +1,34 @@
 """What a run says of itself, and the friction loops that its states lie on."""
 
 from galinx.postprocess.quantities.quantity import FEM, LOOP, QUANTITIES, SPEED, STATE, STEP, Quantity
+from galinx.solvers.parameters import Range
 
 #: Dimensions of what is told in words, and of times.
 LINE, TIMED = "lines", "steps"
 
+_NOT_NEGATIVE = Range(at_least=0.0)
+
 SCENE = Quantity("scene/text", "none", "scene as given (TOML)")
 
 LOOP_OF_STATE = Quantity(
-    "loops/of_state", "1", "row of loops/f that each state lies on, -1 for none", (STATE,)
-)
-LOOP_X = Quantity("loops/X_over_L", "1", "positions along all strokes, in the order of travel", (STEP,))
+    "loops/of_state", "1", "row of loops/f that each state lies on, -1 for none", (STATE,),
+    whole=True, range=Range(at_least=-1.0),
+)  # fmt: skip
+LOOP_X = Quantity(
+    "loops/X_over_L", "1", "positions along all strokes, in the order of travel", (STEP,),
+    range=Range(at_least=0.0, at_most=1.0),
+)  # fmt: skip
 LOOP_F = Quantity(
     "loops/f", "1", "friction coefficient there, a row for each law and speed", (LOOP, STEP)
 )
 
+_COUNTS = ("cells", "unknowns", "degree", "factorisations", "back_substitutions", "iterations")
+
 #: One value a speed that finite elements solved, by the name in a method's record.
 RECORD = {
-    name: Quantity(f"run/fem/{name}", "1", about, (SPEED,), method=FEM)
+    name: Quantity(
+        f"run/fem/{name}", "1", about, (SPEED,), method=FEM, whole=name in _COUNTS, range=_NOT_NEGATIVE
+    )
     for name, about in {
         "c": "speeds with finite elements, over shear wave speed",
         "cells": "cells of the mesh",
@@ -34,13 +45,16 @@ RECORD = {
 CHANGES = Quantity(
     "run/fem/change_by_degree", "1",
     "largest relative change of K_I and moments from the degree before, by degree; 0: not computed",
-    (SPEED, "degrees"), method=FEM,
+    (SPEED, "degrees"), method=FEM, range=_NOT_NEGATIVE,
 )  # fmt: skip
 
 FAILURES = Quantity("run/failures", "none", "speeds that could not be solved, and why", (LINE,))
 DONE = Quantity("run/done", "none", "steps done", (LINE,))
 SKIPPED = Quantity("run/skipped", "none", "steps skipped, and why", (LINE,))
-SECONDS = Quantity("run/seconds", "s", "wall time of the steps done, in the order of run/steps", (TIMED,))
+SECONDS = Quantity(
+    "run/seconds", "s", "wall time of the steps done, in the order of run/steps", (TIMED,),
+    range=_NOT_NEGATIVE,
+)  # fmt: skip
 STEPS = Quantity("run/steps", "none", "names of the timed steps", (TIMED,))
 
 QUANTITIES.add_all(globals())

@@ -17,8 +17,9 @@ from galinx.postprocess.quantities.quantity import (
     Quantity,
 )
 from galinx.postprocess.stresses import flatness
+from galinx.solvers.parameters import Range
 
-_CONTACT = "contact"
+_CONTACT, _NOT_NEGATIVE = "contact", Range(at_least=0.0)
 
 MOTION = Quantity(
     "states/motion", "none", "name of the stroke: forward (FM) or backward (BM) motion, numbered",
@@ -26,9 +27,12 @@ MOTION = Quantity(
 )  # fmt: skip
 POSITION = Quantity(
     "states/X_over_L", "1", "position on the stroke over the pre-sliding displacement", (STATE,),
-    symbol="X/L",
+    symbol="X/L", range=Range(at_least=0.0, at_most=1.0),
 )  # fmt: skip
-SPEED = Quantity("states/c", "1", "speed over shear wave speed", (STATE,), symbol="c")
+SPEED = Quantity(
+    "states/c", "1", "speed over shear wave speed", (STATE,),
+    symbol="c", range=Range(at_least=0.0, below=1.0),
+)  # fmt: skip
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
 RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
 
@@ -91,6 +95,7 @@ ESTIMATE = Quantity(
     "states/fem/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
+    range=_NOT_NEGATIVE,
 )  # fmt: skip
 
 
@@ -106,12 +111,13 @@ TRUE_ERROR = Quantity(
     "states/fem/true_error", "1", "relative error of K_I against the closed form, larger end", (STATE,),
     method=FEM, mode=_CONTACT, of_data=K_I_error,
     needs=tuple(row.path for side in (K_I_LEFT, K_I_RIGHT) for row in side.values()),
+    range=_NOT_NEGATIVE,
 )  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",
     (STATE,), lambda s, _: flatness(s.surface), FEM, asked_by="surface",
-    compared=("slope under the punch",),
+    compared=("slope under the punch",), range=_NOT_NEGATIVE,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

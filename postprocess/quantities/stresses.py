@@ -10,6 +10,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
+from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
 ON_SURFACE, BELOW = "surface", "interior"
@@ -50,13 +51,14 @@ ESTIMATE_IN_PLANE = Quantity(
     "estimated error of sigma_XX on the surface over the larger of itself and its largest value further "
     "than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[ON_SURFACE], FEM, asked_by=ON_SURFACE,
-    compared=("estimate of sigma_XX",),
+    compared=("estimate of sigma_XX",), range=Range(at_least=0.0),
 )  # fmt: skip
 ESTIMATE_INSIDE = Quantity(
     "states/fem/estimate_inside", "1",
     "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
     "from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
+    range=Range(at_least=0.0),
 )  # fmt: skip
 
 INSIDE_X = Quantity(
@@ -65,11 +67,11 @@ INSIDE_X = Quantity(
 )  # fmt: skip
 INSIDE_Y = Quantity(
     "interior/Y_over_a", "1", "positions inside, outwards, over the half-width; negative", (INSIDE,),
-    asked_by=BELOW,
+    asked_by=BELOW, range=Range(at_most=0.0),
 )  # fmt: skip
 MAP = Quantity(
     "interior/map", "1", "rows and columns of the grid that the first points inside form, by rows",
-    ("2",), asked_by=BELOW,
+    ("2",), asked_by=BELOW, whole=True, range=Range(at_least=1.0),
 )  # fmt: skip
 
 

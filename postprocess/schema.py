@@ -1,0 +1,180 @@
+"""What an archive has to be: names, types, shapes, units and values; no command sees one that is not so.
+
+All follows from the table of quantities and that of attributes. A fault is a sentence that names the
+dataset or attribute, what was found and what was expected.
+"""
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from reprlib import repr as short
+from typing import Any
+
+import numpy as np
+
+from galinx.postprocess.attributes import ATTRIBUTES
+from galinx.postprocess.compare import FINITE, RULES
+from galinx.postprocess.finite import not_finite
+from galinx.postprocess.quantities import Quantity, runs, states, stresses, table
+from galinx.postprocess.quantities.quantity import INSIDE, POINT
+from galinx.solvers.parameters import Range
+
+#: Version of the layout, and the first whose archives carry a digest of their bytes.
+VERSION = SEALED = 2
+
+#: What every run writes.
+_ALWAYS = (
+    runs.SCENE, states.MOTION, states.POSITION, states.SPEED, states.FRICTION, states.RATIO,
+    runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F, runs.DONE, runs.SKIPPED, runs.SECONDS, runs.STEPS,
+)  # fmt: skip
+#: What says where values of these dimensions are.
+_POSITIONS = {POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y)}
+
+
+@dataclass(frozen=True)
+class Described:
+    """A dataset as a file describes it.
+
+    Attributes:
+        type: ``"text"``, or numpy's name of its numbers' type.
+        shape: of it.
+        attributes: its own, by name.
+        whole: are all its values in the file, numbers with a checksum?
+    """
+
+    type: str
+    shape: tuple[int, ...]
+    attributes: Mapping[str, Any]
+    whole: bool
+
+
+def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Described]) -> list[str]:
+    """What is wrong with an archive before any of its values is read.
+
+    Args:
+        attributes: of the root, ``schema_version`` an integer.
+        datasets: by path.
+    """
+    known = table()
+    found = [*_of_attributes(attributes), *_of_names(attributes, datasets, known)]
+    mine = {name: dataset for name, dataset in datasets.items() if name in known}
+    for name, dataset in mine.items():
+        found += _of_dataset(name, dataset, known[name])
+    return [*found, *_of_shapes(mine, known)]
+
+
+def _of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
+    version = attributes["schema_version"]
+    expected = {name: row for name, row in ATTRIBUTES.items() if row.since <= version}
+    for name in sorted(attributes.keys() - expected.keys()):
+        yield f"attribute {name!r}: no archive has one of that name"
+    for name, row in expected.items():
+        if name not in attributes:
+            yield f"attribute {name}: missing, expected {row.expected}"
+        elif not row.fits(attributes[name]):
+            yield f"attribute {name}: found {short(attributes[name])}, expected {row.expected}"
+
+
+def _of_names(
+    attributes: Mapping[str, Any], datasets: Mapping[str, Described], known: Mapping[str, Quantity]
+) -> Iterator[str]:
+    for name in sorted(datasets.keys() - known.keys()):
+        yield (
+            f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
+        )
+    listed = {row.path for row in _ALWAYS}
+    for name in datasets.keys() & known.keys():
+        listed |= {row.path for over in known[name].over for row in _POSITIONS.get(over, ())}
+    if "datasets" in attributes and ATTRIBUTES["datasets"].fits(attributes["datasets"]):
+        listed |= set(json.loads(attributes["datasets"]))
+        for name in sorted(datasets.keys() & known.keys() - listed):
+            yield f"{name}: not in the attribute datasets, which lists all"
+    for name in sorted(listed - datasets.keys()):
+        yield f"{name!r}: missing"
+
+
+def _of_dataset(name: str, dataset: Described, row: Quantity) -> Iterator[str]:
+    if dataset.type != row.type:
+        yield f"{name}: found {dataset.type}, expected {row.type}"
+    if not dataset.whole:
+        yield f"{name}: found no checksum or not all of its values in the file, expected both"
+    units = dataset.attributes.get("units")
+    if not isinstance(units, str) or units != row.unit:
+        yield f"{name}: found units {short(units)}, expected {row.unit!r}"
+    for other in sorted(dataset.attributes.keys() ^ {"units", "long_name"}):
+        there = "found an attribute" if other in dataset.attributes else "expected the attribute"
+        yield f"{name}: {there} {other!r}, expected units and long_name"
+
+
+def _of_shapes(datasets: Mapping[str, Described], known: Mapping[str, Quantity]) -> Iterator[str]:
+    """The same word means the same number everywhere; what most datasets say it is."""
+    sizes: dict[str, Counter[int]] = {}
+    fitting = {name: one for name, one in datasets.items() if len(one.shape) == len(known[name].over)}
+    for name, dataset in fitting.items():
+        for dimension, size in zip(known[name].over, dataset.shape):
+            sizes.setdefault(dimension, Counter())[size] += 1
+    most = {dimension: counter.most_common(1)[0][0] for dimension, counter in sizes.items()}
+    most |= {dimension: int(dimension) for dimension in most if dimension.isdecimal()}
+    for name, dataset in datasets.items():
+        over = known[name].over
+        words = " × ".join(over) or "a single one"
+        expected = tuple(most.get(dimension, 1) for dimension in over)
+        if runs.LINE in over:  # each has as many as it has to say
+            expected = dataset.shape if name in fitting else (0,)
+        elif 0 in expected:
+            yield f"{name}: found no {over[expected.index(0)]}, expected some"
+        if dataset.shape != expected:
+            yield f"{name}: found shape {dataset.shape}, expected {expected}: {words}"
+
+
+def faults_of_values(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
+    """What is wrong with the values of some datasets.
+
+    Args:
+        data: by path, of all states or some; the positions on the surface and the failures among them.
+        attributes: of the root, without faults.
+    """
+    known = table()
+    found = [fault for name, values in data.items() for fault in _out_of_range(values, known[name])]
+    excused = _says_so_itself(data, attributes)
+    return found + [
+        f"{name}: found a number that is not finite, expected none"
+        for name in not_finite(dict(data))
+        if not (excused and known[name].solved)
+    ]
+
+
+def _out_of_range(values: Any, row: Quantity) -> Iterator[str]:
+    if row.range != Range() and (finite := values[np.isfinite(values)]).size:
+        outside = [x for x in (finite.min().item(), finite.max().item()) if x not in row.range]
+        if outside:
+            yield f"{row.path}: found {outside[0]:g}, expected numbers {row.range}"
+
+
+def _says_so_itself(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> bool:
+    """Does the archive tell of states that have no solution, or a wrong one?"""
+    told = json.loads(attributes["comparisons"])
+    return len(data.get(runs.FAILURES.path, ())) > 0 or bool(told.get(RULES[FINITE].text))
+
+
+def faults_between(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Where one dataset does not fit another.
+
+    Args:
+        data: by path, of all states.
+        attributes: of the root, without faults.
+    """
+    digest = hashlib.sha256(data[runs.SCENE.path].encode()).hexdigest()
+    if digest != attributes["scene_sha256"]:
+        yield f"{runs.SCENE.path}: found a text of the hash {digest}, expected that of scene_sha256"
+    loops = len(data[runs.LOOP_F.path])
+    if data[runs.LOOP_OF_STATE.path].max() >= loops:
+        yield f"{runs.LOOP_OF_STATE.path}: found a row beyond the {loops} of {runs.LOOP_F.path}"
+    speeds, of_states = data.get(runs.RECORD["c"].path), data[states.SPEED.path]
+    if speeds is not None and not np.array_equal(np.unique(speeds), np.unique(of_states)):
+        yield f"{runs.RECORD['c'].path}: found other speeds than in {states.SPEED.path}"
+    shape, points = data.get(stresses.MAP.path), data.get(stresses.INSIDE_X.path, ())
+    if shape is not None and np.prod(shape, dtype=float) > len(points):
+        yield f"{stresses.MAP.path}: found a grid of {shape} points, expected at most {len(points)}"

@@ -1,0 +1,118 @@
+"""An archive that contradicts its scene or its numbers is found out, though its digest was made again."""
+
+import hashlib
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from galinx.app.results import check
+from galinx.postprocess.errors import UnreadableArchive
+from galinx.postprocess.hdf5 import seal
+
+
+@pytest.fixture
+def whole(inside_run, tmp_path):
+    """An archive that may be changed."""
+    path = tmp_path / "whole.h5"
+    inside_run.save(path)
+    assert check.faults(path) == []
+    return path
+
+
+def test_states_may_be_looked_at_a_few_at_a_time(whole, monkeypatch):
+    monkeypatch.setattr(check, "_ROWS", 1)
+    assert check.faults(whole) == []
+
+
+def change(name, value, at=0):
+    def apply(file):
+        file[name][at] = value
+
+    return apply
+
+
+def times(name, factor):
+    def apply(file):
+        file[name][...] *= factor
+
+    return apply
+
+
+def attribute(name, value):
+    def apply(file):
+        file.attrs[name] = value
+
+    return apply
+
+
+def in_attribute(name, old, new):
+    def apply(file):
+        assert old in file.attrs[name]
+        file.attrs[name] = file.attrs[name].replace(old, new)
+
+    return apply
+
+
+def other_scene(file):
+    text = file["scene/text"].asstr()[()].replace("mu_c", "delta = 0.9\nmu_c")
+    file["scene/text"][()] = text
+    file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
+
+
+def more_states(file):
+    text = file["scene/text"].asstr()[()].replace("X_over_L = 0.8", "X_over_L = [0.7, 0.8]")
+    file["scene/text"][()] = text
+    file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
+
+
+def lost(file):
+    del file["states/fem/v0"]
+    names = json.loads(file.attrs["datasets"])
+    file.attrs["datasets"] = json.dumps([name for name in names if name != "states/fem/v0"])
+
+
+@pytest.mark.parametrize(
+    "changed, message",
+    [
+        (times("states/f", 0.0), "states/f holds something else than its scene gives"),
+        (times("states/g", -1.0), "states/g holds something else"),
+        (times("states/mu_c", 1.001), "states/mu_c holds something else"),
+        (change("states/motion", "BM7"), "states/motion holds something else"),
+        (times("loops/f", 1.001), "loops/f holds something else"),
+        (change("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
+        (other_scene, "states/f holds something else"),
+        (more_states, "it holds 2 states, its scene has 4"),
+        (lost, "states/fem/v0 is missing, its scene asks for it"),
+        (change("states/fem/normal_force", -1.0), "nodal forces against the load"),
+        (change("states/fem/K_I_left", 0.1), "its comparisons say"),
+        (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),
+        (times("states/fem/true_error", 0.5), "states/fem/true_error is not what"),
+        (change("interior/fem/sigma_XX", 1e3), "its comparisons say"),
+        (attribute("verdict", "FAIL"), "verdict says FAIL, its comparisons give PASS"),
+        (attribute("verdict", "not judged"), "verdict says not judged"),
+        (in_attribute("verdict_reasons", "at most 0.001", "at most 0.003"), "verdict_reasons says"),
+        (attribute("comparisons", "{}"), "its comparisons say {}"),
+        (attribute("rules", "[]"), "rules says '[]', its scene gives"),
+        (attribute("title", "another"), "title says 'another', its scene gives"),
+        (attribute("load", 1.0), "load says 1.0, its scene gives"),
+    ],
+)
+def test_what_does_not_fit_is_said(whole, changed, message):
+    with h5py.File(whole, "r+") as file:
+        changed(file)
+    with pytest.raises(UnreadableArchive, match="damaged"):
+        check.faults(whole)
+    seal.put(whole)
+    assert any(message in fault for fault in check.faults(whole))
+
+
+def test_a_number_that_is_not_finite_is_refused(whole):
+    with h5py.File(whole, "r+") as file:
+        file["interior/fem/sigma_XX"][0] = np.inf
+    seal.put(whole)
+    with pytest.raises(
+        UnreadableArchive, match="interior/fem/sigma_XX: found a number that is not finite"
+    ):
+        check.faults(whole)

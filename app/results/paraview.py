@@ -17,6 +17,7 @@ from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Output, Scene
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.target import Target
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -146,14 +147,15 @@ def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _Sta
 def _for_finite_elements(scene: Scene, c: float) -> Scene:
     """The scene with finite elements, at all its speeds that these can do, and at c in any case.
 
-    All speeds share one mesh; with the same speeds it is that of a run.
+    All speeds share one mesh; with the same speeds and places it is that of a run.
     """
+    mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
     possible = tuple(v for v in speeds(scene) if v == c or scene.solid.response(v).margin > 0.0)
     return replace(
         scene,
         motion=replace(scene.motion, c=possible, speed=None),
         solve=replace(scene.solve, methods=("fem",)),
-        output=Output(quantities=("sif",)),
+        output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
     )
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import excerpt
 from galinx.app.scene.keys import nearest
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Scene
@@ -56,7 +57,7 @@ def parse(text: str, name: str = "scene") -> Scene:
     _fill_in_material(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):
-        faults.append(f"title: found {title!r}, expected a text")
+        faults.append(f"title: found {excerpt(title)}, expected a text")
     for key in tree.keys() - SECTIONS.keys():
         faults.append(f"[{key}]: no such section{nearest(key, [*SECTIONS, 'title'])}")
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}

@@ -29,3 +29,8 @@ def listed(texts: list[str], most: int = 8) -> str:
     if len(texts) <= most:
         return ", ".join(texts)
     return f"{', '.join(texts[: most - 2])}, … {texts[-1]} ({len(texts)} in all)"
+
+
+def short(text: str, most: int = 80) -> str:
+    """A text, cut where it is long."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"

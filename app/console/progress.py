@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from galinx.app import ranks
+from galinx.app.console.streams import bare, plain
 from galinx.app.errors import MachineFailure
 
 #: Level of what is told: above INFO, which is muted because the form compiler floods it.
@@ -56,13 +57,13 @@ class Progress:
     def say(self, text: str) -> None:
         """What is being done now."""
         if self._bar:
-            self._bar.update(self._task, description=text)
+            self._bar.update(self._task, description=plain(text))
         self.note(text)
 
     def note(self, text: str) -> None:
         """For those who listen closely: verbose runs and log files."""
         if text != self._last:
-            self._logger.log(_NOTE, "%s", text)
+            self._logger.log(_NOTE, "%s", plain(text))
             self._last = text
 
     def done(self, states: int, of: int) -> None:
@@ -81,12 +82,15 @@ def _start_bar() -> tuple[Any, Any]:
     from rich.console import Console
 
     bar = progress.Progress(
-        progress.TextColumn("{task.description}"),
+        progress.TextColumn("{task.description}", markup=False),
         progress.BarColumn(bar_width=20),
         progress.TaskProgressColumn(),
         progress.TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=Console(file=bare(sys.stderr)),
         transient=True,
+        # What is printed meanwhile goes its own way: rich would take its control characters for colours.
+        redirect_stdout=False,
+        redirect_stderr=False,
     )
     task = bar.add_task("", total=None)
     bar.start()

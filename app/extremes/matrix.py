@@ -30,10 +30,10 @@ def stress(folder: Path) -> bool:
 
 
 def _write(folder: Path, rows: list[Row], good: bool) -> None:
+    from galinx.app.console.sheets import new_console
     from galinx.postprocess.figures.canvas import save
     from galinx.postprocess.figures.lines import lines_figure
     from galinx.postprocess.hdf5 import archive
-    from galinx.postprocess.tables import new_console
 
     folder.mkdir(parents=True, exist_ok=True)
     with archive.Writer(folder / "stress.h5") as writer:

@@ -31,7 +31,9 @@ def from_words(words: Iterable[str]) -> dict[str, Any]:
             raise BadInput(f"--set {short(word)}: expected a text in UTF-8") from None
         key, equals, value = word.partition("=")
         if not equals or not key.strip():
-            raise BadInput(f"--set {short(word)}: expected section.key=value, as in --set friction.mu_c=0.5")
+            raise BadInput(
+                f"--set {short(word)}: expected section.key=value, as in --set friction.mu_c=0.5"
+            )
         try:
             changes[key.strip()] = tomlkit.value(value.strip())
         except (TOMLKitError, ValueError, RecursionError):

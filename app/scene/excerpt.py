@@ -17,7 +17,7 @@ class _Excerpt(reprlib.Repr):
 
     def repr_int(self, x: int, level: int) -> str:
         bits = x.bit_length()
-        return repr(x) if bits <= _BITS else f"a whole number of {int(bits * log10(2.0)) + 1} digits"
+        return repr(x) if bits <= _BITS else f"a whole number of about {round(bits * log10(2.0))} digits"
 
 
 #: A value for a message.

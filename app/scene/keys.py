@@ -62,7 +62,9 @@ class Section:
             faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
             return None
         keys = self.keys(given)
-        found = [f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys]
+        found = [
+            f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
+        ]
         values = {}
         for key, known in keys.items():
             if key not in given:

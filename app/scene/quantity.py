@@ -50,7 +50,8 @@ def units(text: str) -> Units:
     Raises:
         ValueError: it is none.
     """
-    one, found = _ONE.match(text), []
+    found: list[tuple[str, int]] = []
+    one = _ONE.match(text)
     at, end = one.end() if one else 0, len(text.rstrip())
     while at < end:
         factor = _FACTOR.match(text, at)

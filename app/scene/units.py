@@ -80,7 +80,8 @@ def _by_pint(given: Quantity, wanted: Units) -> float:
     except _pint().errors.PintError:
         raise ValueError("with units that have no zero and cannot be multiplied") from None
     dimension = table.get_dimensionality(one)
-    raise ValueError(f"of dimension {dimension}" if dimension else f"in {table.get_root_units(one)[1]}")
+    counted = f"in {table.get_root_units(one)[1]}" if given.units else "without a unit"
+    raise ValueError(f"of dimension {dimension}" if dimension else counted)
 
 
 def _container(product: Units) -> Any:

@@ -202,7 +202,8 @@ class Map:
     def __call__(self, value: Any) -> tuple[Spread, Spread]:
         if not isinstance(value, dict) or set(value) != {"X", "Y"}:
             raise ValueError(
-                f"found {excerpt(value)}, expected {{X = [from, to, number], Y = [from, to, number]}}, over a"
+                f"found {excerpt(value)}, expected {{X = [from, to, number], Y = [from, to, number]}}, "
+                "over a"
             )
         X, Y = (self._range(axis, value[axis]) for axis in ("X", "Y"))
         _below(Y.last)

@@ -54,7 +54,7 @@ def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
 
 
 def _print(folder: Path, sheets: list[Sheet], attributes: dict[str, Any], quiet: bool) -> None:
-    from galinx.postprocess.tables import new_console, print_sheet
+    from galinx.app.console.sheets import new_console, print_sheet
 
     text = StringIO()
     for console in [new_console(text)] + [new_console(colours=colours())] * (not quiet):

@@ -40,3 +40,30 @@ def test_keys_name_section_and_key(key):
 def test_a_change_that_makes_no_sense_is_refused_like_any_scene():
     with pytest.raises(BadInput, match="did you mean mu_c"):
         read(SCENE, {"friction.mu_cc": 0.5})
+
+
+@pytest.mark.parametrize(
+    "word, message",
+    [
+        ("solid.E=" + "9" * 5000, "thousands of digits"),
+        ("solve.degree=" + "9" * 400, "found a whole number of about 400 digits, expected >= 1, <= 12"),
+        ("solve.degree=0x" + "f" * 6000, "found a whole number of about 7225 digits"),
+        ("solid.E=" + "[" * 3000, "solid.E .*: found '\\[+"),
+        ("motion.c=" + "[" * 3000 + "]" * 3000, "motion.c"),
+        ("motion.c=" + "[" * 300 + "]" * 300, "motion.c .*: found \\["),
+        ("friction.mu_c=[{a = 1}]", "mu_c .*: found {'a': 1}, expected"),
+        ("solid.E={a = " + "9" * 400 + "}", "found {'a': a whole number of about 400 digits}"),
+        ("title={a = 1}", "title: found {'a': 1}, expected a text"),
+        ("title.x=1", "found 'title' without keys"),
+        ("title=" + "a" * 100_000, "100000 characters"),
+        ("title=\udcff", "UTF-8"),
+        ("x" * 5000 + ".y=1", "no such section"),
+        ("solid." + "x" * 5000 + "=1", "no such key"),
+        ("solid.E=1 Pa*9**9**9", "a number, then units"),
+    ],
+    ids=lambda text: text[:12],
+)
+def test_what_is_long_deep_or_a_table_is_refused_with_a_short_message(word, message):
+    with pytest.raises(BadInput, match=message) as caught:
+        read(SCENE, {"title": ""} | from_words([word]))
+    assert len(str(caught.value)) < 600

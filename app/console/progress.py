@@ -66,11 +66,11 @@ class Progress:
             self._logger.log(_NOTE, "%s", plain(text))
             self._last = text
 
-    def done(self, states: int, of: int) -> None:
-        """So many states are finished."""
+    def done(self, count: int, of: int, what: str = "states") -> None:
+        """So many of them are finished."""
         if self._bar:
-            self._bar.update(self._task, completed=states, total=of)
-        self.note(f"{states} of {of} states")
+            self._bar.update(self._task, completed=count, total=of)
+        self.note(f"{count} of {of} {what}")
 
     def _add(self, handler: logging.Handler, form: str) -> None:
         handler.setFormatter(logging.Formatter(form))

@@ -7,7 +7,7 @@ import numpy as np
 from galinx.app.plan.fem import FemPlan, plan_fem
 from galinx.app.plan.limits import check_mode, check_places, check_speeds, warnings_of
 from galinx.app.plan.states import speeds, states_a_speed
-from galinx.app.plan.task import Plan, Task
+from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
@@ -31,22 +31,18 @@ def make_plan(scene: Scene) -> Plan:
     methods = _methods(scene, body)
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
-    responses = [scene.solid.response(c) for c in all_speeds]
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses)
+        fem = plan_fem(scene, [scene.solid.response(c) for c in all_speeds])
         warnings += warnings_of(fem)
-    tasks = tuple(
-        Task(i, body, response, places, slice(i * count, (i + 1) * count))
-        for i, response in enumerate(responses)
-    )
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     return Plan(
-        body=body, places=places, methods=methods, quantities=quantities, tasks=tasks, fem=fem,
-        skipped=skipped, warnings=tuple(warnings),
+        body=body, places=places, methods=methods, quantities=quantities,
+        tasks=Tasks(body, places, all_speeds, count), fem=fem, skipped=skipped,
+        warnings=tuple(warnings),
     )  # fmt: skip
 
 

@@ -1,6 +1,8 @@
 """A plan: what is to be done, speed by speed."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +38,31 @@ class Task:
 
 
 @dataclass(frozen=True)
+class Tasks:
+    """All tasks, each made when it is its turn: there may be a million.
+
+    Attributes:
+        body: what slides over what.
+        places: where stresses are wanted.
+        speeds: over the wave speed.
+        states: at each speed.
+    """
+
+    body: Body
+    places: Places
+    speeds: tuple[float, ...]
+    states: int
+
+    def __len__(self) -> int:
+        return len(self.speeds)
+
+    def __iter__(self) -> Iterator[Task]:
+        for i, c in enumerate(self.speeds):
+            rows = slice(i * self.states, (i + 1) * self.states)
+            yield Task(i, self.body, self.body.solid.response(c), self.places, rows)
+
+
+@dataclass(frozen=True)
 class Plan:
     """Work of a scene.
 
@@ -54,7 +81,7 @@ class Plan:
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
-    tasks: tuple[Task, ...]
+    tasks: Tasks
     fem: FemPlan | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
@@ -62,7 +89,7 @@ class Plan:
     @property
     def states(self) -> int:
         """Number of states."""
-        return self.tasks[-1].rows.stop
+        return len(self.tasks) * self.tasks.states
 
     def asks(self, word: str) -> bool:
         """Is a quantity computed that this word of output.quantities asks for?"""
@@ -94,7 +121,7 @@ class Plan:
         sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}
         return tuple(sizes[dimension] for dimension in quantity.over[1:])
 
-    @property
+    @cached_property
     def chunk(self) -> int:
         """States treated at once: what they hold in memory is bounded."""
         numbers = sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)

@@ -53,6 +53,21 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
     return warnings
 
 
+def check_states(states: int) -> None:
+    """Is there room for the friction of all states?
+
+    Raises:
+        BadInput: there is none.
+    """
+    needed, free = cost.bytes_of_states(states), cost.free_memory()
+    if needed > free:
+        raise BadInput(
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs about "
+            f"{needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free: shorten them, "
+            "or make several scenes"
+        )
+
+
 def check_mode(scene: Scene, body: Body) -> None:
     """Is there a pressure that could be put in?
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
-from galinx.app.plan.limits import check_mode, check_places, check_speeds, warnings_of
-from galinx.app.plan.states import speeds, states_a_speed
+from galinx.app.plan.limits import check_mode, check_places, check_speeds, check_states, warnings_of
+from galinx.app.plan.states import laws_followed, speeds, states_a_speed
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
@@ -27,6 +27,7 @@ def make_plan(scene: Scene) -> Plan:
         BadInput: finite elements are asked for where they have no answer.
     """
     all_speeds, count = speeds(scene), states_a_speed(scene)
+    check_states(len(all_speeds) * count)
     body = Body(scene.solid, scene.punch.profile, scene.punch.load)
     methods = _methods(scene, body)
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
@@ -41,7 +42,8 @@ def make_plan(scene: Scene) -> Plan:
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     return Plan(
         body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, all_speeds, count), fem=fem, skipped=skipped,
+        tasks=Tasks(body, places, all_speeds, count),
+        strokes=laws_followed(scene) * len(scene.motion.strokes), fem=fem, skipped=skipped,
         warnings=tuple(warnings),
     )  # fmt: skip
 

@@ -72,6 +72,7 @@ class Plan:
         methods: names of those that solve, none where only friction is asked for.
         quantities: read off their solutions, in the order of the table.
         tasks: one a speed.
+        strokes: number of strokes along which friction laws are followed.
         fem: finite element work, None without.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
@@ -82,6 +83,7 @@ class Plan:
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
     tasks: Tasks
+    strokes: int
     fem: FemPlan | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
@@ -124,8 +126,12 @@ class Plan:
     @cached_property
     def chunk(self) -> int:
         """States treated at once: what they hold in memory is bounded."""
-        numbers = sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
-        return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
+        return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, 1000))
+
+    @property
+    def numbers(self) -> int:
+        """Numbers of a state that methods give."""
+        return sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
     def chunks(self, task: Task) -> list[slice]:
         """A task's rows, so many at a time."""

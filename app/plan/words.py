@@ -49,7 +49,11 @@ def expense(plan: Plan) -> str:
     """Estimated time and memory of a plan."""
     fem = plan.fem
     if not fem:
-        return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
+        seconds = cost.START_WITHOUT_FEM + cost.seconds_of_states(
+            plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
+        )
+        memory = cost.bytes_without_fem(plan.states, CHUNK_NUMBERS * bool(plan.methods))
+        return f"about {seconds:.2g} s and {memory / 1e9:.1g} GB"
     mesh = fem.pattern
     if fem.fixed:
         levels = [(p, fem.cuts // k) for p in fem.degrees for k in (4, 2, 1)]

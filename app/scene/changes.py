@@ -5,6 +5,7 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Item
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, short
@@ -79,4 +80,14 @@ def _change(tree: Any, path: str, value: Any) -> None:
     if value is None:
         tree.pop(key, None)
     else:
-        tree[key] = list(value) if isinstance(value, tuple) else value
+        tree[key] = _item(value)
+
+
+def _item(value: Any) -> Any:
+    """A value for tomlkit, whose time to make a list, unlike that to read one, grows with its square."""
+    if isinstance(value, Item) or not isinstance(value, (list, tuple)):
+        return value
+    items = [tomlkit.item(_item(entry)) for entry in value]
+    if any(isinstance(entry, dict) for entry in items):
+        return list(value)
+    return tomlkit.value(f"[{', '.join(entry.as_string() for entry in items)}]")

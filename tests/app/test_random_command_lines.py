@@ -53,6 +53,7 @@ BAD_OPTIONS = [
     ["--extent", "x"], ["-q", "-v"], ["--overwrite=1"], ["-n"], ["--json=1"], ["extra", "more"],
     ["--set", "motion.c=30 deg"],
 ]  # fmt: skip
+#: For what is to be written.
 BAD_PLACES = [["-o", "folder"], ["-o", "no/such/folder/x"]]
 
 
@@ -106,7 +107,7 @@ def line(choose):
         ending = {"run": "h5", "report": "html", "init": "toml"}[name]
         words += ["-o", f"{choose.randrange(10**9)}.{ending}"]
     if not good:
-        bad = choose.choice(BAD_OPTIONS + BAD_PLACES * (files is not None))
+        bad = choose.choice(BAD_OPTIONS + BAD_PLACES * (name == "run"))
         words = [choose.choice(BAD_FILES)] if files != [] and choose.random() < 0.5 else [*words, *bad]
     return [name, *words], good and not {"-q", "-v"} <= {*words}
 

@@ -1,7 +1,9 @@
 """Scenes changed from outside."""
 
+import tomllib
+
 import pytest
-from support import SCENE
+from support import SCENE, at_most
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import changed, from_words
@@ -23,6 +25,21 @@ def test_words_are_toml_values_or_texts():
     assert changes == {
         "friction.mu_c": [0.3, 0.5], "solid.E": "70 GPa", "title": "Two words", "motion.c": 0.1
     }  # fmt: skip
+
+
+def test_long_lists_are_put_in_in_a_moment():
+    values = [0.9 * i / 10_000 for i in range(10_000)]
+    with at_most():
+        text = changed(
+            SCENE.read_text(encoding="utf-8"), {"motion.c": values, "x.y": [[1, 2.5], ["a", True]]}
+        )
+    assert 'y = [[1, 2.5], ["a", true]]' in text and f"c = {values}" in text
+
+
+def test_lists_of_tables_stay_what_they_are():
+    assert tomllib.loads(changed("", {"x.y": [{"a": 1}, {"a": [2, 3]}]})) == {
+        "x": {"y": [{"a": 1}, {"a": [2, 3]}]}
+    }
 
 
 @pytest.mark.parametrize("word", ["friction.mu_c", "=0.5", " =1"])

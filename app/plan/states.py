@@ -15,7 +15,7 @@ from galinx.solvers.friction.strokes import Stroke, friction_along
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
 #: Laws that are followed from word to word of how many are done.
-TOLD = 500
+_TOLD = 500
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
             if i < LOOPS:
                 drawn = _strokes(scene, law, c, FINE)
                 loops.append(_joined([stroke.f for stroke in drawn]))
-            if i % TOLD == TOLD - 1:
+            if i % _TOLD == _TOLD - 1:
                 done(i + 1, count)
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None

@@ -56,7 +56,7 @@ def expense(plan: Plan) -> str:
         seconds = cost.START_WITHOUT_FEM + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
         )
-        memory = cost.bytes_without_fem(plan.states, CHUNK_NUMBERS * bool(plan.methods))
+        memory = cost.bytes_without_fem(plan.states, plan.chunk * plan.numbers)
         return f"about {seconds:.2g} s and {memory / 1e9:.1g} GB"
     mesh = fem.pattern
     if fem.fixed:

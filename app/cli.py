@@ -5,7 +5,7 @@ import sys
 import time
 import traceback
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import click
 
@@ -13,6 +13,7 @@ from galinx import __version__
 from galinx.app import errors, ranks
 from galinx.app.commands import begin, compute, look, options
 from galinx.app.console.program import as_called, program
+from galinx.app.console.streams import plain_streams
 from galinx.app.errors import BadInput, MachineFailure
 from galinx.postprocess.errors import Occupied, UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
@@ -31,7 +32,16 @@ _PATIENCE = 1.0
 _CUT_OFF = 141
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Commands(click.Group):
+    """Commands by name; click takes an unknown one that begins with a sign for a call for help."""
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        if args[0] not in self.commands:
+            ctx.fail(f"No such command {args[0]!r}.")
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="galinx")
 @click.option(
     "-x", "--extend", "extensions", multiple=True, type=options.FILE,
@@ -55,6 +65,11 @@ for _command in (*begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS):
 
 def run_from_shell() -> None:
     """Run the command line; every failure ends with one readable message and its status."""
+    with plain_streams():
+        _run()
+
+
+def _run() -> None:
     try:
         status = cli.main(standalone_mode=False, prog_name=program()) or errors.GOOD
         sys.stdout.flush()

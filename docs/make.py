@@ -71,8 +71,10 @@ sigma0_over_load = "25000 1/m"
 c = 0.3                          # over the shear wave speed
 ```
 
-- A number is in the unit of its row. A text carries its own unit: `"193 GPa"`, `"1 mm"`, `"1.5 mm/s"`.
-  A unit of another dimension is an error.
+- A number is in the unit of its row. A text carries its own unit: `"193 GPa"`, `"1 mm"`, `"1.5 mm/s"`: a
+  number, then units with `*`, `/` and whole powers `^` between them, as in `"7.86 g/mm^3"` and
+  `"25000 1/m"`. A unit of another dimension is an error; degrees, counts and bits are no numbers, and
+  `"5 %"` is 0.05.
 - `c` or `speed`, and the parameters of the friction law, may be lists. All their combinations are
   computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
   from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.

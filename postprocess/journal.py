@@ -8,12 +8,13 @@ not there. The folder's name is hidden: ``.NAME.work`` beside the archive ``NAME
 import fcntl
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from galinx import files, sealed
@@ -39,6 +40,19 @@ class Part:
     data: dict[str, NDArray]
     comparisons: list[Comparison]
     record: dict[str, Any] | None
+
+
+def joined(parts: Sequence[Part]) -> Part:
+    """Parts that follow one another as one; of a comparison the worst is kept, the last's record."""
+    if len(parts) == 1:
+        return parts[0]
+    data = {name: np.concatenate([part.data[name] for part in parts]) for name in parts[0].data}
+    worst: dict[tuple[str, str], float] = {}
+    for found in (found for part in parts for found in part.comparisons):
+        which = found.name, found.text
+        worst[which] = float(np.max([worst.get(which, found.value), found.value]))  # NaN stays
+    comparisons = [Comparison(*which, value) for which, value in worst.items()]
+    return Part(slice(parts[0].rows.start, parts[-1].rows.stop), data, comparisons, parts[-1].record)
 
 
 class Journal:

@@ -1,13 +1,8 @@
-"""Tables, and how they look on a terminal."""
+"""Tables as text."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
-
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities.quantity import FEM
@@ -62,36 +57,3 @@ def states_sheet(data: dict[str, Any], title: str) -> Sheet:
     if hidden > 0:
         notes.insert(0, f"and {hidden} more states; show --json lists all")
     return Sheet(title or "States", list(shown), rows, notes)
-
-
-def new_console(file: Any = None, colours: bool = False) -> Console:
-    """A console that guesses nothing about what numbers are, and wraps no line."""
-    return Console(
-        file=file, highlight=False, markup=False, soft_wrap=True,
-        color_system="auto" if colours else None,
-    )  # fmt: skip
-
-
-def print_sheet(console: Console, sheet: Sheet) -> None:
-    """Print a table, labels to the left and numbers to the right."""
-    table = Table(
-        title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="", header_style="bold",
-        pad_edge=False, padding=(0, 1, 0, 0),
-    )  # fmt: skip
-    for i, column in enumerate(sheet.columns):
-        table.add_column(column, justify="left" if i == 0 else "right", no_wrap=True)
-    for row in sheet.rows:
-        table.add_row(*row)
-    console.print(table)
-    for note in sheet.notes:
-        console.print(note)
-
-
-def print_verdict(console: Console, attributes: dict[str, Any]) -> None:
-    """Print the comparisons and the verdict of an archive."""
-    for text, value in json.loads(attributes["comparisons"]).items():
-        console.print(f"  {text}: {value:.1e}")
-    styles = {"PASS": "bold green", "FAIL": "bold red"}
-    console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
-    for reason in json.loads(attributes["verdict_reasons"]):
-        console.print(f"  {reason}")

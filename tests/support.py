@@ -17,6 +17,30 @@ SCENE = HOME / "scenes" / "tables4_5.toml"
 FEW_DEGREES = ("--set", "motion.c=0.3", "--set", "solve.tolerance=1e-3")
 
 
+class Hang(BaseException):
+    """Something takes longer than it may; no handler of ordinary exceptions takes it."""
+
+
+@contextmanager
+def at_most(seconds=10.0):
+    """For a block in the main thread: one that hangs is ended.
+
+    Raises:
+        Hang: it took longer.
+    """
+
+    def end(*_):
+        raise Hang(f"more than {seconds} s")
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def computed(name="tables4_5", changes=None):
     """The result of a scene of scenes/, with other values by ``"section.key"``, None for none."""
     import galinx

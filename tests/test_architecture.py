@@ -17,6 +17,7 @@ ONE_PLACE = {
     "xarray": {"postprocess/named.py", "app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},
     "pint": {"app/scene/units.py"},
+    "rich": {"app/console/"},
 }
 
 

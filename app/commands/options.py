@@ -1,5 +1,6 @@
 """Arguments and options that several commands have."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,21 @@ import click
 from galinx.app.console.progress import Progress
 from galinx.postprocess.target import LOG, Target
 
-FILE = click.Path(path_type=Path)
+#: Bytes that file systems allow a name.
+_LONGEST = 255
+
+
+class _File(click.Path):
+    """A path; one that no file can have is bad input, and no failure of the machine."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        for name in Path(value).parts:
+            if len(os.fsencode(name)) > _LONGEST:
+                self.fail(f"found a name of {len(os.fsencode(name))} bytes, expected at most {_LONGEST}")
+        return super().convert(value, param, ctx)
+
+
+FILE = _File(path_type=Path)
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)

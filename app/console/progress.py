@@ -8,6 +8,7 @@ from typing import Any
 
 from galinx import files
 from galinx.app import ranks
+from galinx.app.console.streams import bare, plain
 from galinx.app.errors import MachineFailure
 
 #: Level of what is told: above INFO, which is muted because the form compiler floods it.
@@ -55,28 +56,29 @@ class Progress:
     def say(self, text: str) -> None:
         """What is being done now."""
         if self._bar:
-            self._bar.update(self._task, description=text)
+            self._bar.update(self._task, description=plain(text))
         self.note(text)
 
     def note(self, text: str) -> None:
         """For those who listen closely: verbose runs and log files."""
         if text != self._last:
-            self._logger.log(_NOTE, "%s", text)
+            self._logger.log(_NOTE, "%s", plain(text))
             self._last = text
 
     def warn(self, text: str) -> None:
         """What everybody should know, at once and whatever rank found it."""
+        told = f"warning: {plain(text)}"
         if self._bar:
-            self._bar.console.print(f"warning: {text}", markup=False, highlight=False, soft_wrap=True)
+            self._bar.console.print(told, markup=False, highlight=False, soft_wrap=True)
         elif not self._verbose:
-            print(f"warning: {text}", file=sys.stderr, flush=True)
-        self.note(f"warning: {text}")
+            print(told, file=sys.stderr, flush=True)
+        self.note(told)
 
-    def done(self, states: int, of: int) -> None:
-        """So many states are finished."""
+    def done(self, count: int, of: int, what: str = "states") -> None:
+        """So many of them are finished."""
         if self._bar:
-            self._bar.update(self._task, completed=states, total=of)
-        self.note(f"{states} of {of} states")
+            self._bar.update(self._task, completed=count, total=of)
+        self.note(f"{count} of {of} {what}")
 
     def _add(self, handler: logging.Handler, form: str) -> None:
         handler.setFormatter(logging.Formatter(form))
@@ -124,12 +126,15 @@ def _start_bar() -> tuple[Any, Any]:
     from rich.console import Console
 
     bar = progress.Progress(
-        progress.TextColumn("{task.description}"),
+        progress.TextColumn("{task.description}", markup=False),
         progress.BarColumn(bar_width=20),
         progress.TaskProgressColumn(),
         progress.TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=Console(file=bare(sys.stderr)),
         transient=True,
+        # What is printed meanwhile goes its own way: rich would take its control characters for colours.
+        redirect_stdout=False,
+        redirect_stderr=False,
     )
     task = bar.add_task("", total=None)
     bar.start()

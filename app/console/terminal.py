@@ -8,12 +8,13 @@ import textwrap
 from typing import Any
 
 from galinx.app import ranks
+from galinx.app.console.streams import plain
 
 
 def say(text: str, hang: int = 2) -> None:
     """Print a line, folded at the terminal's width (80 columns where it is none)."""
     width = shutil.get_terminal_size().columns
-    print(textwrap.fill(text, width, subsequent_indent=" " * hang, break_on_hyphens=False))
+    print(textwrap.fill(plain(text), width, subsequent_indent=" " * hang, break_on_hyphens=False))
 
 
 def colours() -> bool:
@@ -24,12 +25,8 @@ def colours() -> bool:
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
     """States, comparisons and verdict unless quiet; warnings go to the error stream."""
     if not quiet:
-        from galinx.postprocess.tables import (
-            new_console,
-            print_sheet,
-            print_verdict,
-            states_sheet,
-        )
+        from galinx.app.console.sheets import new_console, print_sheet, print_verdict
+        from galinx.postprocess.tables import states_sheet
 
         console = new_console(colours=colours())
         print_sheet(console, states_sheet(data, attributes["title"]))

@@ -52,8 +52,8 @@ def _figure(row: Row) -> Any:
 
 
 def _write(target: Target, rows: list[Row], good: bool) -> None:
+    from galinx.app.console.sheets import new_console
     from galinx.postprocess.hdf5 import archive
-    from galinx.postprocess.tables import new_console
 
     with archive.Writer(target) as writer:
         for row in rows:

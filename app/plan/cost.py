@@ -9,12 +9,32 @@ from pathlib import Path
 #: Seconds until a scene with finite elements meets its mesh: imports and start-up; and of one without.
 START = 1.2
 START_WITHOUT_FEM = 0.4
-#: Seconds of a state: friction, closed form, recovery, archive.
+#: Seconds of a state with finite elements: friction, closed form, recovery, archive.
 STATE = 1e-4
+#: Seconds without: a stroke along which a law is followed, a quantity at a speed, a state, and each of
+#: its archived numbers.
+_STROKE, _QUANTITY, _STATE, _NUMBER = 3e-5, 2.5e-5, 2.2e-6, 1.3e-7
+#: Bytes of a program without finite elements, and of a state's friction.
+_PROGRAM, _FRICTION = 60e6, 300.0
 #: Bytes of the libraries, and cells that are condensed at once.
 _LIBRARIES, _AT_ONCE = 170e6, 64
 #: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.
 _SOLVES, _STEPS = 34, 25
+
+
+def seconds_of_states(strokes: int, speeds: int, states: int, quantities: int, numbers: int) -> float:
+    """Without finite elements: friction along strokes, quantities a speed, numbers a state."""
+    return _STROKE * strokes + _QUANTITY * speeds * quantities + states * (_STATE + _NUMBER * numbers)
+
+
+def bytes_of_states(states: int) -> float:
+    """Memory of all states' friction, which is held at once."""
+    return _FRICTION * states
+
+
+def bytes_without_fem(states: int, chunk_numbers: int) -> float:
+    """Largest resident set of a run without finite elements."""
+    return _PROGRAM + bytes_of_states(states) + 3 * 8 * chunk_numbers
 
 
 def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> float:

@@ -1,5 +1,6 @@
 """Where a scene asks for what has no answer, or for one that will cost accuracy."""
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan
+from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, Wanted
 from galinx.solvers.solution import Body, Places
@@ -25,27 +27,45 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
     def beyond_limit(c: float) -> bool:
         return c >= 1.0 or scene.solid.response(c).margin <= 0.0
 
-    beyond = [c for c in speeds if beyond_limit(c)]
-    near = [c for c in speeds if c not in beyond and beyond_limit(c / 0.99)]
+    # Beyond its limit a solid stays: of a million speeds some twenty are looked at.
+    ordered = sorted(speeds)
+    first = bisect_left(ordered, True, key=beyond_limit)
+    almost = bisect_left(ordered[:first], True, key=lambda c: beyond_limit(c / 0.99))
+    near, beyond = ([f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:]))
     c_R = scene.solid.limit() if beyond or near else None
     if fem and beyond:
         raise BadInput(
-            f"motion: c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"motion: c = {listed(beyond)} is not below the Rayleigh speed "
             f"c_R = {c_R:.6g} (over c_s): the finite element form is indefinite there and does not "
             'converge; take lower speeds, or methods = ["closed_form"]'
         )
     warnings = []
     if beyond:
         warnings.append(
-            f"c = {', '.join(f'{c:g}' for c in beyond)} is not below the Rayleigh speed "
+            f"c = {listed(beyond)} is not below the Rayleigh speed "
             f"c_R = {c_R:.6g} (over c_s): the closed form is formal there"
         )
     if near:
         warnings.append(
-            f"c = {', '.join(f'{c:g}' for c in near)} is within 1 % of the Rayleigh speed "
+            f"c = {listed(near)} is within 1 % of the Rayleigh speed "
             f"c_R = {c_R:.6g} (over c_s): displacements grow without bound and errors with them"
         )
     return warnings
+
+
+def check_states(states: int) -> None:
+    """Is there room for the friction of all states?
+
+    Raises:
+        BadInput: there is none.
+    """
+    needed, free = cost.bytes_of_states(states), cost.free_memory()
+    if needed > free:
+        raise BadInput(
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs about "
+            f"{needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free: shorten them, "
+            "or make several scenes"
+        )
 
 
 def check_mode(scene: Scene, body: Body) -> None:

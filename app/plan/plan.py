@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
-from galinx.app.plan.limits import check_mode, check_places, check_speeds, warnings_of
-from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
-from galinx.app.plan.task import Plan, Task
+from galinx.app.plan.limits import check_mode, check_places, check_speeds, check_states, warnings_of
+from galinx.app.plan.states import enumerate_states, laws_followed, speeds, states_a_speed
+from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
@@ -27,27 +27,25 @@ def make_plan(scene: Scene) -> Plan:
         BadInput: finite elements are asked for where they have no answer.
     """
     all_speeds, count = speeds(scene), states_a_speed(scene)
+    check_states(len(all_speeds) * count)
     body = Body(scene.solid, scene.punch.profile, scene.punch.load)
     methods = _methods(scene, body)
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
-    responses = [scene.solid.response(c) for c in all_speeds]
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
         check_places(scene, places)
-        g = enumerate_states(scene).g
+        g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in all_speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
-    tasks = tuple(
-        Task(i, body, response, places, slice(i * count, (i + 1) * count))
-        for i, response in enumerate(responses)
-    )
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     return Plan(
-        body=body, places=places, methods=methods, quantities=quantities, tasks=tasks, fem=fem,
-        skipped=skipped, warnings=tuple(warnings),
+        body=body, places=places, methods=methods, quantities=quantities,
+        tasks=Tasks(body, places, all_speeds, count),
+        strokes=laws_followed(scene) * len(scene.motion.strokes), fem=fem, skipped=skipped,
+        warnings=tuple(warnings),
     )  # fmt: skip
 
 

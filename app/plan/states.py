@@ -1,6 +1,6 @@
 """The states a scene asks for: every combination of its lists, in the order they are archived."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,8 @@ from galinx.solvers.friction.strokes import Stroke, friction_along
 
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
+#: Laws that are followed from word to word of how many are done.
+_TOLD = 500
 
 
 @dataclass(frozen=True)
@@ -62,46 +64,68 @@ def speeds(scene: Scene) -> tuple[float, ...]:
 
 def states_a_speed(scene: Scene) -> int:
     """Number of states at each speed."""
-    lists = [*scene.friction.parameters.values(), scene.motion.strokes, set(scene.motion.X_over_L)]
-    return int(np.prod([len(entries) for entries in lists], dtype=np.int64))
+    return scene.friction.count * _states_a_law(scene)
 
 
-def enumerate_states(scene: Scene) -> States:
-    """Friction of every state; each law is followed once, or once a speed where it depends on that.
+def _states_a_law(scene: Scene) -> int:
+    return len(scene.motion.strokes) * len(set(scene.motion.X_over_L))
+
+
+def laws_followed(scene: Scene) -> int:
+    """Number of laws that are followed: once, or once a speed where they depend on that."""
+    return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
+
+
+def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> States:
+    """Friction of every state; what is held at once is that and nothing else.
+
+    Args:
+        scene: the scene.
+        done: is told now and then how many laws are followed, and of how many.
 
     Raises:
         BadInput: the integrator refuses the parameters.
     """
-    friction = scene.friction
+    friction, all_speeds, count = scene.friction, speeds(scene), laws_followed(scene)
+    f, loops = np.empty((count, _states_a_law(scene))), []
     try:
-        laws = friction.laws()
-        followed = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
-        histories = [_strokes(scene, law, c, scene.motion.X_over_L) for c in followed for _, law in laws]
-        drawn = [_strokes(scene, law, c, FINE) for c in followed for _, law in laws][:LOOPS]
+        for i, (c, law) in enumerate(_laws(scene)):
+            strokes = _strokes(scene, law, c, scene.motion.X_over_L)
+            f[i] = _joined([stroke.f for stroke in strokes])
+            if i < LOOPS:
+                drawn = _strokes(scene, law, c, FINE)
+                loops.append(_joined([stroke.f for stroke in drawn]))
+            if i % _TOLD == _TOLD - 1:
+                done(i + 1, count)
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
-    f = np.array([_joined([stroke.f for stroke in strokes]) for strokes in histories])
-    loop = np.arange(len(f))
+    loop = np.arange(count)
     loop[LOOPS:] = -1
     if not friction.law.depends_on_speed:
-        f, loop = np.tile(f, (len(speeds(scene)), 1)), np.tile(loop, len(speeds(scene)))
-    first = histories[0]
+        f, loop = np.tile(f, (len(all_speeds), 1)), np.tile(loop, len(all_speeds))
     per_law = f.shape[1]
     values = {
-        key: np.tile(np.repeat([given[key] for given, _ in laws], per_law), len(speeds(scene)))
-        for key in friction.parameters
+        key: np.tile(np.repeat(column, per_law), len(all_speeds))
+        for key, column in friction.columns().items()
     }
     columns = {
-        "motion": np.tile(np.repeat([s.name for s in first], len(first[0].X_over_L)), len(f)),
-        "X_over_L": np.tile(_joined([stroke.X_over_L for stroke in first]), len(f)),
-        "c": np.repeat(speeds(scene), len(laws) * per_law),
+        "motion": np.tile(np.repeat([s.name for s in strokes], len(strokes[0].X_over_L)), len(f)),
+        "X_over_L": np.tile(_joined([stroke.X_over_L for stroke in strokes]), len(f)),
+        "c": np.repeat(all_speeds, friction.count * per_law),
         **values,
         "f": f.ravel(),
         "g": friction.stress_ratio * f.ravel() + 0.0,
     }
-    loops = np.array([_joined([stroke.f for stroke in strokes]) for strokes in drawn])
-    travel = _joined([stroke.X_over_L for stroke in drawn[0]])
-    return States(columns, np.repeat(loop, per_law), travel, loops)
+    travel = _joined([stroke.X_over_L for stroke in drawn])
+    return States(columns, np.repeat(loop, per_law), travel, np.array(loops))
+
+
+def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw]]:
+    """Every law that is followed, with its speed."""
+    followed = speeds(scene) if scene.friction.law.depends_on_speed else speeds(scene)[:1]
+    for c in followed:
+        for law in scene.friction.laws():
+            yield c, law
 
 
 def _strokes(

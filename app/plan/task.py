@@ -1,6 +1,8 @@
 """A plan: what is to be done, speed by speed."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +38,31 @@ class Task:
 
 
 @dataclass(frozen=True)
+class Tasks:
+    """All tasks, each made when it is its turn: there may be a million.
+
+    Attributes:
+        body: what slides over what.
+        places: where stresses are wanted.
+        speeds: over the wave speed.
+        states: at each speed.
+    """
+
+    body: Body
+    places: Places
+    speeds: tuple[float, ...]
+    states: int
+
+    def __len__(self) -> int:
+        return len(self.speeds)
+
+    def __iter__(self) -> Iterator[Task]:
+        for i, c in enumerate(self.speeds):
+            rows = slice(i * self.states, (i + 1) * self.states)
+            yield Task(i, self.body, self.body.solid.response(c), self.places, rows)
+
+
+@dataclass(frozen=True)
 class Plan:
     """Work of a scene.
 
@@ -45,6 +72,7 @@ class Plan:
         methods: names of those that solve, none where only friction is asked for.
         quantities: read off their solutions, in the order of the table.
         tasks: one a speed.
+        strokes: number of strokes along which friction laws are followed.
         fem: finite element work, None without.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
@@ -54,7 +82,8 @@ class Plan:
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
-    tasks: tuple[Task, ...]
+    tasks: Tasks
+    strokes: int
     fem: FemPlan | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
@@ -62,7 +91,7 @@ class Plan:
     @property
     def states(self) -> int:
         """Number of states."""
-        return self.tasks[-1].rows.stop
+        return len(self.tasks) * self.tasks.states
 
     def asks(self, word: str, method: str = "") -> bool:
         """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
@@ -96,11 +125,15 @@ class Plan:
         sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}
         return tuple(sizes[dimension] for dimension in quantity.over[1:])
 
-    @property
+    @cached_property
     def chunk(self) -> int:
         """States treated at once: what they hold in memory is bounded."""
-        numbers = sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
-        return int(np.clip(CHUNK_NUMBERS // max(numbers, 1), 1, 1000))
+        return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, 1000))
+
+    @property
+    def numbers(self) -> int:
+        """Numbers of a state that methods give."""
+        return sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
     def chunks(self, task: Task) -> list[slice]:
         """A task's rows, so many at a time."""

@@ -5,6 +5,7 @@ from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan, unknowns
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
+from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FEM
@@ -33,11 +34,14 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     pressure = " and those of a pressure" * scene.solid.nearly_incompressible
     lower = "half and a quarter of the cuts" if fem.fixed else "lower degree"
     solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"
+    speeds: dict[int, list[str]] = {}
+    for task, degree in zip(plan.tasks, fem.degrees):
+        speeds.setdefault(degree, []).append(f"{task.response.c:g}")
     result += [
-        f"finite elements at c = {task.response.c:g} (over c_s): degree {degree}, "
-        f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; {solver} serves all states, two of "
-        f"{lower} measure its error"
-        for task, degree in zip(plan.tasks, fem.degrees)
+        f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
+        f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; at each speed {solver} serves all "
+        f"states, two of {lower} measure its error"
+        for degree, some in speeds.items()
     ]
     if ranks.size() > 1:
         how = "each takes whole speeds" if fem.shared_speeds else "together on one mesh"
@@ -49,7 +53,11 @@ def expense(plan: Plan) -> str:
     """Estimated time and memory of a plan."""
     fem = plan.fem
     if not fem:
-        return f"about {cost.START_WITHOUT_FEM + cost.STATE * plan.states:.2g} s and 0.1 GB"
+        seconds = cost.START_WITHOUT_FEM + cost.seconds_of_states(
+            plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
+        )
+        memory = cost.bytes_without_fem(plan.states, plan.chunk * plan.numbers)
+        return f"about {seconds:.2g} s and {memory / 1e9:.1g} GB"
     mesh = fem.pattern
     if fem.fixed:
         levels = [(p, fem.cuts // k) for p in fem.degrees for k in (4, 2, 1)]

@@ -4,15 +4,19 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.plan.task import Plan
 from galinx.app.run.judge import Judge
 from galinx.app.run.sinks import Sink
-from galinx.postprocess.journal import Journal, Part
+from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.solvers.errors import SolveError
+
+#: Seconds after which small parts wait no longer for others: so much is lost at most.
+_PATIENCE = 1.0
 
 
 class Collector:
@@ -34,30 +38,47 @@ class Collector:
     ) -> None:
         self._sink, self._judge, self._progress, self._plan = sink, judge, progress, plan
         self._journal, self._done = journal, 0
+        self._small: list[Part] = []
+        self._kept = perf_counter()
         self._records: dict[int, dict[str, Any]] = {}
         self.seconds = 0.0
         for quantity in plan.quantities:
             sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
 
-    def earlier(self) -> frozenset[int]:
-        """Take in what the journal has; first rows of those parts."""
-        if not self._journal:
-            return frozenset()
-        if self._journal.damaged:
+    def earlier(self) -> NDArray[np.bool_]:
+        """Take in what the journal has; which states those are, (states,)."""
+        found = np.zeros(self._plan.states, dtype=bool)
+        if self._journal and self._journal.damaged:
             self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
-        found = set()
-        for part in self._journal.parts():
-            found.add(part.rows.start)
+        for part in self._journal.parts() if self._journal else ():
+            found[part.rows] = True
             self._take(part)
-        return frozenset(found)
+        return found
 
     def take(self, part: Part) -> None:
         """Take in a part that was just computed; a failure is tried again by a run that goes on."""
         if not ranks.is_root():
             return  # all ranks share one mesh and have the same results
-        if self._journal and "failure" not in (part.record or {}):
-            self._journal.keep(part)
-        self._take(part)
+        if "failure" in (part.record or {}):
+            self._keep()
+            self._take(part)
+            return
+        if self._small and self._small[-1].rows.stop != part.rows.start:
+            self._keep()
+        self._small.append(part)
+        states = part.rows.stop - self._small[0].rows.start
+        if part.record or states >= self._plan.chunk or perf_counter() - self._kept > _PATIENCE:
+            self._keep()
+
+    def _keep(self) -> None:
+        """Keep the parts that wait, as one: a file a part, and a look at the archive, take their time."""
+        if self._small:
+            part = joined(self._small)
+            self._small = []
+            if self._journal:
+                self._journal.keep(part)
+            self._take(part)
+        self._kept = perf_counter()
 
     def _take(self, part: Part) -> None:
         started = perf_counter()
@@ -78,6 +99,7 @@ class Collector:
         """
         if not ranks.is_root():
             return
+        self._keep()
         records = [self._records[i] for i in sorted(self._records)]
         failures = [
             f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record

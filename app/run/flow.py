@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx import __version__
 from galinx.app import ranks
@@ -52,7 +53,9 @@ def compute(
         sink = Nowhere()
     progress, clock = progress or Progress(), Clock()
     with clock("friction"):
-        plan, states = make_plan(scene), enumerate_states(scene)
+        plan = make_plan(scene)
+        progress.say("friction")
+        states = enumerate_states(scene, lambda laws, of: progress.done(laws, of, "friction loops"))
         _put_states(sink, scene, plan, states)
     judge = Judge(scene, plan.rules)
     if plan.methods:
@@ -79,7 +82,7 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
 
 
 def _parts(
-    plan: Plan, states: States, finished: frozenset[int], progress: Progress, clock: Clock
+    plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
     methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
@@ -88,9 +91,9 @@ def _parts(
 
         finished = same_on_all(finished)
     work = Work(plan, states.g, methods, clock, finished)
-    tasks = [task for task in plan.tasks if work.to_do(task)]
+    tasks = (task for task in plan.tasks if work.to_do(task))
     if plan.fem and plan.fem.shared_speeds:
-        yield from shared_out(tasks, work.parts)
+        yield from shared_out(list(tasks), work.parts)
     else:
         for task in tasks:
             yield from work.parts(task)

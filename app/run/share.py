@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+import numpy as np
 from mpi4py import MPI
+from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.counter import Counter
@@ -51,6 +53,6 @@ def _taken_in(world: MPI.Comm, mine: Iterator[Part]) -> Iterator[Part]:
                 yield message
 
 
-def same_on_all(finished: frozenset[int]) -> frozenset[int]:
+def same_on_all(finished: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """What rank 0 says, on every rank."""
     return MPI.COMM_WORLD.bcast(finished)

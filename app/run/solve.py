@@ -36,18 +36,18 @@ class Work:
         g: σ_XY/σ_YY of all states, (states,).
         methods: by name.
         clock: takes wall time by step.
-        finished: first rows of the parts that need not be computed again.
+        finished: which states need not be computed again, (states,).
     """
 
     plan: Plan
     g: NDArray[np.float64]
     methods: Mapping[str, Method]
     clock: Clock
-    finished: frozenset[int]
+    finished: NDArray[np.bool_]
 
     def to_do(self, task: Task) -> list[slice]:
         """Rows that are still to be computed."""
-        return [rows for rows in self.plan.chunks(task) if rows.start not in self.finished]
+        return [rows for rows in self.plan.chunks(task) if not self.finished[rows].all()]
 
     def parts(self, task: Task) -> Iterator[Part]:
         """Results at one speed.

@@ -5,10 +5,15 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Item
 
 from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import excerpt, short
 
 _CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
+
+#: Characters of a text that is put in: the time that tomlkit takes grows with their square.
+_LONGEST = 10_000
 
 
 def from_words(words: Iterable[str]) -> dict[str, Any]:
@@ -17,16 +22,22 @@ def from_words(words: Iterable[str]) -> dict[str, Any]:
     What is no TOML value is a text: ``solid.E=70 GPa`` needs no quotes.
 
     Raises:
-        BadInput: a word without key or value.
+        BadInput: a word without key or value, or not UTF-8.
     """
     changes = {}
     for word in words:
+        try:
+            word.encode()
+        except UnicodeEncodeError:
+            raise BadInput(f"--set {short(word)}: expected a text in UTF-8") from None
         key, equals, value = word.partition("=")
         if not equals or not key.strip():
-            raise BadInput(f"--set {word}: expected section.key=value, as in --set friction.mu_c=0.5")
+            raise BadInput(
+                f"--set {short(word)}: expected section.key=value, as in --set friction.mu_c=0.5"
+            )
         try:
             changes[key.strip()] = tomlkit.value(value.strip())
-        except (TOMLKitError, ValueError):
+        except (TOMLKitError, ValueError, RecursionError):
             changes[key.strip()] = value.strip()
     return changes
 
@@ -52,15 +63,31 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         return tomlkit.dumps(tree)
     except (TOMLKitError, ValueError, TypeError) as error:
         raise BadInput(f"{name} cannot be changed: {error}") from None
+    except RecursionError:
+        raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
 
 
 def _change(tree: Any, path: str, value: Any) -> None:
     *sections, key = path.split(".")
     if len(sections) > 1 or (not sections and key != "title"):
-        raise ValueError(f"found {path!r}, expected section.key, as in friction.mu_c")
+        raise ValueError(f"found {excerpt(path)}, expected section.key, as in friction.mu_c")
+    if isinstance(value, str) and len(value) > _LONGEST:
+        raise ValueError(f"found a text of {len(value)} characters, expected at most {_LONGEST}")
     for section in sections:
         tree = tree.setdefault(section, tomlkit.table())
+        if not isinstance(tree, dict):
+            raise ValueError(f"found {excerpt(section)} without keys, expected a section")
     if value is None:
         tree.pop(key, None)
     else:
-        tree[key] = list(value) if isinstance(value, tuple) else value
+        tree[key] = _item(value)
+
+
+def _item(value: Any) -> Any:
+    """A value for tomlkit, whose time to make a list, unlike that to read one, grows with its square."""
+    if isinstance(value, Item) or not isinstance(value, (list, tuple)):
+        return value
+    items = [tomlkit.item(_item(entry)) for entry in value]
+    if any(isinstance(entry, dict) for entry in items):
+        return list(value)
+    return tomlkit.value(f"[{', '.join(entry.as_string() for entry in items)}]")

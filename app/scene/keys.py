@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from galinx.app.console.program import program
+from galinx.app.scene.excerpt import excerpt, short
 from galinx.app.scene.values import Choice, Kind, Number, Numbers
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
@@ -58,10 +59,12 @@ class Section:
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
         """What the section says, or None after adding its faults; ``name`` is the section's."""
         if not isinstance(given, dict):
-            faults.append(f"{name}: found {given!r}, expected a section [{name}]")
+            faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
             return None
         keys = self.keys(given)
-        found = [f"{name}.{key}: no such key{nearest(key, [*keys])}" for key in given if key not in keys]
+        found = [
+            f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
+        ]
         values = {}
         for key, known in keys.items():
             if key not in given:

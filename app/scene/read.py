@@ -7,6 +7,7 @@ from typing import Any
 
 from galinx import files
 from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import excerpt, short
 from galinx.app.scene.keys import nearest
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Scene
@@ -16,6 +17,9 @@ from galinx.app.scene.texts import control_characters
 
 #: Bytes of a scene; a million speeds fit, and what has no end is not read for ever.
 _LARGEST = 50 * 10**6
+
+#: Faults that a message lists at most.
+_FAULTS = 30
 
 
 def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
@@ -55,23 +59,33 @@ def parse(text: str, name: str = "scene") -> Scene:
     """
     try:
         tree = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{name} is not TOML: {error}") from None
+    except RecursionError:
+        raise BadInput(f"{name} cannot be read: its brackets are nested too deeply") from None
+    except ValueError:  # Python's limit of digits
+        raise BadInput(f"{name} cannot be read: a whole number has thousands of digits") from None
     faults = list(control_characters(tree))
     _fill_in_material(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):
-        faults.append(f"title: found {title!r}, expected a text")
-    for key in tree.keys() - SECTIONS.keys():
-        faults.append(f"[{key}]: no such section{nearest(key, [*SECTIONS, 'title'])}")
+        faults.append(f"title: found {excerpt(title)}, expected a text")
+    faults += [
+        f"[{short(key)}]: no such section{nearest(key, [*SECTIONS, 'title'])}"
+        for key in tree
+        if key not in SECTIONS
+    ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
     if not faults:
         scene = Scene(title, text, **read)
         faults = contradictions(scene)
         if not faults:
             return scene
-    lines = "\n".join(f"  {fault}" for fault in faults)
-    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{lines}")
+    lines = [f"  {fault}" for fault in faults[:_FAULTS]]
+    if len(faults) > _FAULTS:
+        lines.append(f"  and {len(faults) - _FAULTS} more")
+    told = "\n".join(lines)
+    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{told}")
 
 
 def _fill_in_material(tree: dict[str, Any]) -> None:

@@ -1,11 +1,14 @@
 """What a scene says, section by section; numbers are in SI."""
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.scene.values import Spread
 from galinx.solvers.friction import FrictionLaw
@@ -37,14 +40,27 @@ class Friction:
     integrator: str
     sign: str
 
-    def laws(self) -> list[tuple[dict[str, Any], FrictionLaw]]:
-        """Every law with its parameters by key; the last parameter changes fastest.
+    @property
+    def count(self) -> int:
+        """Number of laws."""
+        return prod(map(len, self.parameters.values()))
+
+    def laws(self) -> Iterator[FrictionLaw]:
+        """Every law; the last parameter changes fastest.
 
         Raises:
             ValueError: a law refuses its parameters.
         """
-        all_values = [dict(zip(self.parameters, values)) for values in product(*self.parameters.values())]
-        return [(values, made(self.law, values)) for values in all_values]
+        for values in product(*self.parameters.values()):
+            yield made(self.law, dict(zip(self.parameters, values)))
+
+    def columns(self) -> dict[str, NDArray]:
+        """Parameters of every law by key, each (count,)."""
+        inner, found = self.count, {}
+        for key, values in self.parameters.items():
+            inner //= len(values)
+            found[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
+        return found
 
     @property
     def stress_ratio(self) -> float:
@@ -90,12 +106,13 @@ class Output:
     map: tuple[Spread, Spread] | None = None
 
     @property
-    def inside(self) -> tuple[tuple[float, float], ...]:
-        """All points inside: first the map's, by rows of Y, then the single ones."""
+    def inside(self) -> NDArray[np.float64]:
+        """All points inside, (n, 2): first the map's, by rows of Y, then the single ones."""
+        single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
         if self.map is None:
-            return self.points
-        X, Y = (np.linspace(axis.first, axis.last, axis.count) for axis in self.map)
-        return (*((x, y) for y in Y.tolist() for x in X.tolist()), *self.points)
+            return single
+        X, Y = np.meshgrid(*(np.linspace(axis.first, axis.last, axis.count) for axis in self.map))
+        return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.solvers.parameters import parameters, values
 
@@ -44,17 +45,20 @@ def contradictions(scene: Scene) -> list[str]:
 
 
 def oddities(scene: Scene) -> list[str]:
-    """What looks unusual, one sentence each: the unit may be another than meant."""
-    return [
-        f"{path} = {value:g} {unit} is unusual; is its unit as meant?"
-        for path, value, unit, (low, high) in _usual(scene)
-        if not low <= value <= high
-    ]
+    """What looks unusual, one sentence a key: the unit may be another than meant."""
+    found = []
+    for path, numbers, unit, (low, high) in _usual(scene):
+        odd = [f"{value:g}" for value in numbers if not low <= value <= high]
+        if len(odd) == 1:
+            found.append(f"{path} = {odd[0]} {unit} is unusual; is its unit as meant?")
+        elif odd:
+            found.append(f"{path} = {listed(odd)} {unit} are unusual; is their unit as meant?")
+    return found
 
 
-def _usual(scene: Scene) -> Iterator[tuple[str, float, str, tuple[float, float]]]:
+def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:
     """Numbers of a scene with their path, unit and where they usually lie."""
-    yield "friction.pre_sliding", scene.friction.pre_sliding, "m", _STROKE
+    yield "friction.pre_sliding", [scene.friction.pre_sliding], "m", _STROKE
     one = {"solid": scene.solid, "punch": scene.punch.profile}
     given = [
         *((name, parameters(model), values(model)) for name, model in one.items()),
@@ -63,5 +67,5 @@ def _usual(scene: Scene) -> Iterator[tuple[str, float, str, tuple[float, float]]
     for section, known, found in given:
         for key, parameter in known.items():
             if parameter.usual:
-                for value in np.atleast_1d(found[key]).tolist():
-                    yield f"{section}.{key}", value, parameter.unit, parameter.usual
+                numbers = np.atleast_1d(found[key]).tolist()
+                yield f"{section}.{key}", numbers, parameter.unit, parameter.usual

@@ -1,17 +1,13 @@
-"""Numbers with units: strings such as "193 GPa" become SI numbers through pint."""
+"""Numbers with units: texts such as "193 GPa" become SI numbers, rarer units by pint's table."""
 
-import re
 import sys
 from functools import lru_cache
 from math import isfinite
 from typing import Any
 
-from galinx.app.scene.metric import in_unit
-
-#: A number, then a unit. pint alone would multiply what stands side by side: "0.5.5" is no 0.25.
-_FORM = re.compile(
-    r"\s*[-+]?(\d+\.?\d*|\.\d+|nan|inf)([eE][-+]?\d+)?\s*(1\s*/\s*)?([^\W\d]|%|$).*", re.DOTALL
-)
+from galinx.app.scene.excerpt import excerpt
+from galinx.app.scene.metric import in_units
+from galinx.app.scene.quantity import Quantity, Units, quantity, units
 
 
 @lru_cache(maxsize=1)
@@ -47,40 +43,58 @@ def to_si(value: Any, unit: str) -> float:
     """
     wanted = f"a number in {unit} or a string with a unit" if unit else "a dimensionless number"
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"found {value!r}, expected {wanted}")
-    if isinstance(value, str):
-        value = _parse(value, unit, wanted)
+        raise ValueError(f"found {excerpt(value)}, expected {wanted}")
     try:
-        value = float(value)
+        number = _parsed(value, unit, wanted) if isinstance(value, str) else float(value)
     except OverflowError:
-        value = float("inf")
-    if not isfinite(value):
-        raise ValueError(f"found {value!r}, expected {wanted} that is finite")
-    return value
+        number = float("inf")
+    if not isfinite(number):
+        raise ValueError(f"found {excerpt(value)}, expected {wanted} that is finite")
+    return number
 
 
-def _parse(text: str, unit: str, wanted: str) -> float:
-    if not _FORM.fullmatch(text):
-        raise ValueError(f"found {text!r}, expected {wanted}")
-    metric = in_unit(text, unit)
-    if metric is not None:
-        return metric
-
-    import tokenize
-
-    pint = _pint()
+def _parsed(text: str, unit: str, wanted: str) -> float:
     try:
-        quantity = _registry().Quantity(text)
-        if not unit and not quantity.unitless and quantity.dimensionless:
-            return float(quantity.to("").magnitude)
-        return float(quantity.to(unit).magnitude)
-    except pint.DimensionalityError as error:
-        raise ValueError(
-            f"found {text!r} of dimension {error.dim1 or error.units1}, expected {wanted}"
-        ) from None
-    except (pint.UndefinedUnitError, pint.DefinitionSyntaxError) as error:
-        raise ValueError(f"found {text!r} ({error}), expected {wanted}") from None
-    except (ValueError, TypeError, AttributeError, AssertionError, ArithmeticError,
-            RecursionError, SyntaxError, KeyError, tokenize.TokenError):  # fmt: skip
-        # pint evaluates the text and lets through whatever its tokeniser raises.
-        raise ValueError(f"found {text!r}, expected {wanted}") from None
+        given = quantity(text)
+    except ValueError:
+        form = ": a number, then units with * / ^ between them" if unit else ""
+        raise ValueError(f"found {excerpt(text)}, expected {wanted}{form}") from None
+    metric = in_units(given, units(unit))
+    try:
+        return _by_pint(given, units(unit)) if metric is None else metric
+    except ValueError as error:
+        raise ValueError(f"found {excerpt(text)} {error}, expected {wanted}") from None
+
+
+def _by_pint(given: Quantity, wanted: Units) -> float:
+    """A quantity in other units, by pint's table; of pint's parser, which evaluates, nothing is used.
+
+    Raises:
+        ValueError: a unit is unknown, or what they measure differs; angles, counts and bits are no
+            numbers.
+    """
+    table, one, other = _registry(), _container(given.units), _container(wanted)
+    try:
+        if table.get_root_units(one)[1] == table.get_root_units(other)[1]:
+            return float(table.Quantity(given.number, one).to(other).magnitude)
+    except _pint().errors.PintError:
+        raise ValueError("with units that have no zero and cannot be multiplied") from None
+    dimension = table.get_dimensionality(one)
+    counted = f"in {table.get_root_units(one)[1]}" if given.units else "without a unit"
+    raise ValueError(f"of dimension {dimension}" if dimension else counted)
+
+
+def _container(product: Units) -> Any:
+    """pint's own form of a product of units.
+
+    Raises:
+        ValueError: one is unknown.
+    """
+    exponents: dict[str, int] = {}
+    for name, exponent in product:
+        try:
+            known = _registry().get_name(name)
+        except _pint().UndefinedUnitError:
+            raise ValueError(f"with the unknown unit {excerpt(name)}") from None
+        exponents[known] = exponents.get(known, 0) + exponent
+    return _pint().util.UnitsContainer(exponents)

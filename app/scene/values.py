@@ -4,6 +4,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from galinx.app.scene.excerpt import excerpt
 from galinx.app.scene.units import to_si
 from galinx.solvers.parameters import Range
 
@@ -27,7 +28,8 @@ class Kind(Protocol):
 
 def _within(value: float, bounds: Range) -> float:
     if value not in bounds:
-        raise ValueError(f"found {value:g}, expected {bounds}")
+        found = excerpt(value) if isinstance(value, int) else f"{value:g}"
+        raise ValueError(f"found {found}, expected {bounds}")
     return value
 
 
@@ -64,7 +66,7 @@ class Whole:
 
     def __call__(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int):
-            raise ValueError(f"found {value!r}, expected a whole number")
+            raise ValueError(f"found {excerpt(value)}, expected a whole number")
         return int(_within(value, self.bounds))
 
     def schema(self) -> dict[str, Any]:
@@ -95,7 +97,7 @@ class Text:
 
     def __call__(self, value: Any) -> str:
         if not isinstance(value, str):
-            raise ValueError(f"found {value!r}, expected a text")
+            raise ValueError(f"found {excerpt(value)}, expected a text")
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -110,7 +112,7 @@ class Choice:
 
     def __call__(self, value: Any) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise ValueError(f"found {value!r}, expected {_one_of(self.options)}")
+            raise ValueError(f"found {excerpt(value)}, expected {_one_of(self.options)}")
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -126,7 +128,7 @@ class Choices:
 
     def __call__(self, value: Any) -> tuple[str, ...]:
         if not isinstance(value, list):
-            raise ValueError(f"found {value!r}, expected a list of names")
+            raise ValueError(f"found {excerpt(value)}, expected a list of names")
         if len(value) < self.at_least:
             raise ValueError(f"found an empty list, expected {_one_of(self.options)}")
         one = Choice(self.options)
@@ -153,7 +155,7 @@ class Pressure:
             return value
         if not isinstance(value, list) or len(value) < 2:
             raise ValueError(
-                f'found {value!r}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]'
+                f'found {excerpt(value)}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]'
             )
         if not all(isinstance(pair, list) and len(pair) == 2 for pair in value):
             raise ValueError("expected a list of pairs [X/a, σ_YY/(N/2a)], dimensionless")
@@ -178,7 +180,7 @@ class Points:
 
     def __call__(self, value: Any) -> tuple[tuple[float, float], ...]:
         if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
-            raise ValueError(f"found {value!r}, expected a list of pairs [X/a, Y/a]")
+            raise ValueError(f"found {excerpt(value)}, expected a list of pairs [X/a, Y/a]")
         return tuple((to_si(X, ""), _below(to_si(Y, ""))) for X, Y in value)
 
     def schema(self) -> dict[str, Any]:
@@ -200,7 +202,8 @@ class Map:
     def __call__(self, value: Any) -> tuple[Spread, Spread]:
         if not isinstance(value, dict) or set(value) != {"X", "Y"}:
             raise ValueError(
-                f"found {value!r}, expected {{X = [from, to, number], Y = [from, to, number]}}, over a"
+                f"found {excerpt(value)}, expected {{X = [from, to, number], Y = [from, to, number]}}, "
+                "over a"
             )
         X, Y = (self._range(axis, value[axis]) for axis in ("X", "Y"))
         _below(Y.last)
@@ -209,11 +212,11 @@ class Map:
     @staticmethod
     def _range(axis: str, value: Any) -> Spread:
         if not isinstance(value, list) or len(value) != 3:
-            raise ValueError(f"{axis}: found {value!r}, expected [from, to, number]")
+            raise ValueError(f"{axis}: found {excerpt(value)}, expected [from, to, number]")
         first, last, count = (to_si(entry, "") for entry in value)
         if not first < last or count != int(count) or not 2 <= count <= 2000:
             raise ValueError(
-                f"{axis}: found {value!r}, expected [from, to, number], from < to, 2 ... 2000"
+                f"{axis}: found {excerpt(value)}, expected [from, to, number], from < to, 2 ... 2000"
             )
         return Spread(first, last, int(count))
 

@@ -64,7 +64,7 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
 
 
 def _print(target: Target, sheets: list[Sheet], attributes: dict[str, Any], quiet: bool) -> None:
-    from galinx.postprocess.tables import new_console, print_sheet
+    from galinx.app.console.sheets import new_console, print_sheet
 
     text = StringIO()
     for console in [new_console(text)] + [new_console(colours=colours())] * (not quiet):

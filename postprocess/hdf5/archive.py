@@ -50,6 +50,8 @@ class Writer:
         self._bytes = 0
         self._names: list[str] = []
         self._written: list[tuple[str, slice, int]] = []
+        #: Reserved datasets: opened anew for every write, they would read and write a chunk each time.
+        self._open: dict[str, h5py.Dataset] = {}
 
     def __enter__(self) -> "Writer":
         with self._told():
@@ -96,13 +98,15 @@ class Writer:
                 name, shape, dtype, chunks=(rows, *shape[1:]), fletcher32=True
             )
             self._describe(name, dataset, about)
+            self._open[name] = dataset
             self._bytes += dataset.size * dataset.dtype.itemsize
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
         """Write rows of a reserved dataset."""
         with self._told():
-            self._file[name][rows] = values
-            self._written.append((name, rows, _checksum(self._file[name].dtype, values)))
+            dataset = self._open[name]
+            dataset[rows] = values
+            self._written.append((name, rows, _checksum(dataset.dtype, values)))
 
     def finish(self, attributes: dict[str, Any]) -> None:
         """Complete the archive and give it its name; ``attributes`` are the root's own."""
@@ -128,8 +132,9 @@ class Writer:
     def _compare(self) -> None:
         """A full disk can leave a file that opens and lists its datasets: compare the content."""
         with h5py.File(self._new.temporary, "r", locking=False) as file:
+            datasets = {name: file[name] for name, _, _ in self._written}
             for name, rows, checksum in self._written:
-                if _checksum(file[name].dtype, file[name][rows]) != checksum:
+                if _checksum(datasets[name].dtype, datasets[name][rows]) != checksum:
                     raise UnwritableArchive(
                         f"cannot write {self.path}: {name} reads back differently; is the disk full?"
                     )

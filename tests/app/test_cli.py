@@ -17,6 +17,7 @@ from galinx.app.cli import cli
         (("run", "bad.toml"), "solid.nu"),
         (("show", "bad.toml"), "damaged"),
         (("frobnicate",), "No such command"),
+        (("./bad.toml",), "No such command"),
     ],
 )
 def test_bad_input_ends_with_one_message(tmp_path, ranks, arguments, message):

@@ -1,7 +1,9 @@
 """Memory that is planned, and the solver that goes with it."""
 
 import re
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from galinx import template
@@ -23,6 +25,38 @@ def test_planned_memory_covers_what_runs_took(degree, cuts, measured):
     scene = template("tables4_5", mesh | {"solve.tolerance": 1e-4, "motion.c": 0.0})
     planned = float(re.search(r"and (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
     assert 0.95 * measured < planned < 1.6 * measured
+
+
+SIF, SURFACE = ["friction", "sif"], ["friction", "sif", "surface"]
+
+
+@pytest.mark.parametrize(
+    "quantities, speeds, laws, positions, strokes, seconds",
+    [
+        (["friction"], 5000, 1, 2, 3, 0.27), (["friction"], 1, 20000, 1, 1, 0.88),
+        (["friction"], 10, 100, 100, 1, 0.47), (["friction"], 1000, 1, 1000, 1, 1.64),
+        (SIF, 5000, 1, 2, 3, 0.90), (SIF, 10000, 1, 2, 3, 1.68), (SIF, 10, 100, 100, 1, 0.78),
+        (SIF, 1, 20000, 1, 1, 1.10), (SIF, 1000, 1, 1000, 1, 4.25),
+        (SURFACE, 5000, 1, 2, 3, 3.15), (SURFACE, 10, 100, 20, 1, 0.95),
+    ],
+)  # fmt: skip
+def test_planned_seconds_are_within_a_factor_2_of_what_runs_took(
+    quantities, speeds, laws, positions, strokes, seconds
+):
+    """Processor time of runs without finite elements, on one core; run.sh takes another 0.1 s."""
+    scene = template("tables4_5", {"output.quantities": quantities})
+    motion = replace(
+        scene.motion, c=tuple(np.linspace(0.01, 0.9, speeds)), strokes=("forward",) * strokes,
+        X_over_L=tuple(np.linspace(0.1, 0.9, positions)),
+    )  # fmt: skip
+    values = scene.friction.parameters | {"mu_c": tuple(np.linspace(0.1, 1.0, laws))}
+    methods = ("closed_form",) * (len(quantities) > 1)
+    scene = replace(
+        scene, motion=motion, friction=replace(scene.friction, parameters=values),
+        solve=replace(scene.solve, methods=methods),
+    )  # fmt: skip
+    planned = float(re.search(r"about (\S+) s", expense(make_plan(scene)))[1])
+    assert 0.5 < planned / (seconds + 0.1) < 2.0
 
 
 def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):

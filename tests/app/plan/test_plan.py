@@ -1,16 +1,21 @@
 """What is planned of a scene, skipped, warned of and refused."""
 
+import time
+import tracemalloc
+
 import numpy as np
 import pytest
 from support import HOME
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.plan import task
+from galinx.app.plan import cost, task
+from galinx.app.plan import states as states_of
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, speeds
 from galinx.app.plan.words import lines
 from galinx.app.scene.read import read
+from galinx.solvers.solids.isotropic import Isotropic
 
 
 def test_runge_kutta_beyond_its_stability_names_the_exact_integrator():
@@ -124,3 +129,59 @@ def test_every_state_lies_on_its_archived_loop():
         at = np.argmin(np.abs(states.travel[here] - states.columns["X_over_L"][i]))
         f = states.loops[states.loop[i], here][at]
         assert f == pytest.approx(states.columns["f"][i], rel=1e-14)
+
+
+CLOSED = {"solve.methods": ["closed_form"], "output.quantities": ["friction", "sif"]}
+
+
+def test_of_thousands_of_speeds_few_are_looked_at_and_named(monkeypatch):
+    asked, response = [], Isotropic.response
+    monkeypatch.setattr(Isotropic, "response", lambda self, c: asked.append(c) or response(self, c))
+    speeds = np.random.default_rng(0).permutation(np.linspace(0.0, 0.999, 5000)).tolist()
+    scene = template("tables4_5", CLOSED | {"motion.c": speeds})
+    formal, near = make_plan(scene).warnings
+    assert len(asked) < 100
+    assert formal.startswith("c = 0.919464, 0.919664, ") and ", … 0.999 (399 in all) is not" in formal
+    assert near.startswith("c = 0.910") and "within 1 %" in near and len(formal + near) < 500
+    with pytest.raises(BadInput, match=r"\(399 in all\) is not below") as caught:
+        make_plan(template("tables4_5", {"motion.c": speeds}))
+    assert len(str(caught.value)) < 500
+
+
+def test_values_off_by_their_unit_are_warned_of_in_one_sentence():
+    (warning,) = make_plan(template("tables4_5", CLOSED | {"friction.mu_c": [*range(1, 1000)]})).warnings
+    assert warning.startswith("friction.mu_c = 11, 12,") and "… 999 (989 in all)" in warning
+
+
+def test_a_product_of_lists_that_memory_does_not_hold_is_refused():
+    many = np.linspace(0.01, 0.9, 1000).tolist()
+    lists = {key: many for key in ("friction.mu_c", "friction.delta", "motion.X_over_L", "motion.c")}
+    with pytest.raises(BadInput, match="shorten") as caught:
+        make_plan(template("tables4_5", CLOSED | lists))
+    assert "3e+12 states" in str(caught.value)
+
+
+def test_a_million_states_are_planned_in_a_moment():
+    many = np.linspace(0.01, 0.9, 1000).tolist()
+    started = time.monotonic()
+    plan = make_plan(template("tables4_5", CLOSED | {"friction.mu_c": many, "motion.c": many}))
+    assert plan.states == 6_000_000 and time.monotonic() - started < 10.0
+
+
+def test_friction_holds_no_more_than_its_states(monkeypatch):
+    monkeypatch.setattr(states_of, "LOOPS", 10)
+    values = np.linspace(0.1, 1.0, 2000).tolist()
+    scene, told = template("tables4_5", CLOSED | {"friction.mu_c": values}), []
+    tracemalloc.start()
+    states = enumerate_states(scene, lambda laws, of: told.append((laws, of)))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    kept = sum(column.nbytes for column in states.columns.values()) + states.loops.nbytes
+    assert peak < 3 * kept and peak < cost.bytes_of_states(len(states)) + 2 * states.loops.nbytes
+    assert told == [(500 * i, 2000) for i in range(1, 5)]
+
+
+def test_speeds_of_one_degree_share_a_line():
+    scene = template("tables4_5", {"motion.c": [0.0, 0.1, 0.2, 0.85]})
+    (slow, fast) = (line for line in lines(scene, make_plan(scene)) if line.startswith("finite elements"))
+    assert "c = 0, 0.1, 0.2 (over c_s): degree 8" in slow and "c = 0.85 (over c_s): degree 9" in fast

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from support import HOME
+from support import HOME, at_most
 
 from galinx import compute
 from galinx.app.errors import BadInput
@@ -32,7 +32,11 @@ _WORDS = """0 -1 nan inf -inf 1e308 1e-308 -0.0 "" "ν" "193GPa" "25mm" [] {} [[
 ["fem"] ["forward"] 0.5 1e-9 0.999 1979-05-27 "closed_form" [[-1,-1],[1,-1]] [[0,-1]] "box" "graded"
 "traction" ["friction"] ["sif","interior"] "%s%n" "1lightyear" [0.3,"x"] 3 0.25 0.05 1e-3 1e-2"""
 
-VALUES = [*_WORDS.split(), "9" * 400]
+VALUES = [
+    *_WORDS.split(), "9" * 400, "9" * 5000, "0x" + "f" * 5000, "[" * 3000, "[" * 300 + "]" * 300,
+    "{a = 1}", "[{a = 1}]", '"1 Pa*9**9**9"', '"30 deg"', '"3 count"', '"5 %"', '"1 psi^9*psi^9"',
+    '"\\u001b[31m"', str([0.9 * i / 5000 for i in range(5000)]), str([*range(1, 2000)]),
+]  # fmt: skip
 
 
 @st.composite
@@ -61,6 +65,11 @@ def mutated(draw):
 @settings(max_examples=SCENES, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(text=mutated())
 def test_a_mutated_scene_runs_or_is_refused_with_a_message(text):
+    with at_most(60.0 if THOROUGH else 10.0):  # finite elements at several speeds take their time
+        tried(text)
+
+
+def tried(text):
     try:
         scene = parse(text)
         plan = make_plan(scene)
@@ -73,7 +82,7 @@ def test_a_mutated_scene_runs_or_is_refused_with_a_message(text):
             scene = replace(scene, solve=only)
         result = compute(scene)
     except BadInput as error:
-        assert str(error).strip() and "Traceback" not in str(error)
+        assert 0 < len(str(error).strip()) < 8000 and "Traceback" not in str(error)
         return
     data = result.data
     assert np.isfinite(data["states/f"]).all()

@@ -1,7 +1,9 @@
 """Scenes changed from outside."""
 
+import tomllib
+
 import pytest
-from support import SCENE
+from support import SCENE, at_most
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import changed, from_words
@@ -25,6 +27,21 @@ def test_words_are_toml_values_or_texts():
     }  # fmt: skip
 
 
+def test_long_lists_are_put_in_in_a_moment():
+    values = [0.9 * i / 10_000 for i in range(10_000)]
+    with at_most():
+        text = changed(
+            SCENE.read_text(encoding="utf-8"), {"motion.c": values, "x.y": [[1, 2.5], ["a", True]]}
+        )
+    assert 'y = [[1, 2.5], ["a", true]]' in text and f"c = {values}" in text
+
+
+def test_lists_of_tables_stay_what_they_are():
+    assert tomllib.loads(changed("", {"x.y": [{"a": 1}, {"a": [2, 3]}]})) == {
+        "x": {"y": [{"a": 1}, {"a": [2, 3]}]}
+    }
+
+
 @pytest.mark.parametrize("word", ["friction.mu_c", "=0.5", " =1"])
 def test_words_without_key_or_value_are_refused(word):
     with pytest.raises(BadInput, match=r"section\.key=value"):
@@ -40,3 +57,30 @@ def test_keys_name_section_and_key(key):
 def test_a_change_that_makes_no_sense_is_refused_like_any_scene():
     with pytest.raises(BadInput, match="did you mean mu_c"):
         read(SCENE, {"friction.mu_cc": 0.5})
+
+
+@pytest.mark.parametrize(
+    "word, message",
+    [
+        ("solid.E=" + "9" * 5000, "thousands of digits"),
+        ("solve.degree=" + "9" * 400, "found a whole number of about 400 digits, expected >= 1, <= 12"),
+        ("solve.degree=0x" + "f" * 6000, "found a whole number of about 7225 digits"),
+        ("solid.E=" + "[" * 3000, "solid.E .*: found '\\[+"),
+        ("motion.c=" + "[" * 3000 + "]" * 3000, "motion.c"),
+        ("motion.c=" + "[" * 300 + "]" * 300, "motion.c .*: found \\["),
+        ("friction.mu_c=[{a = 1}]", "mu_c .*: found {'a': 1}, expected"),
+        ("solid.E={a = " + "9" * 400 + "}", "found {'a': a whole number of about 400 digits}"),
+        ("title={a = 1}", "title: found {'a': 1}, expected a text"),
+        ("title.x=1", "found 'title' without keys"),
+        ("title=" + "a" * 100_000, "100000 characters"),
+        ("title=\udcff", "UTF-8"),
+        ("x" * 5000 + ".y=1", "no such section"),
+        ("solid." + "x" * 5000 + "=1", "no such key"),
+        ("solid.E=1 Pa*9**9**9", "a number, then units"),
+    ],
+    ids=lambda text: text[:12],
+)
+def test_what_is_long_deep_or_a_table_is_refused_with_a_short_message(word, message):
+    with pytest.raises(BadInput, match=message) as caught:
+        read(SCENE, {"title": ""} | from_words([word]))
+    assert len(str(caught.value)) < 600

@@ -5,12 +5,21 @@ import random
 import pytest
 
 from galinx.app.scene import units
-from galinx.app.scene.metric import _UNITS, in_unit
+from galinx.app.scene.metric import _UNITS, in_units
+from galinx.app.scene.quantity import quantity
+from galinx.app.scene.quantity import units as units_of
+
+
+def in_unit(text, unit):
+    return in_units(quantity(text), units_of(unit))
 
 
 def products(count):
     """Random numbers with products of metric units."""
-    choose, names = random.Random(5), [name for name in _UNITS if name != "μm"]  # not every pint has it
+    choose, names = (
+        random.Random(5),
+        [name for name in _UNITS if name not in ("μm", "%")],
+    )  # not every pint has them
     for _ in range(count):
         number = f"{choose.uniform(0.1, 1000.0):.6g}" + choose.choice(["", "e3", "e-7"])
         text = f"{number} " + choose.choice(["", "1/"]) + choose.choice(names)
@@ -37,8 +46,6 @@ def test_decimal_numbers_stay_what_they_are():
         assert in_unit(text, unit) == wanted
 
 
-@pytest.mark.parametrize(
-    "text", ["1 mm mm", "1 m/", "1 /m/", "1 inch", "1 * m", "m", "1 m^99", "1 m**", "1 N", "1 1/1/m", ""]
-)
+@pytest.mark.parametrize("text", ["1 inch", "1 N", "1 m*s/m", "1", "1 deg", "1 m/foo"])
 def test_what_is_not_metric_or_of_another_dimension_is_left_to_pint(text):
     assert in_unit(text, "m") is None

@@ -1,5 +1,7 @@
 """Scenes: what is read, and a message for each fault."""
 
+import re
+
 import numpy as np
 import pytest
 from support import SCENE
@@ -90,6 +92,25 @@ def test_what_looks_like_a_fault_and_is_none(changes):
 def test_text_that_is_not_toml_is_refused():
     with pytest.raises(BadInput, match="not TOML"):
         parse(TEXT.replace("[solve]", "[solve"))
+
+
+@pytest.mark.parametrize(
+    "line, message",
+    [
+        ("title = " + "9" * 5000, "thousands of digits"),
+        ("title = 0x" + "f" * 6000, "title: found a whole number of about 7225 digits"),
+        ("title = " + "[" * 3000 + "]" * 3000, "nested too deeply"),
+        ("title = " + "[" * 200 + "]" * 200, r"title: found \[+\.\.\.\]+, expected a text"),
+        ("title = {a = 1}", "title: found {'a': 1}, expected a text"),
+        ("solve = " + "9" * 400, "solve: found a whole number of about 400 digits, expected a section"),
+        ("\n".join(f"x{i} = 1" for i in range(10_000)), "10005 faults:.*and 9975 more"),
+    ],
+    ids=lambda text: text[:12],
+)
+def test_what_is_long_or_deep_is_refused_with_a_short_message(line, message):
+    with pytest.raises(BadInput, match=re.compile(message, re.DOTALL)) as caught:
+        parse(line)
+    assert len(str(caught.value)) < 4000
 
 
 def test_all_faults_come_in_one_message():

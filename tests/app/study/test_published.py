@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support import widest
 
+from galinx.app.console.sheets import new_console, print_sheet
 from galinx.app.study.published import (
     INTENSITIES,
     intensities,
@@ -14,7 +15,6 @@ from galinx.app.study.published import (
     table1_rows,
     table3,
 )
-from galinx.postprocess.tables import new_console, print_sheet
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.solids.isotropic import Isotropic
 

@@ -103,3 +103,25 @@ def test_an_archive_that_is_not_finished_leaves_nothing(tmp_path):
 def test_a_path_outside_the_table_of_fields_is_refused(tmp_path):
     with pytest.raises(KeyError):
         write(tmp_path / "a.h5", {"states/unknown": np.zeros(1)})
+
+
+def test_rows_are_written_without_reading_what_is_there(tmp_path, monkeypatch):
+    """A few rows at a time into a large dataset: HDF5 keeps the chunk that it is at."""
+    count, read = [0], archive.PatientFile.readinto
+
+    def counted(self, buffer):
+        count[0] += memoryview(buffer).nbytes
+        return read(self, buffer)
+
+    monkeypatch.setattr(archive.PatientFile, "readinto", counted)
+    values = np.arange(30_000.0)
+    with archive.Writer(tmp_path / "a.h5") as writer:
+        for name in ("states/f", "states/g"):
+            writer.reserve(name, values.shape)
+        for first in range(0, len(values), 100):
+            rows = slice(first, first + 100)
+            for name in ("states/f", "states/g"):
+                writer.write(name, rows, values[rows])
+        writer.finish(ATTRIBUTES)
+    assert count[0] < 2 * 2 * values.nbytes
+    np.testing.assert_array_equal(archive.read(tmp_path / "a.h5")[0]["states/g"], values)

@@ -1,0 +1,36 @@
+"""What a scene says, short enough for a message."""
+
+import reprlib
+from math import log10
+
+#: Bits of a whole number up to which its digits are shown; Python itself refuses 4300 digits.
+_BITS = 200
+
+
+class _Excerpt(reprlib.Repr):
+    """As Python writes values, cut where they are long or deep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel, self.maxlist, self.maxdict = 3, 6, 6
+        self.maxstring = self.maxother = 80
+
+    def repr_int(self, x: int, level: int) -> str:
+        bits = x.bit_length()
+        return repr(x) if bits <= _BITS else f"a whole number of about {round(bits * log10(2.0))} digits"
+
+
+#: A value for a message.
+excerpt = _Excerpt().repr
+
+
+def listed(texts: list[str], most: int = 8) -> str:
+    """Texts with commas between them, the middle of many left out."""
+    if len(texts) <= most:
+        return ", ".join(texts)
+    return f"{', '.join(texts[: most - 2])}, … {texts[-1]} ({len(texts)} in all)"
+
+
+def short(text: str, most: int = 80) -> str:
+    """A text, cut where it is long."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"

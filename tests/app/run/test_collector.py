@@ -1,0 +1,109 @@
+"""Small parts wait for one another, and nothing of the results depends on that."""
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx import template
+from galinx.app.plan import task
+from galinx.app.run import collector
+from galinx.app.run.flow import compute
+from galinx.app.run.judge import Judge
+from galinx.app.run.sinks import Memory
+from galinx.postprocess.compare import Comparison
+from galinx.postprocess.journal import Journal, Part, joined
+
+SPEEDS = 300
+MANY = {
+    "motion.c": np.linspace(0.0, 0.9, SPEEDS).tolist(),
+    "solve.methods": ["closed_form"],
+    "output.quantities": ["friction", "sif", "surface"],
+}
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """Results of which every speed was taken in alone."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(collector, "_PATIENCE", -1.0)
+        return computed("tables4_5", MANY).data
+
+
+def equal(data, other):
+    """The same to the last bit, but for wall times."""
+    assert data.keys() == other.keys()
+    for name in data.keys() - {"run/seconds"}:
+        one, two = np.asarray(data[name]), np.asarray(other[name])
+        same = one.tobytes() == two.tobytes() if one.dtype.kind == "f" else np.array_equal(one, two)
+        assert same, name
+
+
+class Counting(Memory):
+    """Counts what is written."""
+
+    writes = 0
+
+    def write(self, name, rows, values):
+        self.writes += name == "states/alpha"
+        super().write(name, rows, values)
+
+
+def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, monkeypatch):
+    monkeypatch.setattr(collector, "_PATIENCE", 1e9)
+    data = Counting()
+    with Journal(tmp_path / "a.h5", "key") as journal:
+        compute(template("tables4_5", MANY), data, None, journal)
+        assert journal.states == 6 * SPEEDS
+    assert data.writes == 2  # 1 000 states at once
+    equal(data, alone)
+
+
+def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypatch):
+    """Interrupted after the first part, then gone on with."""
+    monkeypatch.setattr(collector, "_PATIENCE", 1e9)
+    scene, target = template("tables4_5", MANY), tmp_path / "a.h5"
+    with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
+        journal.stop()
+        compute(scene, Memory(), None, journal)
+    solved, states = [], collector.Collector.take
+    monkeypatch.setattr(
+        collector.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)
+    )
+    data = Memory()
+    with Journal(target, "key", resume=True) as journal:
+        kept = journal.states
+        compute(scene, data, None, journal)
+    assert kept >= 1000 and sum(rows.stop - rows.start for rows in solved) == 6 * SPEEDS - kept
+    equal(data, alone)
+
+
+def test_nobody_waits_for_a_second(monkeypatch):
+    """With a clock that jumps, every part is taken in at once."""
+    now = iter(range(0, 10**9, 10))
+    monkeypatch.setattr(collector, "perf_counter", lambda: next(now))
+    data = Counting()
+    compute(template("tables4_5", MANY | {"motion.c": [0.1, 0.2, 0.3]}), data)
+    assert data.writes == 3
+
+
+def test_parts_join_in_order_and_the_worst_of_a_comparison_stays():
+    def part(first, value, record=None):
+        rows, values = slice(first, first + 2), np.array([first, first + 1.0])
+        return Part(rows, {"states/f": values}, [Comparison("a", "as", value)], record)
+
+    whole = joined([part(4, 1.0), part(6, np.nan), part(8, 3.0, {"speed": 1})])
+    assert whole.rows == slice(4, 10) and whole.data["states/f"].tolist() == [4, 5, 6, 7, 8, 9]
+    assert len(whole.comparisons) == 1 and np.isnan(whole.comparisons[0].value)
+    assert whole.record == {"speed": 1}
+
+
+def test_a_verdict_names_some_of_thousands_of_failures():
+    judge = Judge(template("tables4_5"), ())
+    judge.failures = [f"c = {i}: singular" for i in range(5000)]
+    verdict, reasons = judge.verdict()
+    assert verdict == "FAIL" and len(reasons) == 11 and reasons[-1] == "not solved, and 4990 more speeds"
+
+
+def test_chunks_have_the_states_of_all_speeds(monkeypatch, alone):
+    monkeypatch.setattr(task, "CHUNK_NUMBERS", 1)
+    equal(computed("tables4_5", MANY).data, alone)

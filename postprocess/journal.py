@@ -64,7 +64,7 @@ class Journal:
         self.folder = target.with_name(f".{target.name}.work")
         self._resume, self._overwrite = resume, overwrite
         self._lock: IO[str] | None = None
-        self._complete = self._stop = False
+        self._complete = False
 
     def __enter__(self) -> "Journal":
         try:
@@ -83,10 +83,14 @@ class Journal:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._complete or not any(self._files()):
-            shutil.rmtree(self.folder, ignore_errors=True)
+        self.leave()
         if self._lock:
             self._lock.close()
+
+    def leave(self) -> None:
+        """Tidy up for a process that ends, in order or at once: what is finished stays."""
+        if self._complete or not any(self._files()):
+            shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
     def states(self) -> int:
@@ -104,7 +108,6 @@ class Journal:
 
         Raises:
             UnwritableArchive: the file system refused.
-            KeyboardInterrupt: the run was asked to stop; the part is kept.
         """
         told = {"comparisons": [asdict(found) for found in part.comparisons], "record": part.record}
         path = self.folder / f"{part.rows.start:010d}-{part.rows.stop:010d}.npz"
@@ -115,17 +118,6 @@ class Journal:
             os.replace(temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
-        if self._stop:
-            raise KeyboardInterrupt
-
-    def stop(self, *_: object) -> None:
-        """Ask the run to stop when it keeps its next part, as a signal's handler; at once if asked again.
-
-        An exception out of a handler would meet HDF5 or MPI at work, or a destructor that drops it.
-        """
-        if self._stop:
-            raise KeyboardInterrupt
-        self._stop = True
 
     def complete(self) -> None:
         """The archive holds everything; the parts are no longer needed."""

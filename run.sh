@@ -8,9 +8,18 @@
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
+trap 'echo "error: interrupted" >&2; exit 3' INT TERM HUP
 home=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
+# The cores that this process may use; asked before, and without, the threads that each is to have.
+cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 # Another Python, with dolfinx of its own, and the mpirun beside it; nothing is installed for that one.
 python=${GALINX_PYTHON:-/usr/bin/python3}
+if [ -n "${GALINX_PYTHON:-}" ] &&
+  ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then
+  echo "error: GALINX_PYTHON is $python, expected a Python of version 3.11 or newer" >&2
+  exit 3
+fi
+python=$(command -v "$python")
 mpirun=mpirun
 [ ! -x "$(dirname "$python")/mpirun" ] || mpirun=$(dirname "$python")/mpirun
 
@@ -66,16 +75,15 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 # would take a quarter of a second each time.
 export OMPI_MCA_btl="${OMPI_MCA_btl:-self,vader}" OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}"
 export OMPI_MCA_ess_singleton_isolated="${OMPI_MCA_ess_singleton_isolated:-1}"
+# What another mpirun told its ranks is nothing to those that are started here.
+unset PMIX_RANK PMIX_NAMESPACE "${!OMPI_COMM_WORLD_@}" "${!PMI_@}" "${!PMIX_SERVER_@}"
 
-on_ranks() { # start the arguments on so many ranks
-  local ranks=$1
-  shift
-  if [ "$ranks" -gt "$(nproc)" ]; then
+allow_ranks() { # let mpirun start so many ranks
+  if [ "$1" -gt "$cores" ]; then
     # As Open MPI 4 and 5 want to be told; MPICH allows it anyway. Ranks that wait then give way, so it
     # would cost time where each rank has a core.
     export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
   fi
-  exec "$mpirun" -n "$ranks" "$@"
 }
 
 if [ "${1:-}" = test ]; then
@@ -83,11 +91,12 @@ if [ "${1:-}" = test ]; then
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
   # Files of tests side by side, as many as there are cores.
-  "$python" -m pytest -n "$(nproc --all)" --dist loadfile "$@"
+  "$python" -m pytest -n "$cores" --dist loadfile "$@"
   for argument in "$@"; do # tests that are named are run alone
     [ ! -e "${argument%%::*}" ] || exit 0
   done
-  on_ranks 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
+  allow_ranks 2
+  exec "$mpirun" -n 2 "$python" -m mpi4py -m pytest tests/mpi "$@"
 fi
 
 if [ "${1:-}" = bench ]; then
@@ -110,8 +119,10 @@ fi
 
 ranks=
 if [ "${1:-}" = -n ]; then
-  if ! [[ "${2:-}" =~ ^[1-9][0-9]*$ ]]; then
-    echo "error: -n ${2:-}: expected a number of ranks, as in ./run.sh -n 2 run SCENE.toml" >&2
+  # More on a core would only fill the machine; and bash counts in 64 bits.
+  most=$((16 * cores))
+  if ! [[ "${2:-}" =~ ^[1-9][0-9]{0,5}$ ]] || [ "$2" -gt "$most" ]; then
+    echo "error: -n ${2:-}: expected a number of ranks up to $most, as in ./run.sh -n 2 run SCENE.toml" >&2
     exit 2
   fi
   ranks=$2
@@ -119,8 +130,10 @@ if [ "${1:-}" = -n ]; then
 fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
+# -P: no file of the current folder is taken for a library. Signals wait until Python can take them.
+start=(env --block-signal=INT,TERM,HUP "$python" -P -m)
 if [ -n "$ranks" ]; then
-  on_ranks "$ranks" "$python" -P -m galinx "$@"
+  allow_ranks "$ranks"
+  exec "${start[@]}" galinx.app.process.job "$mpirun" "$ranks" "$python" "$@"
 fi
-# -P: no file of the current folder is taken for a library.
-exec "$python" -P -m galinx "$@"
+exec "${start[@]}" galinx "$@"

@@ -2,8 +2,8 @@
 
 import os
 import sys
-import time
 import traceback
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -15,6 +15,7 @@ from galinx.app.commands import begin, compute, look, options
 from galinx.app.console.program import as_called, program
 from galinx.app.console.streams import plain_streams
 from galinx.app.errors import BadInput, MachineFailure
+from galinx.app.process import link, stop
 from galinx.postprocess.errors import Occupied, UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
 
@@ -23,10 +24,6 @@ _FAILURES = (
     MachineFailure, UnwritableArchive, SolveError, MeshError, CompilerError, OSError, MemoryError,
 )  # fmt: skip
 
-
-#: Seconds that other ranks leave to rank 0: where all fail alike it says so once. Some mpiruns end all
-#: ranks when the first ends with a failure.
-_PATIENCE = 1.0
 
 #: What shells say of a program whose reader went away: 128 + SIGPIPE.
 _CUT_OFF = 141
@@ -75,36 +72,33 @@ def _run() -> None:
         sys.stdout.flush()
     except (click.ClickException, BadInput, Occupied, UnreadableArchive) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        if ranks.is_root():  # every rank reads the same input and comes here
-            _complain(message)
-        else:
-            time.sleep(_PATIENCE)
-        sys.exit(errors.BAD_INPUT)
+        _stop(message, errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
+        link.end(_CUT_OFF)
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
-    except click.exceptions.Abort:
-        _stop("interrupted; nothing was written")
+    except stop.Asked:
+        stop.end(stop.NOTHING)
+    except ImportError as error:
+        _stop(errors.unavailable(error))
     except _FAILURES as error:
         _stop(str(error) or "out of memory")
     except Exception as error:
         traceback.print_exc()
         _stop(f"internal failure on rank {ranks.rank()}: {error}")
+    stop.too_late()
+    link.end(status)
     sys.exit(status)
 
 
-def _complain(message: str) -> None:
-    print(f"error: {message}", file=sys.stderr, flush=True)
-
-
-def _stop(message: str) -> NoReturn:
-    """End at once with a failure that other ranks may not share.
+def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
+    """End at once, and with this rank all others: they may not have met the failure.
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
-    if not ranks.is_root():
-        time.sleep(_PATIENCE)
-    _complain(message)
-    sys.stdout.flush(), sys.stderr.flush()
-    if ranks.size() > 1:
-        ranks.abort(errors.FAILURE)
-    os._exit(errors.FAILURE)
+    stop.fail(status, message)
+    with suppress(OSError):
+        sys.stdout.flush()
+    sys.stderr.flush()
+    if status == errors.FAILURE and ranks.size() > 1 and not link.is_there():
+        ranks.abort(status)
+    os._exit(status)

@@ -1,5 +1,6 @@
 """Failures with an exit status of their own."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -22,10 +23,17 @@ def finite_elements_installed() -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        raise MachineFailure(
-            f"finite elements need {error.name}, which is not installed; "
+        raise MachineFailure(f"finite elements: {unavailable(error)}") from error
+
+
+def unavailable(error: ImportError) -> str:
+    """What to do where a library is missing, or is there and cannot be loaded."""
+    if isinstance(error, ModuleNotFoundError):
+        return (
+            f"{error.name} is not installed for {sys.executable}; "
             "./run.sh in galinx's folder installs what is missing, or see its docs/install.md"
-        ) from error
+        )
+    return f"a library cannot be loaded: {error}"
 
 
 #: Exit statuses of every command.

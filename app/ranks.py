@@ -1,28 +1,57 @@
-"""What the command line knows of MPI without importing it."""
+"""What the command line knows of MPI, without importing it where there is only one process."""
 
 import os
+from functools import lru_cache
+
+#: What Open MPI, MPICH and Slurm tell every rank: its number, and how many there are.
+_RANKS = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
+_SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
+
+_trusted = False
 
 
-def _from_environment(*names: str) -> int | None:
-    for name in names:
-        if name in os.environ:
-            return int(os.environ[name])
-    return None
+def from_environment() -> tuple[int, int]:
+    """Rank and size as the environment says: it may be that of another program."""
+    rank, size = (
+        next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), default)
+        for names, default in ((_RANKS, 0), (_SIZES, 1))
+    )
+    return rank, size
+
+
+def trust_environment() -> None:
+    """The environment speaks of this program's own mpirun, so MPI need not be asked."""
+    global _trusted
+    _trusted = True
+
+
+@lru_cache(maxsize=1)
+def _known() -> tuple[int, int]:
+    """Rank and size as MPI says, which is only asked where the environment speaks of it."""
+    if _trusted:
+        return from_environment()
+    if by_mpirun():
+        try:
+            from mpi4py import MPI
+        except ImportError:
+            return 0, 1
+        return MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
+    return 0, 1
 
 
 def size() -> int:
     """Number of ranks that mpirun started, 1 without it."""
-    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
+    return _known()[1]
 
 
 def by_mpirun() -> bool:
-    """Was this process started by mpirun, though perhaps alone?"""
-    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") is not None
+    """Does this process look as if mpirun had started it, perhaps alone?"""
+    return any(name in os.environ for name in (*_RANKS, *_SIZES))
 
 
 def rank() -> int:
     """Number of this rank, 0 without mpirun."""
-    return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0
+    return _known()[0]
 
 
 def is_root() -> bool:

@@ -28,7 +28,11 @@ the folder you are in. Exit status:
 | 0 | good |
 | 1 | the verdict is FAIL, or an archive contradicts itself |
 | 2 | bad input: the message says which key, option or part of an archive, and what was expected |
-| 3 | failure of program or machine |
+| 3 | failure of program or machine, or interrupted |
+
+SIGINT (Ctrl-C), SIGTERM and SIGHUP end a command at once, with status 3 and one message, whichever of
+several processes they reach; so does a rank that is killed. What a run has finished is kept for
+`--resume`. Signals that were ignored when the command was started, as by `nohup`, stay ignored.
 
 A file appears under its name when it is whole. What is made from an archive is made again unasked; what
 galinx did not make, scenes and archives are replaced with `--overwrite` only. Files that a command reads,
@@ -41,7 +45,7 @@ Words that `run.sh` knows besides the commands:
 | `./run.sh test` | run all tests, those on two ranks included |
 | `./run.sh bench` | measure run time against error, see [Benchmarks](benchmarks.md) |
 | `./run.sh docs` | write these reference pages and build all pages as HTML into `site/` |
-| `./run.sh -n RANKS COMMAND …` | run a command on several MPI ranks of this machine |
+| `./run.sh -n RANKS COMMAND …` | run a command on MPI ranks of this machine, up to 16 a core |
 
 Before the command stand
 

@@ -1,6 +1,26 @@
 """``python3 -m galinx``: the command line."""
 
-from galinx.app.cli import run_from_shell
+import sys
+
+if __name__ == "__main__" and not sys.flags.safe_path:
+    del sys.path[0]  # the current folder, where libraries are not to be looked for
+
+from galinx.app import errors
+from galinx.app.process import stop
+from galinx.app.process.begin import begin, refuse
+
+
+def main() -> None:
+    """Run the command line; a library that is missing is said, whichever it is."""
+    try:
+        begin()
+        from galinx.app.cli import run_from_shell
+    except ImportError as error:
+        refuse(errors.unavailable(error))
+    except stop.Asked:
+        stop.end(stop.NOTHING)
+    run_from_shell()
+
 
 if __name__ == "__main__":
-    run_from_shell()
+    main()

@@ -82,7 +82,7 @@ class Journal:
         #: How many of the parts to go on with are damaged, or another run's: as good as not kept.
         self.damaged = 0
         self._rows: set[tuple[int, int]] = set()
-        self._complete = self._stop = False
+        self._complete = False
 
     def __enter__(self) -> "Journal":
         try:
@@ -101,10 +101,14 @@ class Journal:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._complete or not self._files():
-            shutil.rmtree(self.folder, ignore_errors=True)
+        self.leave()
         if self._lock:
             self._lock.close()
+
+    def leave(self) -> None:
+        """Tidy up for a process that ends, in order or at once: what is finished stays."""
+        if self._complete or not any(self._files()):
+            shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
     def states(self) -> int:
@@ -122,7 +126,6 @@ class Journal:
 
         Raises:
             UnwritableArchive: the file system refused.
-            KeyboardInterrupt: the run was asked to stop; the part is kept.
         """
         path = self.folder / _name(part.rows)
         try:
@@ -134,17 +137,6 @@ class Journal:
         except OSError as error:
             raise refused(self.target, error) from error
         self._rows.add((part.rows.start, part.rows.stop))
-        if self._stop:
-            raise KeyboardInterrupt
-
-    def stop(self, *_: object) -> None:
-        """Ask the run to stop when it keeps its next part, as a signal's handler; at once if asked again.
-
-        An exception out of a handler would meet HDF5 or MPI at work, or a destructor that drops it.
-        """
-        if self._stop:
-            raise KeyboardInterrupt
-        self._stop = True
 
     def complete(self) -> None:
         """The archive holds everything; the parts are no longer needed."""

@@ -109,4 +109,4 @@ def test_an_installed_command_calls_itself_galinx(names_and_site, arguments, sai
 def test_the_command_is_declared(names_and_site):
     _, site = names_and_site
     told = next(Path(site).glob("*.dist-info/entry_points.txt")).read_text(encoding="utf-8")
-    assert "galinx = galinx.app.cli:run_from_shell" in told
+    assert "galinx = galinx.__main__:main" in told

@@ -2,12 +2,15 @@
 
 import os
 import subprocess
+import sys
 
 import pytest
 from support import FEW_DEGREES, HOME, SCENE, clean_environment
 
 #: Files that a user may have for reasons of their own, named like rooms and libraries of the program.
-NAMESAKES = ("app", "meshes", "solvers", "galinx", "numpy", "mpi4py", "click")
+NAMESAKES = (
+    "app", "meshes", "solvers", "numpy", "mpi4py", "click", "h5py", "gmsh", "socket", "json", "resource",
+)  # fmt: skip
 
 
 def test_without_rights_the_command_for_an_administrator_is_shown(tmp_path):
@@ -49,3 +52,53 @@ def test_files_of_the_current_folder_are_no_libraries(tmp_path, path, arguments)
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert (tmp_path / f"{SCENE.stem}.h5").exists() == ("run" in arguments)
+
+
+def test_python_alone_takes_no_file_of_the_current_folder_for_a_library(tmp_path):
+    for name in NAMESAKES:
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('no library')\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "galinx", "plan", str(SCENE)], cwd=tmp_path, env=clean_environment(),
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0 and not done.stderr
+
+
+def test_the_script_is_found_through_links_and_in_spite_of_cdpath(tmp_path):
+    (tmp_path / "galinx").symlink_to(HOME / "run.sh")
+    (tmp_path / "tree").symlink_to(HOME)
+    environment = clean_environment() | {"CDPATH": f"{tmp_path}:{HOME.parent}"}
+    for script in ("./galinx", "tree/run.sh"):
+        done = subprocess.run(
+            [script, "plan", str(SCENE)], cwd=tmp_path, env=environment,
+            capture_output=True, text=True, timeout=60,
+        )  # fmt: skip
+        assert done.returncode == 0 and done.stdout.startswith("do    friction") and not done.stderr
+
+
+@pytest.fixture
+def mpirun_that_tells(tmp_path):
+    """A Python with an mpirun beside it that starts nothing, and says what it was told."""
+    scripts = {
+        "python": f'exec {sys.executable} "$@"',
+        "mpirun": 'echo "$2 ${OMPI_MCA_rmaps_base_oversubscribe:-a core each}"; exit 5',
+    }
+    for name, text in scripts.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+        (tmp_path / name).chmod(0o755)
+    return tmp_path / "python"
+
+
+def test_ranks_share_cores_only_where_there_are_too_few(mpirun_that_tells):
+    cores = len(os.sched_getaffinity(0))
+    environment = clean_environment() | {"GALINX_PYTHON": str(mpirun_that_tells), "OMP_NUM_THREADS": "1"}
+    environment.pop("OMPI_MCA_rmaps_base_oversubscribe")
+    for ranks, told in ((cores, "a core each"), (cores + 1, "1")):
+        done = subprocess.run(
+            [str(HOME / "run.sh"), "-n", str(ranks), "plan", str(SCENE)], env=environment,
+            capture_output=True, text=True, timeout=60,
+        )  # fmt: skip
+        assert done.returncode == 3
+        assert done.stderr.splitlines() == [
+            f"{ranks} {told}", "error: mpirun could not start the ranks; its own words are above"
+        ]  # fmt: skip

@@ -1,6 +1,5 @@
 """Commands that compute: run, plan, paper, stress."""
 
-import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,8 @@ from galinx.app.commands import options
 from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import print_summary, print_times, say
-from galinx.app.errors import MachineFailure
+from galinx.app.errors import BadInput
+from galinx.app.process import stop
 from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
 
@@ -64,6 +64,8 @@ def _read(path: Path, changes: tuple[str, ...]) -> Any:
     """The scene with its changes, whose reader only those who change something pay for."""
     from galinx.app.scene.read import read
 
+    if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
+        raise BadInput(f"only one of several ranks could read {path}; expected a file")
     if not changes:
         return read(path)
     from galinx.app.scene.changes import from_words
@@ -76,22 +78,26 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress) -> s
     from galinx.app.run.flow import compute
     from galinx.postprocess.hdf5 import archive
 
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, journal.stop)
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
-            attributes = compute(scene, writer, progress, journal)
+            with stop.leaving(lambda: _left(journal), "what is finished is kept, go on with --resume"):
+                attributes = compute(scene, writer, progress, journal)
+                stop.too_late()
             progress.say("checking the archive")
             writer.finish(attributes)
             journal.complete()
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
-    except KeyboardInterrupt:
-        raise MachineFailure(f"interrupted; {_kept(journal)}") from None
     except UnwritableArchive as error:
         if type(error) is UnwritableArchive:  # others say themselves what is to be done
             raise UnwritableArchive(f"{error}; {_kept(journal)}") from error
         raise
     return attributes["verdict"]
+
+
+def _left(journal: Any) -> str:
+    """Keep what is finished when the process ends at once; what there is to say of it."""
+    journal.leave()
+    return _kept(journal)
 
 
 def _kept(journal: Any) -> str:

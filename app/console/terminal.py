@@ -9,6 +9,7 @@ from typing import Any
 
 from galinx.app import ranks
 from galinx.app.console.streams import plain
+from galinx.app.process import link
 
 
 def say(text: str, hang: int = 2) -> None:
@@ -19,7 +20,8 @@ def say(text: str, hang: int = 2) -> None:
 
 def colours() -> bool:
     """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
-    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    own = link.is_there() or not ranks.by_mpirun()
+    return own and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:

@@ -27,9 +27,12 @@ def test_bad_input_ends_with_one_message(tmp_path, ranks, arguments, message):
     assert done.stderr.count("error: ") == 1 and message in done.stderr
 
 
-def test_a_number_of_ranks_is_checked():
-    done = command("-n", "two", "plan", SCENE)
-    assert done.returncode == 2 and "expected a number of ranks" in done.stderr
+@pytest.mark.parametrize("count", ["two", "0", "-1", "2.0", "0x2", "", "5000", 20 * "9"])
+def test_a_number_of_ranks_is_checked(count):
+    done = command("-n", count, "plan", SCENE)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.startswith(f"error: -n {count}: expected a number of ranks up to ")
+    assert done.stderr.count("\n") == 1
 
 
 def test_a_failure_on_one_rank_ends_all(tmp_path):

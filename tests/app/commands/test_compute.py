@@ -6,6 +6,7 @@ import sys
 
 import h5py
 import numpy as np
+import pytest
 from support import FEW_DEGREES, HOME, SCENE, command
 
 from galinx import load
@@ -67,11 +68,13 @@ def test_plan_computes_nothing(tmp_path):
     assert done.returncode == 0 and "one factorisation" in said and not list(tmp_path.iterdir())
 
 
-def test_a_verdict_has_its_status(tmp_path):
+@pytest.mark.parametrize("ranks", [(), ("-n", "2")])
+def test_a_verdict_has_its_status(tmp_path, ranks):
     scene, target = HOME / "scenes" / "box.toml", tmp_path / "box.h5"
-    done = command("run", scene, "-o", target, "--set", "solve.tolerance=1e-3")
+    done = command(*ranks, "run", scene, "-o", target, "--set", "solve.tolerance=1e-3")
     assert done.returncode == 1 and "verdict: FAIL" in done.stdout
     assert "outer boundary" in done.stderr
+    assert all(line.startswith("warning: ") for line in done.stderr.splitlines())  # none is mpirun's
 
 
 def test_the_archive_holds_the_changed_scene(tmp_path):

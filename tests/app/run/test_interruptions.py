@@ -3,10 +3,12 @@
 import json
 import os
 import random
+import re
 import signal
 import subprocess
+import sys
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +21,14 @@ from galinx.postprocess.hdf5 import reader
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 
-#: Moments at which a run is killed; GALINX_THOROUGH=1 asks for as many as a release does.
-KILLS = 20 if os.environ.get("GALINX_THOROUGH") else 4
+#: GALINX_THOROUGH=1 asks for as many kills and signals as a release does.
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+#: The one message of a run that was stopped or killed.
+SAID = re.compile(
+    r"error: (interrupted|(rank [01] or its )?mpirun was killed( \(.*\))?)"
+    r"(; ((\d+ finished states are|what is finished is) kept, go on with --resume"
+    r"|nothing was (finished|written)))?\n"
+)
 
 #: A sweep of 6 speeds with two parts each: of 1000 states, and of the other 20.
 SWEEP = {
@@ -38,6 +46,14 @@ def sweep(tmp_path_factory):
     scene.write_text(template("tables4_5", SWEEP).text, encoding="utf-8")
     assert command("run", scene, "-o", target).returncode == 0
     return scene, contents(target), target
+
+
+@pytest.fixture(scope="module")
+def on_two_ranks(sweep, tmp_path_factory):
+    """What the sweep's archive has when two ranks made it."""
+    target = tmp_path_factory.mktemp("two") / "whole.h5"
+    assert command("-n", 2, "run", sweep[0], "-o", target).returncode == 0
+    return contents(target)
 
 
 def contents(path):
@@ -77,22 +93,66 @@ def wait_for_parts(folder, count=1):
         time.sleep(0.005)
 
 
-def test_killed_at_any_moment_and_resumed_gives_the_same_archive(sweep, tmp_path):
+def processes(target):
+    """Processes of the command that writes ``target``: ``galinx``, ``mpirun``, ranks ``0`` and ``1``."""
+    found = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "cmdline").read_text(encoding="utf-8").split("\0")
+            variables = (folder / "environ").read_text(encoding="utf-8").split("\0")
+        except (OSError, UnicodeDecodeError):
+            continue
+        if str(target) in words and re.search("python|mpirun", words[0]):
+            ranks = ("OMPI_COMM_WORLD_RANK=", "PMI_RANK=")
+            rank = next((text.split("=")[1] for text in variables if text.startswith(ranks)), None)
+            found["mpirun" if "mpirun" in words[0] else rank or "galinx"] = int(folder.name)
+    return found
+
+
+#: Number of ranks, who of them is hit, by which signal, after how many parts.
+HITS = [
+    (1, "galinx", signal.SIGHUP, 1), (1, "galinx", signal.SIGKILL, 3), (2, "mpirun", signal.SIGTERM, 2),
+    (2, "1", signal.SIGINT, 2), (2, "0", signal.SIGKILL, 2),
+]  # fmt: skip
+if THOROUGH:
+    draw = random.Random(3)
+    hit = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
+    HITS += [(1, "galinx", draw.choice(hit), draw.randrange(-3, 9)) for _ in range(60)]
+    HITS += [
+        (2, draw.choice(("galinx", "mpirun", "0", "1")), draw.choice(hit), draw.randrange(-3, 9))
+        for _ in range(140)
+    ]
+
+
+@pytest.mark.parametrize("count, who, number, parts", HITS)
+def test_whoever_is_hit_the_run_ends_in_order_and_is_resumed(
+    sweep, on_two_ranks, tmp_path, count, who, number, parts
+):
     scene, whole, _ = sweep
-    moments = random.Random(3)
-    resumed = 0
-    for n in range(KILLS):
-        target = tmp_path / f"{n}.h5"
-        with started("run", scene, "-o", target) as process:
-            time.sleep(moments.uniform(0.2, 2.2))
-            os.killpg(process.pid, signal.SIGKILL)
-        if not target.exists():
-            resumed += 1
-            done = command("run", scene, "-o", target, "--resume")
-            assert done.returncode == 0, done.stderr
-        same(contents(target), whole)
-        assert not list(tmp_path.glob(".*"))
-    assert resumed
+    target, ranks = tmp_path / "out.h5", ("-n", count) if count > 1 else ()
+    with started(*ranks, "run", scene, "-o", target) as process:
+        if parts > 0:
+            wait_for_parts(tmp_path, parts)
+        else:  # in the middle of its start
+            time.sleep(random.Random(parts).uniform(0.0, 1.5))
+        with suppress(KeyError, ProcessLookupError):  # it may not be there yet, or be done
+            os.kill(processes(target)[who], number)
+        _, errors = process.communicate(timeout=60)
+    deadline = time.monotonic() + 30.0
+    while processes(target):  # those that a killed one leaves behind
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    if who == "galinx" and number == signal.SIGKILL and process.returncode:
+        assert process.returncode == -signal.SIGKILL and not errors
+    elif process.returncode:
+        assert process.returncode == 3 and re.fullmatch(SAID, errors), errors
+    else:
+        assert target.exists() and not errors
+    if not target.exists():
+        done = command(*ranks, "run", scene, "-o", target, "--resume")
+        assert done.returncode == 0, done.stderr
+    same(contents(target), whole if count == 1 else on_two_ranks)
+    assert not list(tmp_path.glob(".*"))
 
 
 def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
@@ -113,30 +173,27 @@ def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
     same(contents(target), whole)
 
 
-def test_a_killed_rank_ends_the_job_and_the_rest_is_resumed(sweep, tmp_path):
-    scene, *_ = sweep
-    target = tmp_path / "out.h5"
-    with started("-n", "2", "run", scene, "-o", target) as process:
-        wait_for_parts(tmp_path, 2)
-        found = subprocess.run(["pgrep", "-f", f"galinx run {scene}"], capture_output=True, text=True)
-        (second,) = [pid for pid in found.stdout.split() if rank_of(pid) == "1"]
-        os.kill(int(second), signal.SIGKILL)
-        killed = time.monotonic()
-        process.communicate(timeout=30)
-        assert time.monotonic() - killed < 5.0
-    assert process.returncode != 0 and not target.exists()
-    done = command("-n", "2", "run", scene, "-o", target, "--resume")
-    assert done.returncode == 0, done.stderr
-    assert command("check", target).returncode == 0
+@pytest.mark.parametrize("ranks", [(), ("-n", "2")])
+def test_commands_that_keep_nothing_stop_in_order(tmp_path, ranks):
+    with started(*ranks, "paper", "-o", tmp_path / "out", "-v") as process:
+        assert process.stderr.readline()  # it has begun to work
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert errors.endswith("error: interrupted; nothing was written\n") and "Traceback" not in errors
+    assert not list((tmp_path / "out").glob("[!.]*"))
 
 
-def rank_of(pid):
-    try:
-        environment = Path(f"/proc/{pid}/environ").read_text(encoding="utf-8").split("\0")
-    except OSError:
-        return None
-    names = ("OMPI_COMM_WORLD_RANK=", "PMI_RANK=")
-    return next((e.split("=")[1] for e in environment if e.startswith(names)), None)
+def test_what_is_ignored_already_stays_ignored(tmp_path):
+    script = (
+        "import signal; from galinx.app.process import stop; stop.listen()\n"
+        "print([signal.getsignal(number) == signal.SIG_IGN for number in stop.SIGNALS])"
+    )
+    done = subprocess.run(
+        ["bash", "-c", "trap '' HUP; exec \"$@\"", "bash", sys.executable, "-c", script],
+        env=clean_environment(), capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.stdout == "[False, False, True]\n", done.stderr
 
 
 def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):

@@ -1,0 +1,71 @@
+"""What a process does first, before any library is imported that could fail."""
+
+import os
+import resource
+import sys
+import warnings
+from typing import Any, NoReturn
+
+from galinx.app import errors
+from galinx.app.process import link, stop
+
+#: Bytes of address space that finite elements need with all libraries; with less some wait for ever.
+_ADDRESS_SPACE = 10**9
+
+
+def begin() -> None:
+    """Make the process ready: signals, streams, warnings; or end it where it could do nothing."""
+    _open_streams()
+    stop.listen()
+    link.join()
+    _prepare_streams()
+    if any(option.startswith("error") for option in sys.warnoptions):
+        warnings.simplefilter("ignore")  # those of libraries are no errors of the user's
+    _check_machine()
+
+
+def refuse(message: str) -> NoReturn:
+    """End with a failure that all ranks share."""
+    stop.fail(errors.FAILURE, message)
+    sys.exit(errors.FAILURE)
+
+
+def _open_streams() -> None:
+    """What is closed becomes the null device: the next file would get its number, and all output."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            # The lowest number that is free is this one.
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+
+
+def _prepare_streams() -> None:
+    """Encodings that lack a character write another; a rank's streams are those of its job by now."""
+    sys.stdout, sys.stderr = _prepared(sys.stdout, 1), _prepared(sys.stderr, 2)
+    sys.stdout.reconfigure(line_buffering=os.isatty(1))
+
+
+def _prepared(stream: Any, number: int) -> Any:
+    if stream is None:  # it was closed
+        return os.fdopen(number, "w", encoding="utf-8", errors="replace", closefd=False)
+    stream.reconfigure(errors="replace")
+    return stream
+
+
+def _check_machine() -> None:
+    if sys.flags.optimize > 1:
+        refuse(
+            "Python leaves texts out that compilers of forms need; unset PYTHONOPTIMIZE, or set it to 1"
+        )
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < _ADDRESS_SPACE:
+        refuse(
+            f"the address space is limited to {limit / 1e6:.0f} MB, expected at least "
+            f"{_ADDRESS_SPACE / 1e6:.0f} MB; raise the limit (ulimit -v, in kB)"
+        )
+    if os.path.expanduser("~") == "~":
+        refuse(
+            f"no home folder is known: HOME is not set, and user {os.getuid()} has no entry in passwd; "
+            "set HOME to a folder that can be written"
+        )

@@ -1,0 +1,225 @@
+"""``run.sh -n``: starts mpirun, and says of all its ranks together how they ended.
+
+    python3 -P -m galinx.app.process.job MPIRUN RANKS PYTHON ARGUMENTS OF galinx
+
+Every rank has this process's output and error streams, and tells it on a line of its own, see
+:mod:`galinx.app.process.link`, with which status it ends, or that it was asked to stop. One that ends
+without a word was killed. What mpirun itself says counts only where no rank has come to speak.
+"""
+
+import json
+import os
+import re
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import IO, Any
+
+from galinx.app import errors
+from galinx.app.console.streams import plain
+from galinx.app.process import link, stop
+from galinx.app.process.begin import begin, refuse
+
+#: Seconds for ranks that are asked to stop, before they are killed: MPIs give them as much.
+_PATIENCE = 5.0
+#: Arguments that name what is open already: ranks have nothing of it.
+_OPEN = re.compile(r"/dev/(stdin)|/(?:dev|proc/self)/fd/(\d+)")
+
+
+class _Rank:
+    """A rank as its job sees it: its line, its process, and what it told."""
+
+    def __init__(self, line: socket.socket) -> None:
+        self.line, self._rest = line, b""
+        self.told: dict[str, Any] = {}
+        # Number of the process, user and group, as the kernel knows them.
+        found = line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
+        self._process = int.from_bytes(found[:4], sys.byteorder)
+        with suppress(OSError):
+            socket.send_fds(line, [b"."], [1, 2])
+
+    def listen(self) -> bool:
+        """Take in what the rank tells; False when it has ended."""
+        try:
+            found = self.line.recv(65536)
+        except OSError:
+            found = b""
+        *lines, self._rest = (self._rest + found).split(b"\n")
+        for text in lines:
+            self.told |= json.loads(text)
+        return bool(found)
+
+    def kill(self, number: int) -> None:
+        """Send a signal; only while the line is open, later the process may be another."""
+        with suppress(ProcessLookupError):
+            os.kill(self._process, number)
+
+    @property
+    def has_failed(self) -> bool:
+        """Does it say that it ends with a failure?"""
+        return self.told.get("status", errors.GOOD) >= errors.BAD_INPUT
+
+    @property
+    def is_root(self) -> bool:
+        return self.told.get("rank") == 0
+
+
+class Job:
+    """mpirun with its ranks, from start to end.
+
+    Args:
+        folder: for the job's own files.
+        command: mpirun and its arguments.
+    """
+
+    def __init__(self, folder: Path, command: list[str]) -> None:
+        self._server = socket.socket(socket.AF_UNIX)
+        self._server.bind(str(folder / "job"))
+        self._server.listen(1024)
+        self._said = (folder / "mpirun").open("w+b")
+        self._ranks: list[_Rank] = []
+        self._open: list[_Rank] = []
+        #: Why the job ends before its work is done.
+        self._cause = ""
+        self._deadline: float | None = None
+        self._signals = _signals()
+        self._mpirun = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=self._said, stderr=self._said,
+            env=os.environ | {link.VARIABLE: str(folder / "job")},
+            start_new_session=True,  # Ctrl-C is for this process to hand on
+        )  # fmt: skip
+
+    def run(self) -> int:
+        """Wait until all ranks have ended; the status of the job, whose reason was said."""
+        while self._mpirun.poll() is None:
+            self._wait()
+        self._deadline = self._deadline or time.monotonic() + _PATIENCE
+        while self._open:  # ranks whose mpirun was killed
+            self._wait()
+        return self._judged()
+
+    def _wait(self) -> None:
+        lines = {rank.line: rank for rank in self._open}
+        patience = None if self._deadline is None else max(0.0, self._deadline - time.monotonic())
+        wanted: list[Any] = [self._signals, self._server, *lines]
+        ready, _, _ = select.select(wanted, [], [], patience)
+        if not ready:
+            self._kill()
+        if self._signals in ready and set(self._signals.read(4096)) & set(stop.SIGNALS):
+            self._stop("interrupted")
+        if self._server in ready:
+            self._open.append(_Rank(self._server.accept()[0]))
+            self._ranks.append(self._open[-1])
+        for line in lines.keys() & set(ready):
+            self._hear(lines[line])
+
+    def _hear(self, rank: _Rank) -> None:
+        alive = rank.listen()
+        if rank.has_failed:
+            self._end()  # others would wait for it
+        elif "interrupted" in rank.told:
+            self._stop("interrupted")
+        elif not alive and "status" not in rank.told:
+            name = rank.told.get("rank", "?")
+            self._stop(f"rank {name} or its mpirun was killed (did the machine lack memory?)")
+        if not alive:
+            self._open.remove(rank)
+            if self._cause and rank.is_root:
+                self._end()
+
+    def _stop(self, cause: str) -> None:
+        """Let rank 0 end in order, and with it all."""
+        if not self._cause:
+            self._cause = cause
+            self._deadline = time.monotonic() + _PATIENCE
+            root = [rank for rank in self._open if rank.is_root]
+            if root:
+                root[0].kill(signal.SIGTERM)
+            else:
+                self._end()
+
+    def _end(self) -> None:
+        """Let mpirun end its ranks."""
+        self._deadline = self._deadline or time.monotonic() + _PATIENCE
+        if self._mpirun.poll() is None:
+            self._mpirun.terminate()
+
+    def _kill(self) -> None:
+        self._deadline = None
+        for rank in self._open:
+            rank.kill(signal.SIGKILL)
+        self._mpirun.kill()
+
+    def _judged(self) -> int:
+        root = next((rank for rank in self._ranks if rank.is_root), None)
+        told = root.told if root else {}
+        failed = next((rank for rank in self._ranks if rank.has_failed), None)
+        if root and root.has_failed:  # it has said why
+            return told["status"]
+        if "status" not in told:
+            stop.erase_bar()
+        if failed:
+            stop.complain(plain(failed.told["words"]))
+            return failed.told["status"]
+        if "status" in told:
+            return told["status"]
+        if self._ranks or self._cause:
+            stop.complain(f"{self._cause or 'mpirun was killed'}; {told.get('left', stop.NOTHING)}")
+        else:
+            self._said.seek(0)
+            sys.stderr.write(self._said.read().decode(errors="replace"))
+            stop.complain("mpirun could not start the ranks; its own words are above")
+        return errors.FAILURE
+
+
+def _signals() -> IO[bytes]:
+    """A stream of the numbers of signals as they come, children's ends among them."""
+    reader, writer = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    for number in (*stop.SIGNALS, signal.SIGCHLD):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
+    return open(reader, "rb", buffering=0)
+
+
+def _copied(argument: str, folder: Path) -> str:
+    """An argument, for which what is open already is copied: every rank reads all of it."""
+    found = _OPEN.fullmatch(argument)
+    number = int(found[2] or 0) if found else 1
+    if number not in (1, 2):
+        with suppress(OSError), open(number, "rb", closefd=False) as source:
+            copy = folder / argument.rpartition("/")[2]
+            with copy.open("wb") as target:
+                shutil.copyfileobj(source, target)
+            return str(copy)
+    return argument
+
+
+def main() -> None:
+    """Start a job as the command line says, and end with its status."""
+    # A job that is killed leaves no mpirun behind.
+    tied = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
+    try:
+        begin()
+        mpirun, count, python, *arguments = sys.argv[1:]
+        with TemporaryDirectory(prefix="galinx-") as name:
+            folder = Path(name)
+            given = [_copied(argument, folder) for argument in arguments]
+            galinx = [python, "-P", "-m", "galinx", *given]
+            status = Job(folder, [*tied, mpirun, "-n", count, *galinx]).run()
+    except stop.Asked:
+        stop.end(stop.NOTHING)
+    except OSError as error:
+        refuse(f"cannot start mpirun: {error}")
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

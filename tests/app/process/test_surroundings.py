@@ -1,0 +1,129 @@
+"""What a command meets before it can do anything: closed streams, encodings, limits, variables."""
+
+import os
+import stat
+import subprocess
+import sys
+
+import pytest
+from support import HOME, SCENE, clean_environment
+
+from galinx.app import ranks
+from galinx.postprocess.hdf5 import archive
+
+#: A run that needs no finite elements.
+RUN = ("run", str(SCENE), "-o", "x.h5", "--set", 'solve.methods=["closed_form"]')
+PLAN = ("plan", str(SCENE))
+on_ranks = pytest.mark.parametrize("count", [(), ("-n", "2")], ids=["alone", "two ranks"])
+
+
+def galinx(folder, *arguments, shell='"$@"', text=None, without=(), **variables):
+    """``./run.sh ARGUMENTS`` as a line of bash starts it, with other variables; its output as bytes."""
+    environment = clean_environment() | variables
+    for name in without:
+        environment.pop(name, None)
+    return subprocess.run(
+        ["bash", "-c", shell, "bash", str(HOME / "run.sh"), *arguments],
+        cwd=folder, env=environment, capture_output=True, timeout=120, input=text,
+    )  # fmt: skip
+
+
+def is_refused(done, status, *words):
+    """Did a command end with a status and one message of one line?"""
+    said = done.stderr.decode()
+    assert done.returncode == status, said
+    assert said.startswith("error: ") and said.count("\n") == 1 and not done.stdout, said
+    for word in words:
+        assert word in said
+
+
+@on_ranks
+def test_closed_streams_are_the_null_device(tmp_path, count):
+    done = galinx(tmp_path, *count, *RUN, shell='"$@" <&- >&- 2>&-')
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+    assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
+    is_refused(galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
+    assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
+
+
+@pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])
+def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
+    done = galinx(tmp_path, *count, "materials", PYTHONIOENCODING=encoding)
+    assert done.returncode == 0 and not done.stderr
+    assert ", ? = 0.25 (dimensionless)" in done.stdout.decode(encoding)
+
+
+@pytest.mark.parametrize("shell", ['"$@" /dev/stdin', '"$@" /dev/fd/0', '"$@" <(cat)'])
+def test_every_rank_reads_a_scene_that_is_no_file(tmp_path, shell):
+    done = galinx(tmp_path, "-n", "2", "plan", shell=shell, text=SCENE.read_bytes())
+    assert done.returncode == 0 and not done.stderr
+    assert b"ranks: 2" in done.stdout and done.stdout.count(b"cost ") == 1
+
+
+def test_a_scene_that_one_rank_alone_could_read_is_refused(tmp_path, monkeypatch):
+    from click.testing import CliRunner
+
+    from galinx.app.cli import cli
+    from galinx.app.errors import BadInput
+
+    os.mkfifo(tmp_path / "scene")
+    monkeypatch.setattr(ranks, "size", lambda: 2)
+    done = CliRunner().invoke(cli, ["plan", str(tmp_path / "scene")])
+    assert isinstance(done.exception, BadInput) and "only one of several ranks" in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    "variables",
+    [
+        {"PMI_RANK": "1", "PMI_SIZE": "4"},
+        {"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "1"},
+        {"PMI_RANK": "many", "PMI_SIZE": ""},
+    ],
+    ids=["MPICH", "Open MPI", "nonsense"],
+)
+def test_what_another_mpirun_left_is_no_rank(tmp_path, variables):
+    done = galinx(tmp_path, *RUN, **variables)
+    assert done.returncode == 0 and b"archive: x.h5" in done.stdout
+    (tmp_path / "x.h5").unlink()
+    done = subprocess.run(  # without run.sh the variables are there, and MPI is asked
+        [sys.executable, "-m", "galinx", *RUN], cwd=tmp_path, env=clean_environment() | variables,
+        capture_output=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0 and b"archive: x.h5" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("count, megabytes", [((), 30), ((), 60), ((), 400), (("-n", "2"), 200)])
+def test_little_address_space_is_refused(tmp_path, count, megabytes):
+    done = galinx(tmp_path, *count, *RUN, shell=f'ulimit -v {megabytes}000; "$@"')
+    is_refused(done, 3, "the address space is limited", "ulimit -v")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_python_that_optimises_too_much_is_refused(tmp_path):
+    is_refused(galinx(tmp_path, *RUN, PYTHONOPTIMIZE="2"), 3, "unset PYTHONOPTIMIZE")
+    assert galinx(tmp_path, *RUN, PYTHONOPTIMIZE="1").returncode == 0
+
+
+def test_warnings_of_libraries_are_no_errors(tmp_path):
+    assert galinx(tmp_path, *RUN, PYTHONWARNINGS="error").returncode == 0
+    done = galinx(tmp_path, "plot", "x.h5", PYTHONWARNINGS="error")
+    assert done.returncode == 0 and not done.stderr
+
+
+@on_ranks
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root, to be a user that nobody knows")
+def test_without_a_home_one_is_asked_for(count):
+    shell = 'setpriv --reuid 4321 --regid 4321 --clear-groups "$@"'
+    done = galinx("/", *count, *PLAN, shell=shell, without=("HOME",))
+    is_refused(done, 3, "user 4321 has no entry in passwd", "set HOME")
+
+
+@on_ranks
+def test_a_python_that_cannot_run_galinx_is_refused(tmp_path, count):
+    done = galinx(tmp_path, *count, *PLAN, GALINX_PYTHON="/nowhere/python")
+    is_refused(done, 3, "GALINX_PYTHON is /nowhere/python", "3.11")
+    bare = tmp_path / "python"  # without the folders that packages are in
+    bare.write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n', encoding="utf-8")
+    bare.chmod(bare.stat().st_mode | stat.S_IXUSR)
+    done = galinx(tmp_path, *count, *PLAN, GALINX_PYTHON=str(bare))
+    is_refused(done, 3, "click is not installed for", "docs/install.md")

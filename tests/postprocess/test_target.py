@@ -9,10 +9,11 @@ from support import at_once, full_disk
 
 from galinx import compute, load, template
 from galinx.app.console.progress import Progress
+from galinx.app.console.sheets import new_console, print_sheet
 from galinx.app.results.paraview import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
-from galinx.postprocess.tables import Sheet, new_console, print_sheet
+from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PDF, PNG, TABLES, Folder, Target
 
 FOREIGN = b"precious"

@@ -9,7 +9,7 @@ import pytest
 from support import HOME, SCENE, clean_environment
 
 from galinx.app import ranks
-from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.hdf5 import reader
 
 #: A run that needs no finite elements.
 RUN = ("run", str(SCENE), "-o", "x.h5", "--set", 'solve.methods=["closed_form"]')
@@ -41,7 +41,7 @@ def is_refused(done, status, *words):
 def test_closed_streams_are_the_null_device(tmp_path, count):
     done = galinx(tmp_path, *count, *RUN, shell='"$@" <&- >&- 2>&-')
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
-    assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
+    assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
     is_refused(galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
 

@@ -15,7 +15,7 @@ import pytest
 from mpi4py import MPI
 from support import FEW_DEGREES, HOME, SCENE, clean_environment, command
 
-from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.hdf5 import reader
 from galinx.solvers.errors import CompilerError
 from galinx.solvers.fem import compiler
 from galinx.solvers.fem.compiler import compiling
@@ -108,7 +108,7 @@ def test_a_run_with_damaged_caches(cache):
     assert second.returncode == 0, second.stderr
     assert second.stderr.count("warning: the compiled form in ") == 2
     assert second.stderr.count("warning: the mesh kept in ") == 1
-    v0, again = (archive.read(cache / f"{name}.h5")[0]["states/fem/v0"] for name in ("one", "two"))
+    v0, again = (reader.read(cache / f"{name}.h5")[0]["states/fem/v0"] for name in ("one", "two"))
     np.testing.assert_array_equal(v0, again)
 
 

@@ -60,6 +60,8 @@ class MeshKind:
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
         innermost: share of the tolerance that is left to the innermost cells. Where these cannot follow
             the singularity it hardly falls with the degree, so that no estimate sees it.
+        beside: size of the innermost cells over the distance of the nearest place, in the chart and over
+            the root of the tolerance.
         gentle: tolerance below which stresses ask for gentler rings and more cells in angle: derivatives
             converge half as fast as moments of the pressure, and degrees are not high enough.
         smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
@@ -76,6 +78,7 @@ class MeshKind:
     fan: bool = False
     rings: bool = True
     innermost: float = 1.0 / 3.0
+    beside: float = 35.0
     gentle: float = 3e-7
     smallest: float = 1e-6
     sectors: int = 2
@@ -113,8 +116,8 @@ class MeshKind:
         size = float((self.innermost * tolerance) ** (1.0 / self._power(wanted)))
         if wanted.nearest is not None:
             # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
-            # measured as 35² times the square of their size over the distance, both in this chart.
-            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
+            # like the square of their size over the distance, both in this chart.
+            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, self.beside * sqrt(tolerance)))
         return max(size, self.smallest)
 
     def degree(self, wanted: Wanted, margin: float) -> int:
@@ -140,6 +143,12 @@ class MeshKind:
         a/R at rest; it was seen to grow as the cubic root of the response's margin falls.
         """
         return 1.0 / (self.reach(wanted) * margin ** (1.0 / 3.0))
+
+    def unseen_beside(self, wanted: Wanted) -> float:
+        """Estimated relative error of the stresses nearest to an edge that these cells leave there."""
+        if not self.fan or wanted.nearest is None:
+            return 0.0
+        return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / (2.0 * wanted.nearest)
 
     def unseen(self, wanted: Wanted) -> float:
         """Estimated relative error of K_I that the innermost cells leave at any degree."""

@@ -3,10 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.estimate import Rate, of_cuts, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
+
+#: What rounding does, over what of it breaks the mirror image.
+_ROUNDING = 2.0
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
@@ -28,7 +32,7 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
     probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
     error = MeasuredError(ladder, probes)
     changes = dict(error.changes)
-    while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive(probes):
+    while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
         ladder.add(g, ladder.degree + 1)
         error = MeasuredError(ladder, probes)
         changes |= error.changes
@@ -45,16 +49,24 @@ class MeasuredError:
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
+        excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
     """
 
     def __init__(self, ladder: Ladder, probes: NDArray) -> None:
         self._ladder = ladder
-        self._sample = self._changes(probes)
+        levels = self._measured(probes)
+        self._sample = _changes(levels)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
                 self.changes[degree] = max(float(pair[i].max()) for pair in self._sample.values())
+        tolerance, unseen = ladder.work.plan.tolerance, self._unseen(levels[-1], probes)
+        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
+        self.excessive = any(
+            bool((error > np.maximum(tolerance, 1.1 * unseen[name])).any())
+            for name, error in self._errors(levels, probes).items()
+        )
 
     def record(self) -> dict[str, list[float]]:
         """The changes by degree, as they are archived."""
@@ -65,44 +77,44 @@ class MeasuredError:
 
     def of(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
-        truncation = self._truncation(g)
+        return self._errors(self._measured(g), g)
+
+    def _errors(self, levels: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
+        unseen = self._unseen(levels[-1], g)
         return {
             word: remaining(*pair, self._sample[word], self._rate(word))
-            + truncation[word]
-            + self._rounding[word]
-            for word, pair in self._changes(g).items()
+            + unseen[word]
+            + _ROUNDING * self._rounding[word]
+            for word, pair in _changes(levels).items()
         }
-
-    def excessive(self, g: NDArray) -> bool:
-        """Is an error larger than the tolerance, and would a higher degree make it smaller?"""
-        found, truncation = self.of(g), self._truncation(g)
-        tolerance = self._ladder.work.plan.tolerance
-        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
-        return any(
-            bool((found[word] > np.maximum(tolerance, 1.1 * truncation[word])).any()) for word in found
-        )
 
     def _rate(self, word: str) -> Rate:
         ladder = self._ladder
         order = 2 if word == INTENSITIES else 1
         return of_cuts(ladder.degree, order) if ladder.work.plan.fixed else of_degrees(order)
 
-    def _truncation(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
-        plan, response = self._ladder.work.plan, self._ladder.task.response
-        at_edges = plan.kind.truncation(plan.wanted, response.margin)
-        gauges = self._ladder.levels[-1].measured(g)
-        # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
-        of_edges = 2.4 * np.abs(g) + 1.3 * at_edges
-        unseen = plan.kind.unseen(plan.wanted)
-        return {
-            gauge.word: unseen
-            + at_edges
-            * (of_edges if gauge.word == INTENSITIES else 0.4 + of_edges + 3.0 / gauge.scale.min(axis=1))
-            for gauge in gauges
-        }
+    def _measured(self, g: NDArray) -> list[list[Gauge]]:
+        return [level.measured(g) for level in self._ladder.levels]
 
-    def _changes(self, g: NDArray) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """Largest changes of each state from the first level to the second, and to the last."""
-        found = zip(*(level.measured(g) for level in self._ladder.levels))
-        return {fine.word: (middle.change(coarse), fine.change(middle)) for coarse, middle, fine in found}
+    def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
+        plan, margin = self._ladder.work.plan, self._ladder.task.response.margin
+        kind, wanted = plan.kind, plan.wanted
+        far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted)
+        # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
+        of_edges = 2.4 * np.abs(g) + 1.3 * far
+        found = {}
+        for gauge in gauges:
+            if gauge.word == INTENSITIES:
+                found[gauge.word] = innermost + far * of_edges
+            else:
+                of_places = 0.4 + 3.0 / gauge.scale.min(axis=1)
+                found[gauge.word] = innermost + kind.unseen_beside(wanted) + far * (of_edges + of_places)
+        return found
+
+
+def _changes(levels: list[list[Gauge]]) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Largest changes of each state from the first level to the second, and to the last."""
+    return {
+        fine.word: (middle.change(coarse), fine.change(middle)) for coarse, middle, fine in zip(*levels)
+    }

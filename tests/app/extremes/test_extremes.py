@@ -3,18 +3,20 @@ import numpy as np
 import pytest
 
 from galinx.app.extremes import friction_law, matrix, mechanics, resolution
+from galinx.app.extremes.random_scenes import Ratios, random_scenes
 from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
+from galinx.postprocess.target import Folder
 
 
 def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(
         matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
     )
-    assert matrix.stress(tmp_path)
+    assert matrix.stress(Folder(tmp_path), scenes=8)
     printed = capsys.readouterr().out
     assert "verdict: PASS" in printed and "FAILS" not in printed
     names = {path.name for path in tmp_path.iterdir()}
-    assert {"stress.h5", "dahl.pdf", "dahl.png", "runge_kutta.png", "degree.png"} <= names
+    assert {"stress.h5", "dahl.pdf", "dahl.png", "runge_kutta.png", "degree.png", "random.png"} <= names
     with h5py.File(tmp_path / "stress.h5") as file:
         assert file.attrs["verdict"] == "PASS" and len(file["degree/x"]) == 10
         assert file["dahl/x"].attrs["units"] == "1"
@@ -23,13 +25,13 @@ def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
 def test_a_broken_promise_fails(tmp_path, capsys, monkeypatch):
     row = Row("x", "t", "x (1)", np.ones(2), "y (1)", {"a": np.ones(2)}, (Verdict("worse", False),))
     monkeypatch.setattr(matrix, "ROWS", (lambda: row,))
-    assert not matrix.stress(tmp_path)
+    assert not matrix.stress(Folder(tmp_path), scenes=4)
     assert "FAILS  worse" in capsys.readouterr().out
 
 
 def test_verdicts_can_fail():
     true, estimate = np.array([1e-8, 4e-8]), np.array([1e-8, 1e-8])
-    assert not honest(true, estimate).holds and honest(0.7 * true, estimate).holds
+    assert not honest(true, estimate).holds and honest(0.2 * true, estimate).holds
     assert not reached(true, 3e-8, "here").holds and reached(true, 5e-8, "here").holds
 
 
@@ -42,3 +44,18 @@ def test_scenes_of_rows():
     assert len(solved(c=[0.1, 0.2], methods='["closed_form"]')["states/f"]) == 4
     with pytest.raises(KeyError, match="speed"):
         scene(speed=1.0)
+
+
+def test_random_scenes_are_those_of_their_seed():
+    one, again, other = (random_scenes(seed, 4).lines for seed in (3, 3, 4))
+    assert all(np.array_equal(one[kind], again[kind]) for kind in one)
+    assert not all(np.array_equal(one[kind], other[kind]) for kind in one)
+
+
+@pytest.mark.parametrize(
+    "found, holds", [([2.0, 3.0, 90.0], True), ([0.9, 3.0, 4.0], False), ([2.0, 11.0, 12.0], False)]
+)
+def test_estimates_are_bounds_and_tight(found, holds):
+    assert Ratios(found, found).verdicts("kind")[0].holds == holds
+    assert not Ratios(found, [*found, 101.0]).verdicts("kind")[0].holds
+    assert not Ratios(found, found, [0.9]).verdicts("kind")[1].holds

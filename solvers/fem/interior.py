@@ -3,7 +3,7 @@
 Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,28 +42,46 @@ class InteriorGradients:
     def __init__(
         self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
-        x = space.chart.from_physical(points)
-        vertices = space.vertices[..., :2]
-        held = _locate(vertices, x)
-        found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
-        if not found.all():
-            X, Y = points[np.argmin(found)]
-            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-        cells = np.unique(held.cell)
-        values = space.cell_values(fields, response, cells)
-        gradients = np.zeros((len(points), 2, 2, len(fields)))
-        grid, nodes = tensor_order(space.reference_nodes)
-        for cell, u in zip(cells, values[:, grid]):
-            here = held.cell == cell
-            in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], u)
-            np.add.at(gradients, held.point[here], in_plane)
-        # On the border between cells the gradient jumps; it is their mean.
-        gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-        self._basis = to_physical_axes(space.chart, x, gradients)
+        self._basis = gradients_at(
+            space, points, lambda cells: space.cell_values(fields, response, cells)
+        )
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
         return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
+
+
+def gradients_at(
+    space: Space, points: NDArray, values: Callable[[NDArray[np.int64]], NDArray]
+) -> NDArray[np.float64]:
+    """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
+
+    Args:
+        space: the finite element space.
+        points: with Y <= 0, (n, 2).
+        values: of the fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+    x = space.chart.from_physical(points)
+    vertices = space.vertices[..., :2]
+    held = _locate(vertices, x)
+    found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
+    if not found.all():
+        X, Y = points[np.argmin(found)]
+        raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+    cells = np.unique(held.cell)
+    u = values(cells)
+    gradients = np.zeros((len(points), 2, 2, u.shape[-1]))
+    grid, nodes = tensor_order(space.reference_nodes)
+    for cell, nodal in zip(cells, u[:, grid]):
+        here = held.cell == cell
+        in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], nodal)
+        np.add.at(gradients, held.point[here], in_plane)
+    # On the border between cells the gradient jumps; it is their mean.
+    gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
+    return to_physical_axes(space.chart, x, gradients)
 
 
 @dataclass(frozen=True)

@@ -198,15 +198,60 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        outer = self.fetch(fields, self._outer_numbers[cells])
+        return self._extended(self.fetch(fields, self._outer_numbers[cells]), response, cells)
+
+    def cell_shapes(
+        self, fields: Sequence[PETSc.Vec], corrections: Sequence[PETSc.Vec], response: Response
+    ) -> NDArray[np.float64]:
+        """Values of fields plus their corrections in all of this rank's cells, less the cell's own motion.
+
+        Collective. A cell's first node is where it was; what is left has the digits that the sum has not.
+
+        Returns:
+            Array (cells, nodes of a cell, 2, fields).
+        """
+        pieces = [np.empty((0, self._kernel.nodes, 2, len(fields)))]
+        outer = self._deformed(fields) + self._deformed(corrections)
+        for start in range(0, len(outer), CHUNK):
+            cells = np.arange(start, min(start + CHUNK, len(outer)))
+            pieces.append(self._extended(outer[cells], response, cells))
+        return np.concatenate(pieces)
+
+    def forces(self, field: PETSc.Vec, response: Response) -> PETSc.Vec:
+        """Nodal forces of a condensed field, each cell's from its deformation alone; collective.
+
+        The matrix times the field is the same, but for what rounding makes of the cells' motion.
+        """
+        result, numbers = field.duplicate(), self._outer_numbers
+        result.zeroEntries()
+        deformed = self._deformed([field])
+        for start in range(0, len(numbers), CHUNK):
+            cells = slice(start, start + CHUNK)
+            condensed, _ = self._condensed(response, cells)
+            for rows, S, u in zip(numbers[cells], condensed, deformed[cells]):
+                result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+        result.assemble()
+        return result
+
+    def _deformed(self, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
+        """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
+        outer = self.fetch(fields, self._outer_numbers)
+        displacement = outer[:, : len(self._kernel.outer)]
+        displacement -= displacement[:, :1].copy()
+        return outer
+
+    def _extended(
+        self, outer: NDArray, response: Response, cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Values at all nodes of some cells from the outer ones, (cells, nodes of a cell, 2, fields)."""
         _, E = self._condensed(response, cells)
-        u = np.empty((len(cells), self._kernel.nodes, 2, len(fields)))
-        kernel = self._kernel
+        kernel, fields = self._kernel, outer.shape[-1]
+        u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
         for values, extension, boundary in zip(u, E, outer):
-            inner = extension @ boundary.reshape(-1, len(fields))
+            inner = extension @ boundary.reshape(-1, fields)
             displacement = inner[: 2 * len(kernel.inner)]
-            values[kernel.inner] = displacement.reshape(-1, 2, len(fields))
+            values[kernel.inner] = displacement.reshape(-1, 2, fields)
         return u
 
     @property

@@ -38,6 +38,7 @@ class LoadedHalfPlane:
         self.fields: list[PETSc.Vec] = []
         #: ∫ σ_YY d(X/a) over N/(2a) of each load.
         self.resultants: list[float] = []
+        self._loads: list[PETSc.Vec] = []
         self._facets = surface_facets(space, ("contact",))
 
     def load(self, σ_YY: Traction) -> None:
@@ -52,13 +53,29 @@ class LoadedHalfPlane:
                 addv=PETSc.InsertMode.ADD_VALUES,
             )
             b.assemble()
+            self._loads.append(b)
             self.fields.append(self.factor.solve(b))
-            b.destroy()
         self.resultants.append(self.space.comm.allreduce(float(forces.sum())))
 
+    def corrections(self) -> list[PETSc.Vec]:
+        """What the fields lack where cells are small, one vector each, for the caller to free.
+
+        A field's last digit is one of the motion of all of the half-plane. Forces are told from the cells'
+        deformation here, and what these leave of the load is solved for.
+        """
+        found = []
+        for field, load in zip(self.fields, self._loads):
+            residual = self.space.forces(field, self.response)
+            residual.aypx(-1.0, load)
+            residual.setValues(self.space.far_dofs, np.zeros(len(self.space.far_dofs)))
+            residual.assemble()
+            found.append(self.factor.solve(residual))
+            residual.destroy()
+        return found
+
     def destroy(self) -> None:
-        """Free factor and fields."""
-        for held in (self.factor, *self.fields):
+        """Free factor, fields and loads."""
+        for held in (self.factor, *self.fields, *self._loads):
             held.destroy()
 
     def _consistent_forces(self, σ_YY: Traction) -> NDArray[np.float64]:

@@ -14,6 +14,10 @@ from galinx.registry import Registry
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
 
+#: Size in ξ of the innermost ring of a mesh for pieces: 4e-10 of their half-width, a thousandth of the distance
+#: at which stresses next to an end are looked at.
+_PIECE_INNERMOST = 3e-5
+
 
 def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     """The pattern itself."""
@@ -72,15 +76,35 @@ class MeshKind:
         """
         # The energy in a ring falls with its size squared.
         innermost = (self._of_cells(tolerance) / 3.0) ** 0.5
-        levels = ceil(log(pi / 2.0 / innermost) / -log(self.ratio))
-        reach = self._outer_ξ(tolerance) - pi / 2.0
+        return self._refinement(innermost, self.ratio, self._outer_ξ(tolerance), self.column, β_s)
+
+    def for_pieces(self, tolerance: float, β_s: float, view: float) -> Refinement:
+        """Refinement for an interval whose stresses are wanted, at its ends and far away.
+
+        Stresses there are infinite like logarithms, and those of intervals that meet have to cancel.
+
+        Args:
+            tolerance: wanted relative accuracy of stresses.
+            β_s: √(1 - c²) at the highest speed.
+            view: how far from it, over the half-width.
+        """
+        outer = log(2.0 * 100.0 / tolerance * view)
+        # Measured: gentler rings gain more than a higher degree.
+        return self._refinement(_PIECE_INNERMOST, self.ratio**0.6, outer, self.column / 1.5, β_s)
+
+    def _refinement(
+        self, innermost: float, ratio: float, outer: float, column: float, β_s: float
+    ) -> Refinement:
+        """Rings down to ``innermost`` and columns to ξ = ``outer``."""
+        levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
+        reach = outer - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
-        first = min(self.column, 1.0)
-        count = ceil((reach - first) / self.column)
+        first = min(column, 1.0)
+        count = ceil((reach - first) / column)
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        return Refinement(levels, self.ratio, self.sectors(β_s), columns)
+        return Refinement(levels, ratio, self.sectors(β_s), columns)
 
     def degree(self, tolerance: float, margin: float) -> int:
         """Polynomial degree that should reach ``tolerance``; the measured error may ask for more.

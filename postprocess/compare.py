@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, OWN_PRESSURE, Quantity
 from galinx.registry import Registry
 from galinx.solvers.contact import from_edge, under_punch
 
@@ -35,7 +35,7 @@ class Rule:
             nothing to say.
         limit: largest value of a PASS; None where it is no fixed one.
         tolerances: the same in units of the scene's tolerance.
-        mode: of the finite elements in which it is judged; "" for each.
+        mode: in which it is judged, as of a quantity; "" for each.
         own_pressure: judged also where the pressure is the user's own.
     """
 
@@ -73,6 +73,13 @@ def _imbalance(data: dict[str, Any], load: float) -> float:
     normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
     off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
     return off.max()
+
+
+def _resultant(data: dict[str, Any], load: float) -> float:
+    rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO)
+    normal, tangential, exact, g = (data[row.path] for row in rows)
+    off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
+    return (off / np.maximum(np.abs(exact), load)).max()
 
 
 def _exponents(data: dict[str, Any], _: float) -> float | None:
@@ -131,6 +138,11 @@ RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
+        "resultant": Rule(
+            "nodal forces against the resultant of the pressure, over it or N",
+            (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO), _resultant,
+            limit=BALANCE.limit, own_pressure=True,
+        ),
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
@@ -161,10 +173,20 @@ RULES: Registry[Rule] = Registry(
         "sigma_XX": Rule(
             "σ_XX for |1 - |X/a|| >= 1e-2, over its largest value there",
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane,
+            tolerances=1.0, mode=OWN_PRESSURE, own_pressure=True,
         ),
         "stresses inside": Rule(
             "stresses inside, over the largest of a state",
             (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM]), _inside,
+            tolerances=1.0, mode=OWN_PRESSURE, own_pressure=True,
+        ),
+        "estimate of sigma_XX": Rule(
+            "estimated error of σ_XX on the surface, over its size",
+            (of.ESTIMATE_IN_PLANE,), _largest(of.ESTIMATE_IN_PLANE), tolerances=1.0, own_pressure=True,
+        ),
+        "estimate of stresses inside": Rule(
+            "estimated error of stresses inside, over the largest of a state",
+            (of.ESTIMATE_INSIDE,), _largest(of.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
         ),
         # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
         # and so has about half the digits of the moments that the tolerance speaks of.

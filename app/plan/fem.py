@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from galinx.app import ranks
 from galinx.app.errors import BadInput
@@ -29,9 +28,7 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         tolerance: wanted relative accuracy of K_I and of the pressure's moments.
-        mode: ``"contact"`` or ``"traction"``.
-        pressure: of the traction mode: ``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)].
-        own_pressure: is it one of the user's own that is put in?
+        mode: ``"contact"``, ``"traction"`` or ``"own pressure"``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
     """
@@ -46,8 +43,6 @@ class FemPlan:
     fixed: bool
     tolerance: float
     mode: str
-    pressure: Any
-    own_pressure: bool
     shared_speeds: bool
 
     @property
@@ -67,12 +62,14 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = None) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
+        view: how far the mesh of a pressure's pieces is looked at, in units of their half-width; None where
+            the pressure is not put in piece by piece.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -80,7 +77,10 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
     solve, kind = scene.solve, MESHES[scene.solve.mesh]
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
-    refinement = kind.refinement(solve.tolerance, min(response.β_s for response in responses))
+    β_s = min(response.β_s for response in responses)
+    refinement = kind.refinement(solve.tolerance, β_s)
+    if view:
+        refinement = kind.for_pieces(solve.tolerance, β_s, view)
     degrees = tuple(
         solve.degree or max(kind.degree(solve.tolerance, response.margin), 4 + mixed)
         for response in responses
@@ -94,8 +94,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response]) -> FemPlan:
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, tolerance=solve.tolerance,
-        mode=solve.mode, pressure=solve.pressure, own_pressure=solve.own_pressure,
-        shared_speeds=shared,
+        mode=solve.modes[-1], shared_speeds=shared,
     )  # fmt: skip
 
 

@@ -14,6 +14,9 @@ from galinx.solvers.solution import Body, Places
 #: Share of the far boundary's distance up to which points inside are asked for.
 _INNER = 0.6
 
+#: Narrowest piece of a pressure, over a, within which positions have digits enough.
+_NARROWEST = 1e-9
+
 
 def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
     """Warnings about speeds.
@@ -58,6 +61,27 @@ def check_mode(scene: Scene, body: Body) -> None:
         raise BadInput(
             'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
             'give solve.pressure, or take mode = "contact"'
+        )
+
+
+def check_pressure(scene: Scene, body: Body) -> None:
+    """Can finite elements put in a pressure of the user's own?
+
+    Raises:
+        BadInput: they cannot.
+    """
+    if body.pressure is None:
+        return
+    if MESHES[scene.solve.mesh].walls:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own, expected "confocal" or '
+            '"graded": every piece of it is put in on a mesh of its own width, and walls have none'
+        )
+    width = float(np.diff(body.pressure.knots).min())
+    if width < _NARROWEST:
+        raise BadInput(
+            f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
+            f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
         )
 
 

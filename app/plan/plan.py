@@ -5,7 +5,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
-from galinx.app.plan.limits import check_mode, check_places, check_speeds, warnings_of
+from galinx.app.plan.limits import (
+    check_mode,
+    check_places,
+    check_pressure,
+    check_speeds,
+    warnings_of,
+)
 from galinx.app.plan.states import speeds, states_a_speed
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import METHODS
@@ -14,6 +20,7 @@ from galinx.app.scene.sense import oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, LOCAL
+from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
 
 #: What words of output.quantities ask for, where a plan says so.
@@ -27,7 +34,8 @@ def make_plan(scene: Scene) -> Plan:
         BadInput: finite elements are asked for where they have no answer.
     """
     all_speeds, count = speeds(scene), states_a_speed(scene)
-    body = Body(scene.solid, scene.punch.profile, scene.punch.load)
+    pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
+    body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure)
     methods = _methods(scene, body)
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
@@ -35,8 +43,9 @@ def make_plan(scene: Scene) -> Plan:
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
+        check_pressure(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses)
+        fem = plan_fem(scene, responses, pressure and _seen_from_pieces(pressure, places))
         warnings += warnings_of(fem)
     tasks = tuple(
         Task(i, body, response, places, slice(i * count, (i + 1) * count))
@@ -48,6 +57,12 @@ def make_plan(scene: Scene) -> Plan:
         body=body, places=places, methods=methods, quantities=quantities, tasks=tasks, fem=fem,
         skipped=skipped, warnings=tuple(warnings),
     )  # fmt: skip
+
+
+def _seen_from_pieces(pressure: LinearPressure, places: Places) -> float:
+    """Distance of the farthest place from a piece of a pressure, over the narrowest piece's half-width."""
+    farthest = max(np.abs(places.X).max(), np.abs(places.points).max(initial=0.0))
+    return (1.0 + float(farthest)) / (np.diff(pressure.knots).min() / 2.0)
 
 
 def _contact(scene: Scene) -> bool:
@@ -75,7 +90,7 @@ def _quantities(
             bool(methods)
             and quantity.solved
             and quantity.method in (*methods, LOCAL)
-            and quantity.mode in ("", scene.solve.mode)
+            and quantity.mode in scene.solve.modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in asked for need in quantity.needs)
         )

@@ -26,22 +26,20 @@ class LinearLoads:
 
     Attributes:
         resultants: ∫ σ_YY dX of the discrete loads of the first and of the second kind, 1 each.
-        factor: of the matrix; its numbers are told.
+        record: numbers of the linear algebra.
     """
 
     def __init__(self, space: Space, response: Response) -> None:
         self.space = space
-        loaded = LoadedHalfPlane(space, response)
-        try:
-            loaded.load(lambda left, right: right / 2.0)
-            loaded.load(lambda left, right: left / 2.0)
-            corrections = loaded.corrections()
-            self._shapes = space.cell_shapes(loaded.fields, corrections, response)
-            for held in corrections:
-                held.destroy()
-        finally:
-            loaded.destroy()
-        self.resultants, self.factor = np.array(loaded.resultants), loaded.factor
+        with space.keeping(response):
+            loaded = LoadedHalfPlane(space, response, corrected=True)
+            try:
+                loaded.load(lambda left, right: right / 2.0)
+                loaded.load(lambda left, right: left / 2.0)
+                self._shapes = space.cell_shapes(loaded.fields, loaded.corrections, response)
+            finally:
+                loaded.destroy()
+        self.resultants, self.record = np.array(loaded.resultants), loaded.record
 
     def gradients(self, points: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over the load's largest stress, at points (n, 2) with Y <= 0: (n, 2, 2, FIELDS).

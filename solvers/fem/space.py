@@ -1,6 +1,7 @@
 """The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -70,6 +71,7 @@ class Space:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.mixed = self.form.pressure
         self.clock = Clock() if clock is None else clock
+        self._kept: tuple[NDArray, ...] | None = None
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
@@ -288,7 +290,23 @@ class Space:
         cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
+    @contextmanager
+    def keeping(self, response: Response) -> Iterator[None]:
+        """Condensed cells of a response are computed once as long as this lasts; they take memory."""
+        chunks = [
+            self._condensed(response, slice(start, start + CHUNK))
+            for start in range(0, len(self._outer_numbers), CHUNK)
+        ]
+        self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
+        try:
+            yield
+        finally:
+            self._kept = None
+
     def _condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+        if self._kept:
+            S, E = self._kept
+            return S[cells], E[cells]
         form, constants = self._compiled
         for name, constant in zip(self.form.constants, constants):
             constant.value = getattr(response, name)

@@ -1,6 +1,6 @@
-"""Mode ``traction`` at one speed: σ_YY put in, σ_XY = g σ_YY."""
+"""Mode ``traction`` at one speed: the closed form's σ_YY put in, σ_XY = g σ_YY."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,16 +20,15 @@ from galinx.solvers.solution import Surface
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
-    """Solve for every load; a pressure of the user's own is one load for every g."""
+    """Solve for every load."""
     # One degree above the rule: no measured error corrects it here.
     loaded = LoadedHalfPlane(work.space(work.plan.degrees[task.number] + 1), task.response)
     try:
-        pressures = Pressures(task, work.plan.pressure)
         columns = {}
-        for value in dict.fromkeys(map(pressures.key, g.tolist())):
+        for value in g.tolist():
             columns[value] = len(loaded.fields)
-            loaded.load(pressures.at(value))
-        yield LoadsAtSpeed(task, loaded, pressures, columns)
+            loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
+        yield LoadsAtSpeed(task, loaded, columns)
     finally:
         loaded.destroy()
 
@@ -41,34 +40,10 @@ def one_state(
     """Space, fields and weights of one state."""
     loaded = LoadedHalfPlane(work.space(degree), task.response)
     try:
-        loaded.load(Pressures(task, work.plan.pressure).at(g))
+        loaded.load(FlatPunch(task.response, g).σ_YY_by_distance)
         yield loaded.space, loaded.fields, np.array([1.0, g])
     finally:
         loaded.destroy()
-
-
-@dataclass(frozen=True)
-class Pressures:
-    """What is put in at one speed.
-
-    Attributes:
-        task: the speed.
-        given: ``"closed_form"``, or pairs [X/a, σ_YY/(N/2a)].
-    """
-
-    task: Task
-    given: Any
-
-    def key(self, g: float) -> float:
-        """What tells loads apart: a pressure of the user's own is the same for every g."""
-        return g if self.given == "closed_form" else 0.0
-
-    def at(self, g: float) -> Callable[[NDArray, NDArray], NDArray]:
-        """σ_YY by the distances from both edges."""
-        if self.given == "closed_form":
-            return FlatPunch(self.task.response, g).σ_YY_by_distance
-        X, σ = np.array(self.given).T
-        return lambda left, right: np.interp(np.where(left < right, left - 1.0, 1.0 - right), X, σ)
 
 
 class LoadsAtSpeed:
@@ -77,32 +52,21 @@ class LoadsAtSpeed:
     Args:
         task: the speed.
         loaded: the half-plane with all loads.
-        pressures: what they are.
-        columns: the first of a load's two fields, by the load's key.
+        columns: the first of a load's two fields, by σ_XY/σ_YY.
     """
 
-    def __init__(
-        self, task: Task, loaded: LoadedHalfPlane, pressures: Pressures, columns: dict[float, int]
-    ) -> None:
-        self.task, self.loaded, self.pressures, self.columns = task, loaded, pressures, columns
+    def __init__(self, task: Task, loaded: LoadedHalfPlane, columns: dict[float, int]) -> None:
+        self.task, self.loaded, self.columns = task, loaded, columns
         self.displacement = Displacement(task, loaded.space, loaded.fields)
 
     def states(self, g: NDArray) -> "GivenLoads":
-        columns = np.array([self.columns[self.pressures.key(value)] for value in g.tolist()])
+        columns = np.array([self.columns[value] for value in g.tolist()])
         return GivenLoads(self, g, columns)
 
     def record(self) -> dict[str, Any]:
-        space, factor = self.loaded.space, self.loaded.factor
-        return {
-            "cells": space.cells,
-            "unknowns": space.size,
-            "degree": space.degree,
-            "factorisations": 1,
-            "back_substitutions": factor.solves,
-            "iterations": factor.iterations,
-            "largest_residual": factor.largest_residual,
-            "largest_condition": factor.condition,
-        }
+        space = self.loaded.space
+        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
+        return size | self.loaded.record
 
 
 @dataclass(frozen=True)
@@ -142,11 +106,11 @@ class GivenLoads:
 
     @cached_property
     def surface(self) -> Surface:
-        places, pressures = self.at.task.places, self.at.pressures
+        places = self.at.task.places
         r = places.X[places.under]
         σ_YY = np.full((len(self.g), len(places.X)), np.nan)
-        keys = map(pressures.key, self.g.tolist())
-        σ_YY[:, places.under] = [pressures.at(key)(1.0 + r, 1.0 - r) for key in keys]
+        response = self.at.task.response
+        σ_YY[:, places.under] = FlatPunch(response, self.g[:, None]).σ_YY_by_distance(1.0 + r, 1.0 - r)
         return self.at.displacement.surface(self.g, self._weights, σ_YY)
 
     @cached_property

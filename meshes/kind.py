@@ -14,7 +14,7 @@ from galinx.registry import Registry
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
 
-#: Size in ξ of the innermost ring of a mesh for pieces: 4e-10 of their half-width, a thousandth of the distance
+#: Size in ξ of the innermost ring of a mesh for pieces: 4e-10 of their half-width, far below the distance
 #: at which stresses next to an end are looked at.
 _PIECE_INNERMOST = 3e-5
 

@@ -68,8 +68,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = N
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
-        view: how far the mesh of a pressure's pieces is looked at, in units of their half-width; None where
-            the pressure is not put in piece by piece.
+        view: how far the mesh of a pressure's pieces is looked at, over their half-width; None where no
+            pressure is put in piece by piece.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.

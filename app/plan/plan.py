@@ -45,7 +45,7 @@ def make_plan(scene: Scene) -> Plan:
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses, pressure and _seen_from_pieces(pressure, places))
+        fem = plan_fem(scene, responses, _seen_from_pieces(pressure, places) if pressure else None)
         warnings += warnings_of(fem)
     tasks = tuple(
         Task(i, body, response, places, slice(i * count, (i + 1) * count))
@@ -60,7 +60,7 @@ def make_plan(scene: Scene) -> Plan:
 
 
 def _seen_from_pieces(pressure: LinearPressure, places: Places) -> float:
-    """Distance of the farthest place from a piece of a pressure, over the narrowest piece's half-width."""
+    """Distance from a piece of a pressure to the farthest place, over the narrowest half-width."""
     farthest = max(np.abs(places.X).max(), np.abs(places.points).max(initial=0.0))
     return (1.0 + float(farthest)) / (np.diff(pressure.knots).min() / 2.0)
 

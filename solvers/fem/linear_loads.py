@@ -8,6 +8,7 @@ deforms: next to an end of the interval a cell is a billionth of the distance th
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.fem.deformation import shapes
 from galinx.solvers.fem.interior import gradients_at
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
@@ -36,7 +37,7 @@ class LinearLoads:
             try:
                 loaded.load(lambda left, right: right / 2.0)
                 loaded.load(lambda left, right: left / 2.0)
-                self._shapes = space.cell_shapes(loaded.fields, loaded.corrections, response)
+                self._shapes = shapes(space, response, loaded.fields, loaded.corrections)
             finally:
                 loaded.destroy()
         self.resultants, self.record = np.array(loaded.resultants), loaded.record

@@ -1,7 +1,7 @@
 """Fields of a pressure that is linear between knots: the sum of those of its pieces.
 
-Every piece is an interval with two linear loads on the mesh of all, so no kink of the pressure lies inside a
-cell, however narrow the piece is.
+Every piece is an interval with two linear loads on the mesh of all, so no kink of the pressure lies
+inside a cell, however narrow the piece is.
 """
 
 import numpy as np

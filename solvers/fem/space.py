@@ -161,12 +161,12 @@ class Space:
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
-        numbers = self._outer_numbers  # the form is compiled here, the first time
+        numbers = self.outer_numbers  # the form is compiled here, the first time
         with self.clock("assembly"):
             A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
                 cells = slice(start, start + CHUNK)
-                condensed, _ = self._condensed(response, cells)
+                condensed, _ = self.condensed(response, cells)
                 for rows, S in zip(numbers[cells], condensed):
                     A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
@@ -200,54 +200,23 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        return self._extended(self.fetch(fields, self._outer_numbers[cells]), response, cells)
+        return self.extended(self.fetch(fields, self.outer_numbers[cells]), response, cells)
 
-    def cell_shapes(
-        self, fields: Sequence[PETSc.Vec], corrections: Sequence[PETSc.Vec], response: Response
+    def extended(
+        self, outer: NDArray, response: Response, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """Values of fields plus their corrections in all of this rank's cells, less the cell's own motion.
+        """Values at all nodes of some of this rank's cells from the outer ones.
 
-        Collective. A cell's first node is where it was; what is left has the digits that the sum has not.
+        Args:
+            outer: at the nodes of ``outer_numbers``, (cells, nodes, 2, fields).
+            response: that the fields are solutions for.
+            cells: numbers of the cells.
 
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        pieces = [np.empty((0, self._kernel.nodes, 2, len(fields)))]
-        outer = self._deformed(fields) + self._deformed(corrections)
-        for start in range(0, len(outer), CHUNK):
-            cells = np.arange(start, min(start + CHUNK, len(outer)))
-            pieces.append(self._extended(outer[cells], response, cells))
-        return np.concatenate(pieces)
-
-    def forces(self, field: PETSc.Vec, response: Response) -> PETSc.Vec:
-        """Nodal forces of a condensed field, each cell's from its deformation alone; collective.
-
-        The matrix times the field is the same, but for what rounding makes of the cells' motion.
-        """
-        result, numbers = field.duplicate(), self._outer_numbers
-        result.zeroEntries()
-        deformed = self._deformed([field])
-        for start in range(0, len(numbers), CHUNK):
-            cells = slice(start, start + CHUNK)
-            condensed, _ = self._condensed(response, cells)
-            for rows, S, u in zip(numbers[cells], condensed, deformed[cells]):
-                result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-        result.assemble()
-        return result
-
-    def _deformed(self, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
-        """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
-        outer = self.fetch(fields, self._outer_numbers)
-        displacement = outer[:, : len(self._kernel.outer)]
-        displacement -= displacement[:, :1].copy()
-        return outer
-
-    def _extended(
-        self, outer: NDArray, response: Response, cells: NDArray[np.int64]
-    ) -> NDArray[np.float64]:
-        """Values at all nodes of some cells from the outer ones, (cells, nodes of a cell, 2, fields)."""
-        _, E = self._condensed(response, cells)
-        kernel, fields = self._kernel, outer.shape[-1]
+        _, E = self.condensed(response, cells)
+        kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
         for values, extension, boundary in zip(u, E, outer):
@@ -267,7 +236,8 @@ class Space:
         return adapter.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
 
     @cached_property
-    def _kernel(self) -> CellMatrices:
+    def kernel(self) -> CellMatrices:
+        """The compiled form of a cell, and which of its nodes stay."""
         layout = self.V.dofmap.dof_layout
         pressures = (self.degree - 1) ** 2 * self.mixed
         inner = np.array(layout.entity_dofs(2, 0))
@@ -279,12 +249,12 @@ class Space:
         return adapter.cell_nodes(self.V)[: self.mesh.topology.index_map(2).size_local]
 
     @cached_property
-    def _outer_numbers(self) -> NDArray[np.int32]:
+    def outer_numbers(self) -> NDArray[np.int32]:
         """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
 
         The two pressures of a cell are numbered like the two unknowns of a node.
         """
-        nodes = self.numbers[self._cell_nodes[:, self._kernel.outer]]
+        nodes = self.numbers[self._cell_nodes[:, self.kernel.outer]]
         if not self.mixed:
             return nodes
         cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
@@ -294,8 +264,8 @@ class Space:
     def keeping(self, response: Response) -> Iterator[None]:
         """Condensed cells of a response are computed once as long as this lasts; they take memory."""
         chunks = [
-            self._condensed(response, slice(start, start + CHUNK))
-            for start in range(0, len(self._outer_numbers), CHUNK)
+            self.condensed(response, slice(start, start + CHUNK))
+            for start in range(0, len(self.outer_numbers), CHUNK)
         ]
         self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
         try:
@@ -303,14 +273,15 @@ class Space:
         finally:
             self._kept = None
 
-    def _condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+    def condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+        """S and E of some of this rank's cells, see ``CellMatrices.condense``."""
         if self._kept:
             S, E = self._kept
             return S[cells], E[cells]
         form, constants = self._compiled
         for name, constant in zip(self.form.constants, constants):
             constant.value = getattr(response, name)
-        return self._kernel.condense(adapter.constants(form), self.vertices[cells])
+        return self.kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

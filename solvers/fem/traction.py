@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.solvers.fem.deformation import forces
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
@@ -52,13 +53,13 @@ class LoadedHalfPlane:
             σ_YY: the load.
             knots: positions X over a, under the punch, between which it is smooth.
         """
-        forces = self._consistent_forces(σ_YY, self.space.chart.surface_coordinate(np.asarray(knots)))
+        load = self._consistent_forces(σ_YY, self.space.chart.surface_coordinate(np.asarray(knots)))
         node = self.space.numbers[self._facets.nodes.ravel()]
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(
                 (2 * node + component).astype(np.int32),
-                forces.ravel(),
+                load.ravel(),
                 addv=PETSc.InsertMode.ADD_VALUES,
             )
             b.assemble()
@@ -66,11 +67,11 @@ class LoadedHalfPlane:
             if self._corrected:
                 self.corrections.append(self._correction(self.fields[-1], b))
             b.destroy()
-        self.resultants.append(self.space.comm.allreduce(float(forces.sum())))
+        self.resultants.append(self.space.comm.allreduce(float(load.sum())))
 
     def _correction(self, field: PETSc.Vec, load: PETSc.Vec) -> PETSc.Vec:
         """The field of what the forces of the cells' deformation leave of the load."""
-        residual = self.space.forces(field, self.response)
+        residual = forces(self.space, self.response, field)
         residual.aypx(-1.0, load)
         residual.setValues(self.space.far_dofs, np.zeros(len(self.space.far_dofs)))
         residual.assemble()

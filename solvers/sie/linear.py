@@ -5,6 +5,7 @@ L = log((w - 1)/(w + 1)) its part of ∫ σ/(t - z) dt is σ(w) L + σ₁ - σ�
 logarithms cancel; far away L and σ(w) L + ... are sums of powers of 1/w, in which nothing does.
 """
 
+import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -19,8 +20,8 @@ from galinx.solvers.solids.solid import Response
 #: |w| from which powers of 1/w serve, and how many of them: 4^-27 is no digit any more.
 _FAR, _POWERS = 2.0, 27
 
-#: A point nearer to a knot than this is moved to this distance, over a: there the logarithms of two pieces
-#: cancel, but infinite ones would not.
+#: A point nearer to a knot than this is moved to this distance, over a: the logarithms of two pieces
+#: cancel there, but infinite ones would not.
 _NEXT_TO_KNOT = 1e-30
 
 
@@ -30,7 +31,7 @@ class LinearPressure:
 
     Attributes:
         knots: positions X/a that grow from -1 to 1, (n,).
-        values: σ_YY there, (n,).
+        values: σ_YY there, not all of them 0, (n,).
     """
 
     knots: NDArray[np.float64]
@@ -49,16 +50,20 @@ class LinearPressure:
     def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface; NaN at an end where the pressure is not 0."""
         r = np.asarray(r, dtype=float)
-        found: Any = sum(piece.at() for piece in self._pieces(r))
         infinite = (from_edge(r) == 0.0) & (self(r) != 0.0)
-        return np.where(infinite, np.nan, found / np.pi)
+        return np.where(infinite, np.nan, self._sum(piece.at() for piece in self._pieces(r)))
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
-        return sum(piece.at() for piece in self._pieces(z)) / np.pi
+        return self._sum(piece.at() for piece in self._pieces(z))
 
     def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
-        return sum(piece.change(step, share) for piece in self._pieces(z)) / np.pi
+        return self._sum(piece.change(step, share) for piece in self._pieces(z))
+
+    @staticmethod
+    def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:
+        """Φ, or its real part on the surface, of all pieces."""
+        return functools.reduce(np.add, integrals) / np.pi
 
     def _pieces(self, z: NDArray) -> Iterator["_Piece"]:
         """Pieces that are loaded, each with the points z seen from it."""

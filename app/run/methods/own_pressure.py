@@ -112,7 +112,7 @@ class MeasuredError:
 
     def __init__(self, levels: list[Level], probes: NDArray) -> None:
         self._levels = levels
-        self._samples = {measure: self._changes(measure, probes) for measure in (_in_plane, _inside)}
+        self._of_probes = [self._changes(measure, probes) for measure in (_in_plane, _inside)]
 
     def of(self, g: NDArray) -> float:
         """The largest of both."""
@@ -120,14 +120,11 @@ class MeasuredError:
 
     def in_plane(self, g: NDArray) -> NDArray[np.float64]:
         """Of σ_XX on the surface, over its size there or its largest away from the ends, (states,)."""
-        return self._remaining(_in_plane, g)
+        return remaining(*self._changes(_in_plane, g), self._of_probes[0])
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """Of the stresses inside, over the largest of a state, (states,)."""
-        return self._remaining(_inside, g)
-
-    def _remaining(self, measure: "_Measure", g: NDArray) -> NDArray[np.float64]:
-        return remaining(*self._changes(measure, g), self._samples[measure])
+        return remaining(*self._changes(_inside, g), self._of_probes[1])
 
     def _changes(self, measure: "_Measure", g: NDArray) -> tuple[NDArray, NDArray]:
         found = [measure(level, g) for level in self._levels]

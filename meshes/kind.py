@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, exp, log, log10, pi, sqrt
+from math import atanh, ceil, exp, log, log10, pi, sqrt
 
 from numpy.typing import NDArray
 
@@ -17,6 +17,9 @@ DEGREES = (4, 12)
 #: Size in ξ of the innermost ring of a mesh for pieces: 4e-10 of their half-width, far below the distance
 #: at which stresses next to an end are looked at.
 _PIECE_INNERMOST = 3e-5
+
+#: Most cells along each leg of an L in a mesh for pieces.
+_MOST_SECTORS = 8
 
 
 def as_drawn(points: NDArray, _: Refinement) -> NDArray:
@@ -76,7 +79,8 @@ class MeshKind:
         """
         # The energy in a ring falls with its size squared.
         innermost = (self._of_cells(tolerance) / 3.0) ** 0.5
-        return self._refinement(innermost, self.ratio, self._outer_ξ(tolerance), self.column, β_s)
+        sectors = self.sectors(β_s)
+        return self._refinement(innermost, self.ratio, self._outer_ξ(tolerance), self.column, sectors)
 
     def for_pieces(self, tolerance: float, β_s: float, view: float) -> Refinement:
         """Refinement for an interval whose stresses are wanted, at its ends and far away.
@@ -89,11 +93,14 @@ class MeshKind:
             view: how far from it, over the half-width.
         """
         outer = log(2.0 * 100.0 / tolerance * view)
-        # Measured: gentler rings gain more than a higher degree.
-        return self._refinement(_PIECE_INNERMOST, self.ratio**0.6, outer, self.column / 1.5, β_s)
+        # Fields have poles at the angles ±i artanh β_s. Where they come near a cell, twice the cells gain
+        # more than a higher degree.
+        sectors = ceil(-log10(tolerance) / (2.2 * min(atanh(min(β_s, 0.9)), 1.5)))
+        sectors = min(max(sectors, self.sectors(β_s)), _MOST_SECTORS)
+        return self._refinement(_PIECE_INNERMOST, sqrt(self.ratio), outer, self.column / 1.5, sectors)
 
     def _refinement(
-        self, innermost: float, ratio: float, outer: float, column: float, β_s: float
+        self, innermost: float, ratio: float, outer: float, column: float, sectors: int
     ) -> Refinement:
         """Rings down to ``innermost`` and columns to ξ = ``outer``."""
         levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
@@ -104,7 +111,7 @@ class MeshKind:
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        return Refinement(levels, ratio, self.sectors(β_s), columns)
+        return Refinement(levels, ratio, sectors, columns)
 
     def degree(self, tolerance: float, margin: float) -> int:
         """Polynomial degree that should reach ``tolerance``; the measured error may ask for more.

@@ -263,11 +263,13 @@ class Space:
     @contextmanager
     def keeping(self, response: Response) -> Iterator[None]:
         """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        chunks = [
-            self.condensed(response, slice(start, start + CHUNK))
-            for start in range(0, len(self.outer_numbers), CHUNK)
-        ]
-        self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
+        cells = len(self.outer_numbers)  # the form is compiled here, the first time
+        with self.clock("assembly"):
+            chunks = [
+                self.condensed(response, slice(start, start + CHUNK))
+                for start in range(0, max(cells, 1), CHUNK)
+            ]
+            self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
         try:
             yield
         finally:

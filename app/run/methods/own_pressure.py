@@ -72,6 +72,7 @@ class Level:
     Attributes:
         degree: the same.
         resultant: of the discrete loads, over N/2.
+        looks_inside: are there places inside?
         record: numbers of the linear algebra, by the names of ``quantities.runs.RECORD``.
     """
 
@@ -81,6 +82,7 @@ class Level:
         loads, pieces = LinearLoads(space, task.response), Pieces(pressure.knots, pressure.values)
         self.record = {"cells": space.cells, "unknowns": space.size, "degree": degree} | loads.record
         self.resultant = pieces.resultant(loads)
+        self.looks_inside = len(places.points) > 0
         self._σ_YY = np.where(places.under, pressure(places.X), np.nan)
         with work.clock("recovery"):
             on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
@@ -112,7 +114,8 @@ class MeasuredError:
 
     def __init__(self, levels: list[Level], probes: NDArray) -> None:
         self._levels = levels
-        self._of_probes = [self._changes(measure, probes) for measure in (_in_plane, _inside)]
+        self._in_plane = self._changes(_in_plane, probes)
+        self._inside = self._changes(_inside, probes) if levels[-1].looks_inside else None
 
     def of(self, g: NDArray) -> float:
         """The largest of both."""
@@ -120,11 +123,13 @@ class MeasuredError:
 
     def in_plane(self, g: NDArray) -> NDArray[np.float64]:
         """Of σ_XX on the surface, over its size there or its largest away from the ends, (states,)."""
-        return remaining(*self._changes(_in_plane, g), self._of_probes[0])
+        return remaining(*self._changes(_in_plane, g), self._in_plane)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
-        """Of the stresses inside, over the largest of a state, (states,)."""
-        return remaining(*self._changes(_inside, g), self._of_probes[1])
+        """Of the stresses inside, over the largest of a state, (states,); 0 where none are asked for."""
+        if self._inside is None:
+            return np.zeros(len(g))
+        return remaining(*self._changes(_inside, g), self._inside)
 
     def _changes(self, measure: "_Measure", g: NDArray) -> tuple[NDArray, NDArray]:
         found = [measure(level, g) for level in self._levels]
@@ -146,8 +151,7 @@ def _in_plane(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
 
 
 def _inside(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
-    # A zero where no point is asked for.
-    stresses = np.column_stack([*level.inside(g), np.zeros(len(g))])
+    stresses = np.concatenate(level.inside(g), axis=1)
     return stresses, np.abs(stresses).max(axis=1, keepdims=True)
 
 

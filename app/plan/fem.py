@@ -81,8 +81,9 @@ def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = N
     refinement = kind.refinement(solve.tolerance, β_s)
     if view:
         refinement = kind.for_pieces(solve.tolerance, β_s, view)
+    # The mesh of pieces is finer; the degree rises from there.
     degrees = tuple(
-        solve.degree or max(kind.degree(solve.tolerance, response.margin), 4 + mixed)
+        solve.degree or max(kind.degree(solve.tolerance, response.margin) - bool(view), 4 + mixed)
         for response in responses
     )
     size = _size(refinement, solve.cuts * max(degrees))

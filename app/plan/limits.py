@@ -72,10 +72,12 @@ def check_pressure(scene: Scene, body: Body) -> None:
     """
     if body.pressure is None:
         return
-    if MESHES[scene.solve.mesh].walls:
+    kind = MESHES[scene.solve.mesh]
+    if kind.walls or not kind.rings:
         raise BadInput(
             f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own, expected "confocal" or '
-            '"graded": every piece of it is put in on a mesh of its own width, and walls have none'
+            '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
+            "and has no walls"
         )
     width = float(np.diff(body.pressure.knots).min())
     if width < _NARROWEST:

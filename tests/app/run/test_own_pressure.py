@@ -104,13 +104,8 @@ def test_at_one_half_there_is_a_surface():
     within_tolerance_and_estimate(put_in(HUMP, changes), 1e-6)
 
 
-@pytest.mark.parametrize("mesh", ["graded", "uniform"])
-def test_other_meshes(mesh):
-    result = put_in(HUMP, {"solve.mesh": mesh, "solve.tolerance": 1e-4})
-    if mesh == "graded":
-        within_tolerance_and_estimate(result, 1e-4)
-    else:  # without rings no end of a piece is resolved, and that is told
-        assert result.verdict == "FAIL"
+def test_the_graded_mesh():
+    within_tolerance_and_estimate(put_in(HUMP, {"solve.mesh": "graded", "solve.tolerance": 1e-3}), 1e-3)
 
 
 def test_without_the_exact_solution_the_estimate_is_the_judge():
@@ -125,7 +120,7 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
     monkeypatch.setattr(LinearLoads, "gradients", lambda self, points: 1.01 * true(self, points))
     result = put_in(HUMP, {"solve.tolerance": 1e-3})
     assert result.verdict == "FAIL"
-    assert 9e-3 < errors(result.data)[1] < 1e-2
+    assert errors(result.data)[1] == pytest.approx(0.01, rel=0.1)
     result.save(tmp_path / "a.h5")
     assert command("check", tmp_path / "a.h5").returncode == 0
 
@@ -138,7 +133,7 @@ def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
         true(self, work, task, degree)
 
     monkeypatch.setattr(own_pressure.Level, "__init__", counted)
-    result = put_in(SPIKE, {"solve.tolerance": 1e-9, "motion.c": 0.8})
+    result = put_in(SPIKE, {"solve.tolerance": 1e-5, "motion.c": 0.91})
     assert solved == list(range(solved[0], solved[0] + len(solved))) and len(solved) > 3
     assert result.data["run/fem/degree"] == [solved[-1]]
     assert result.data["run/fem/factorisations"] == [len(solved)]
@@ -156,10 +151,8 @@ def test_the_exact_solution_needs_no_finite_elements():
     "changes, message",
     [
         ({"solve.mesh": "box"}, 'solve.mesh: found "box".*expected "confocal" or "graded"'),
-        (
-            {"solve.pressure": [[-1, -1], [0, -1], [1e-10, -2], [1, 0]]},
-            "differ by 1e-10, expected at least",
-        ),
+        ({"solve.mesh": "uniform"}, 'solve.mesh: found "uniform".*expected "confocal" or "graded"'),
+        ({"solve.pressure": [[-1, -1], [0, -1], [1e-10, -2], [1, 0]]}, "differ by 1e-10, expected at"),
         ({"solve.pressure": [[-1, 0], [0.5, 0], [1, 0]]}, "found no pressure but 0"),
     ],
 )

@@ -18,9 +18,6 @@ from galinx.solvers.solids.solid import Response
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
 
-#: Pairs of a cell and a point that are looked at together; keeps memory within some ten megabytes.
-_AT_ONCE = 10**6
-
 #: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
 #: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
 _SETTLED = 1e-8
@@ -109,15 +106,18 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     """Pairs of a cell and a point within the smallest box around it."""
     low, high = vertices.min(axis=1), vertices.max(axis=1)
     slack = _SLACK * (high - low)
-    low, high = (low - slack)[:, None], (high + slack)[:, None]
-    found = [np.empty((2, 0), dtype=np.int64)]
-    cells = max(1, _AT_ONCE // max(len(x), 1))
-    for start in range(0, len(vertices), cells):
-        some = slice(start, start + cells)
-        cell, point = np.nonzero(np.all((low[some] <= x) & (x <= high[some]), axis=2))
-        found.append(np.stack([start + cell, point]))
-    cell, point = np.concatenate(found, axis=1)
-    return cell, point
+    low, high = low - slack, high + slack
+    order = np.argsort(x[:, 0], kind="stable")
+    along, across = x[order].T
+    first = np.searchsorted(along, low[:, 0], side="left")
+    last = np.searchsorted(along, high[:, 0], side="right")
+    cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for i in np.flatnonzero(first < last):
+        some = slice(first[i], last[i])
+        found = order[some][(low[i, 1] <= across[some]) & (across[some] <= high[i, 1])]
+        cell.append(np.full(len(found), i))
+        point.append(found)
+    return np.concatenate(cell), np.concatenate(point)
 
 
 def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:

@@ -104,6 +104,24 @@ class Level:
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, weights))
 
 
+#: Values of a level's states that should not change any more, and their size, both (states, values).
+_Measure = Callable[[Level, NDArray], tuple[NDArray, NDArray]]
+
+_TINY = np.finfo(float).tiny
+
+
+def _in_plane(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
+    surface = level.surface(g)
+    size = np.abs(surface.σ_XX)
+    away = from_edge(surface.places.X) >= 1e-2
+    return surface.σ_XX, np.maximum(size, size[:, away].max(axis=1, keepdims=True))
+
+
+def _inside(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
+    stresses = np.concatenate(level.inside(g), axis=1)
+    return stresses, np.abs(stresses).max(axis=1, keepdims=True)
+
+
 class MeasuredError:
     """How far the last of three levels is off, by what changed from level to level.
 
@@ -131,28 +149,10 @@ class MeasuredError:
             return np.zeros(len(g))
         return remaining(*self._changes(_inside, g), self._inside)
 
-    def _changes(self, measure: "_Measure", g: NDArray) -> tuple[NDArray, NDArray]:
+    def _changes(self, measure: _Measure, g: NDArray) -> tuple[NDArray, NDArray]:
         found = [measure(level, g) for level in self._levels]
         coarse, middle, fine = (values / np.maximum(found[-1][1], _TINY) for values, _ in found)
         return differences(coarse, middle), differences(middle, fine)
-
-
-#: Values of a level's states that should not change any more, and their size, both (states, values).
-_Measure = Callable[[Level, NDArray], tuple[NDArray, NDArray]]
-
-_TINY = np.finfo(float).tiny
-
-
-def _in_plane(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
-    surface = level.surface(g)
-    size = np.abs(surface.σ_XX)
-    away = from_edge(surface.places.X) >= 1e-2
-    return surface.σ_XX, np.maximum(size, size[:, away].max(axis=1, keepdims=True))
-
-
-def _inside(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
-    stresses = np.concatenate(level.inside(g), axis=1)
-    return stresses, np.abs(stresses).max(axis=1, keepdims=True)
 
 
 class OwnPressureAtSpeed:

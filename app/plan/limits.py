@@ -79,6 +79,12 @@ def check_pressure(scene: Scene, body: Body) -> None:
             '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
             "and has no walls"
         )
+    if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own and '
+            f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
+            "differ so much in size that with an unknown pressure rounding spoils the matrix"
+        )
     width = float(np.diff(body.pressure.knots).min())
     if width < _NARROWEST:
         raise BadInput(

@@ -152,6 +152,7 @@ def test_the_exact_solution_needs_no_finite_elements():
     [
         ({"solve.mesh": "box"}, 'solve.mesh: found "box".*expected "confocal" or "graded"'),
         ({"solve.mesh": "uniform"}, 'solve.mesh: found "uniform".*expected "confocal" or "graded"'),
+        ({"solve.mesh": "graded", "solid.nu": 0.5}, "ν = 0.5.*expected .confocal. or ν <= 0.49"),
         ({"solve.pressure": [[-1, -1], [0, -1], [1e-10, -2], [1, 0]]}, "differ by 1e-10, expected at"),
         ({"solve.pressure": [[-1, 0], [0.5, 0], [1, 0]]}, "found no pressure but 0"),
     ],

@@ -14,7 +14,7 @@ from galinx.app import errors, ranks
 from galinx.app.commands import begin, compute, look, options
 from galinx.app.console.program import as_called, program
 from galinx.app.errors import BadInput, MachineFailure
-from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
+from galinx.postprocess.errors import Occupied, UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
 
 #: Failures whose message says all; others show where they happened.
@@ -58,7 +58,7 @@ def run_from_shell() -> None:
     try:
         status = cli.main(standalone_mode=False, prog_name=program()) or errors.GOOD
         sys.stdout.flush()
-    except (click.ClickException, BadInput, UnreadableArchive) as error:
+    except (click.ClickException, BadInput, Occupied, UnreadableArchive) as error:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
         if ranks.is_root():  # every rank reads the same input and comes here
             _complain(message)

@@ -10,7 +10,7 @@ import time
 from mpi4py import MPI
 
 from galinx.clock import Clock
-from galinx.meshes import MESHES
+from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.distributed import distribute
@@ -37,10 +37,15 @@ HEAD = """\
 
 def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
     """Steps of conjugate gradients (0: a factor), seconds of set-up and of a solve."""
-    A = space.assemble(MovingFrame(KAPPA, c))
+    response = MovingFrame(KAPPA, c)
+    A = space.assemble(response)
     b = hold(A, space)  # the frictionless punch
     start = time.perf_counter()
-    solver = Factor(A, Clock()) if kind == "mumps" else Multigrid(A, Clock(), kind, space.rigid_motions)
+    solver = (
+        Factor(A, Clock())
+        if kind == "mumps"
+        else Multigrid(A, Clock(), kind, space.rigid_motions(response))
+    )
     ready = time.perf_counter()
     solver.solve(b).destroy()
     done = time.perf_counter()
@@ -55,7 +60,7 @@ def main() -> None:
     for name, degree, all_cuts in CASES:
         for cuts in all_cuts:
             kind = MESHES[name]
-            cells = kind.build(kind.refinement(1e-6, 1.0), cuts, comm.rank, comm.size)
+            cells = kind.build(kind.refinement(Wanted(1e-6)), cuts, comm.rank, comm.size)
             space = Space(*distribute(cells, comm), TAGS, kind.chart, degree)
             if space.size > most:
                 continue

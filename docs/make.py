@@ -18,8 +18,7 @@ os.environ["GALINX_COMMAND"] = "./run.sh"
 _COMMANDS = """\
 # Commands
 
-Written by `docs/make.py` from the program; `./run.sh COMMAND --help` prints the same. Every command
-has the option `-h` or `--help`.
+Written by `docs/make.py` from the program; `./run.sh COMMAND --help`, or `-h`, prints the same.
 
 `./run.sh` without a command reproduces the study, like `./run.sh paper -o results`. Paths are relative to
 the folder you are in. Exit status:
@@ -30,6 +29,10 @@ the folder you are in. Exit status:
 | 1 | the verdict is FAIL, or an archive has faults |
 | 2 | bad input: the message says which key or option, and what was expected |
 | 3 | failure of program or machine |
+
+A file appears under its name when it is whole. What is made from an archive is made again unasked; what
+galinx did not make, scenes and archives are replaced with `--overwrite` only. Files that a command reads,
+folders, devices and FIFOs never are, links are followed, and `--log` adds to logs only.
 
 Words that `run.sh` knows besides the commands:
 

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import TypeVar
 
+from galinx.texts import unseen
+
 Model = TypeVar("Model")
 
 
@@ -22,8 +24,11 @@ class Registry(dict[str, Model]):
         """Add a model of one's own, and return it.
 
         Raises:
-            ValueError: the name is taken: two models of one name could not be told apart in archives.
+            ValueError: the name is taken: two models of one name could not be told apart in archives; or
+                it has a control character, which these cannot hold.
         """
+        if fault := unseen(name):
+            raise ValueError(f"the {self.noun} {name!r}: {fault}")
         if self.get(name, model) is not model:
             raise ValueError(f"the {self.noun} {name!r} exists; give yours another name")
         self[name] = model

@@ -17,6 +17,7 @@ class Physical:
     """The physical half-plane itself, lengths over a."""
 
     name: str = "physical"
+    contracts: bool = False
 
     def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
         return 1.0, 0.0
@@ -55,6 +56,7 @@ class Confocal:
     """
 
     name: str = "confocal"
+    contracts: bool = True
 
     def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
         A = functions.tanh(x[0]) * functions.cos(x[1])

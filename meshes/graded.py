@@ -34,13 +34,20 @@ def box(points: NDArray, refinement: Refinement) -> NDArray[np.float64]:
 
 
 GRADED = MeshKind(
-    "straight-sided, graded towards the edges", Physical(), ratio=0.5, column=1.0, place=image, fan=True
+    "straight-sided, graded towards the edges",
+    Physical(contracts=True),
+    ratio=0.5,
+    column=1.0,
+    place=image,
+    fan=True,
+    innermost=1.0 / 150.0,
+    gentle=1.0,
+    smallest=1e-5,
 )
 
 BOX = MeshKind(
     "the block of the study, with walls at 100 a", Physical(), ratio=0.5, column=0.7, place=box, fan=True,
-    sectors=lambda _: 2,  # an even number puts a vertex into the block's corners
-    walls=BOX_DEPTH,
+    gentle=1.0, smallest=1e-5, walls=BOX_DEPTH,
 )  # fmt: skip
 
 MESHES.register("graded", GRADED)

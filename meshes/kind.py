@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import atanh, ceil, exp, log, log10, pi, sqrt
+from math import ceil, exp, log, log10, pi, sqrt
 
 from numpy.typing import NDArray
 
@@ -14,22 +14,35 @@ from galinx.registry import Registry
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
 
-#: Size in ξ of the innermost ring of a mesh for pieces: 4e-10 of their half-width, far below the distance
-#: at which stresses next to an end are looked at.
-_PIECE_INNERMOST = 3e-5
-
-#: Most cells along each leg of an L in a mesh for pieces.
-_MOST_SECTORS = 8
-
 
 def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     """The pattern itself."""
     return points
 
 
-def by_turning(β_s: float) -> int:
-    """Cells along each leg of an L: fields turn within an angle of β_s = √(1 - c²)."""
-    return 2 if β_s > 0.5 else 3
+#: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
+_STRONGEST = -0.95
+
+#: Power of the rings' ratio by which they are gentler for stresses.
+_GENTLER = 0.6
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a mesh has to be good for.
+
+    Attributes:
+        tolerance: relative accuracy.
+        nearest: least distance over a from a punch edge of a place where stresses are wanted; None where
+            K_I and the pressure's moments are wanted alone.
+        farthest: largest coordinate over a of such a place.
+        exponent: of the strongest singularity of the pressure, in (-1, -1/2].
+    """
+
+    tolerance: float
+    nearest: float | None = None
+    farthest: float = 0.0
+    exponent: float = -0.5
 
 
 @dataclass(frozen=True)
@@ -45,7 +58,13 @@ class MeshKind:
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
-        sectors: cells along each leg of an L, by √(1 - c²) at the highest speed.
+        innermost: share of the tolerance that is left to the innermost cells. Where these cannot follow
+            the singularity it hardly falls with the degree, so that no estimate sees it.
+        gentle: tolerance below which stresses ask for gentler rings and more cells in angle: derivatives
+            converge half as fast as moments of the pressure, and degrees are not high enough.
+        smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
+            positions leaves enough digits.
+        sectors: cells along each leg of an L.
         walls: distance of the far boundary over a; None where the tolerance sets it.
     """
 
@@ -56,7 +75,10 @@ class MeshKind:
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
     fan: bool = False
     rings: bool = True
-    sectors: Callable[[float], int] = by_turning
+    innermost: float = 1.0 / 3.0
+    gentle: float = 3e-7
+    smallest: float = 1e-6
+    sectors: int = 2
     walls: float | None = None
 
     def build(self, refinement: Refinement, cuts: int = 1, part: int = 0, parts: int = 1) -> QuadMesh:
@@ -70,82 +92,77 @@ class MeshKind:
         piece = cut(rectangle(refinement, self.fan), cuts, part, parts)
         return QuadMesh(self.place(piece.points, refinement), piece.cells, piece.edges)
 
-    def refinement(self, tolerance: float, β_s: float) -> Refinement:
-        """Refinement that reaches ``tolerance`` with :meth:`degree`.
-
-        Args:
-            tolerance: wanted relative accuracy of K_I and of the pressure's moments.
-            β_s: √(1 - c²) at the highest speed.
-        """
-        # The energy in a ring falls with its size squared.
-        innermost = (self._of_cells(tolerance) / 3.0) ** 0.5
-        sectors = self.sectors(β_s)
-        return self._refinement(innermost, self.ratio, self._outer_ξ(tolerance), self.column, sectors)
-
-    def for_pieces(self, tolerance: float, β_s: float, view: float) -> Refinement:
-        """Refinement for an interval whose stresses are wanted, at its ends and far away.
-
-        Stresses there are infinite like logarithms, and those of intervals that meet have to cancel.
-
-        Args:
-            tolerance: wanted relative accuracy of stresses.
-            β_s: √(1 - c²) at the highest speed.
-            view: how far from it, over the half-width.
-        """
-        outer = log(2.0 * 100.0 / tolerance * view)
-        # Fields have poles at the angles ±i artanh β_s. Where they come near a cell, twice the cells gain
-        # more than a higher degree.
-        sectors = ceil(-log10(tolerance) / (2.2 * min(atanh(min(β_s, 0.9)), 1.5)))
-        sectors = min(max(sectors, self.sectors(β_s)), _MOST_SECTORS)
-        return self._refinement(_PIECE_INNERMOST, sqrt(self.ratio), outer, self.column / 1.5, sectors)
-
-    def _refinement(
-        self, innermost: float, ratio: float, outer: float, column: float, sectors: int
-    ) -> Refinement:
-        """Rings down to ``innermost`` and columns to ξ = ``outer``."""
-        levels = ceil(log(pi / 2.0 / innermost) / -log(ratio))
-        reach = outer - pi / 2.0
+    def refinement(self, wanted: Wanted) -> Refinement:
+        """Refinement that reaches what is wanted with :meth:`degree`."""
+        ratio, sectors = self.ratio, self.sectors
+        if wanted.nearest is not None and self._of_cells(wanted) < self.gentle:
+            ratio, sectors = ratio**_GENTLER, sectors + 1
+        levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
+        reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
-        first = min(column, 1.0)
-        count = ceil((reach - first) / column)
+        first = min(self.column, 1.0)
+        count = ceil((reach - first) / self.column)
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
         return Refinement(levels, ratio, sectors, columns)
 
-    def degree(self, tolerance: float, margin: float) -> int:
-        """Polynomial degree that should reach ``tolerance``; the measured error may ask for more.
+    def _innermost(self, wanted: Wanted) -> float:
+        """Size of the innermost cells that is small enough."""
+        tolerance = self._of_cells(wanted)
+        size = float((self.innermost * tolerance) ** (1.0 / self._power(wanted)))
+        if wanted.nearest is not None:
+            # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
+            # measured as 35² times the square of their size over the distance, both in this chart.
+            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, 35.0 * sqrt(tolerance)))
+        return max(size, self.smallest)
+
+    def degree(self, wanted: Wanted, margin: float) -> int:
+        """Polynomial degree that should reach what is wanted; the measured error may ask for more.
 
         Args:
-            tolerance: wanted relative accuracy.
+            wanted: what.
             margin: of the solid's response, in (0, 1]; errors grow as it falls.
         """
-        digits = -log10(self._of_cells(tolerance))
+        digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
-        wanted = ceil(3.4 - 0.4 * lost + (0.7 + 0.23 * lost) * digits)
-        return min(max(wanted, DEGREES[0]), DEGREES[1])
+        stresses = wanted.nearest is not None
+        degree = ceil(3.4 - 0.2 * lost + (0.7 + 0.12 * lost) * digits) + stresses
+        return min(max(degree, DEGREES[0]), DEGREES[1])
 
-    def reach(self, tolerance: float) -> float:
+    def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
-        return exp(self._outer_ξ(tolerance)) / 2.0
+        return exp(self._outer_ξ(wanted)) / 2.0
 
-    def truncation(self, tolerance: float, margin: float = 1.0) -> float:
+    def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Estimated relative error of K_I from the finite outer radius R, times σ_XY/σ_YY.
 
-        a/R at rest; it was seen to grow as the root of the response's margin falls.
+        a/R at rest; it was seen to grow as the cubic root of the response's margin falls.
         """
-        return 1.0 / (self.reach(tolerance) * sqrt(margin))
+        return 1.0 / (self.reach(wanted) * margin ** (1.0 / 3.0))
 
-    def _outer_ξ(self, tolerance: float) -> float:
+    def unseen(self, wanted: Wanted) -> float:
+        """Estimated relative error of K_I that the innermost cells leave at any degree."""
+        # A chart with smooth fields has little to leave.
+        return float((0.3 if self.fan else 3e-4) * self._innermost(wanted) ** self._power(wanted))
+
+    def _power(self, wanted: Wanted) -> float:
+        """Of a ring's size, with which the energy in it falls."""
+        return 4.0 * (1.0 + max(wanted.exponent, _STRONGEST))
+
+    def _outer_ξ(self, wanted: Wanted) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
         if self.walls:
             return log(2.0 * self.walls)
-        # Truncation at radius R costs about a/R in K_I; a hundredth of the tolerance is left to it.
-        return log(2.0 * 100.0 / tolerance)
+        # Truncation at radius R costs about a/R in K_I and, at a distance r, r/R in the stresses; a
+        # hundredth of the tolerance is left to it.
+        return log(2.0 * 100.0 / wanted.tolerance * max(1.0, wanted.farthest))
 
-    def _of_cells(self, tolerance: float) -> float:
+    def _of_cells(self, wanted: Wanted) -> float:
         """What the cells have to reach: beside walls, which set the error, nothing more."""
-        return min(tolerance, self.truncation(tolerance) / 1000.0) if self.walls else tolerance
+        if self.walls:
+            return min(wanted.tolerance, self.truncation(wanted) / 1000.0)
+        return wanted.tolerance
 
 
 #: Meshes by the name that scenes use; every mesh adds itself.

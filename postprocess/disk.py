@@ -1,6 +1,5 @@
 """What the file system says when it refuses."""
 
-import os
 import shutil
 from contextlib import suppress
 from pathlib import Path
@@ -12,13 +11,20 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
     """The failure to raise, with the reason, and the space that is needed and free.
 
     Args:
-        target: the archive.
+        target: the file.
         error: what the file system or HDF5 raised.
         needed: bytes, where they are known.
     """
-    number = getattr(error, "errno", None)
-    reason = os.strerror(number) if number else str(error)
-    space = f"; it needs {needed / 1e6:.3g} MB" if needed else ""
+    reason = getattr(error, "strerror", None) or str(error)
+    space = f"; it needs {_size(needed)}" if needed else ""
     with suppress(OSError):
-        space += f"; {shutil.disk_usage(target.parent).free / 1e6:.3g} MB are free"
+        space += f"; {_size(shutil.disk_usage(target.parent).free)} are free"
     return UnwritableArchive(f"cannot write {target}: {reason}{space}")
+
+
+def _size(count: float) -> str:
+    for unit in ("bytes", "kB", "MB"):
+        if count < 999.5:
+            return f"{count:.3g} {unit}"
+        count /= 1000.0
+    return f"{count:.3g} GB"

@@ -6,7 +6,11 @@ class UnreadableArchive(Exception):
 
 
 class UnwritableArchive(Exception):
-    """The file system refused an archive; the message says why."""
+    """The file system refused an archive or another file; the message says why."""
+
+
+class Occupied(Exception):
+    """What is there may not be replaced; the message says what it is, and what to do."""
 
 
 class ArchiveInUse(UnwritableArchive):

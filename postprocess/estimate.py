@@ -1,11 +1,13 @@
 """Error of a finite element result, measured on results of lower degree, no exact solution used."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-#: Range of the ratio of successive differences. Below it a lucky coincidence is not believed; at its
-#: upper end convergence is too slow to be summed, and the estimate says that it is large.
-RATIO = (0.28, 0.9)
+#: Ratio of successive differences above which convergence is too slow to be summed; the estimate then
+#: says that it is large.
+SLOWEST = 0.9
 
 #: Share of the largest first difference below which a state's own is not believed.
 TYPICAL = 0.25
@@ -14,16 +16,49 @@ TYPICAL = 0.25
 SAFETY = 2.0
 
 
-def differences(coarse: NDArray, fine: NDArray) -> NDArray[np.float64]:
-    """Largest difference of each state's quantities between two degrees, (states,).
+@dataclass(frozen=True)
+class Rate:
+    """How fast errors fall from one level to the next.
+
+    Attributes:
+        usual: ratio of successive differences that is counted on, at least.
+        believed: what is seen below it is a lucky coincidence or a level that was too coarse.
+        least: a second difference below this share of the first is not believed itself.
+    """
+
+    usual: float
+    believed: float
+    least: float = 0.0
+
+
+#: Ratio of successive differences below which those of derivatives are not believed: what one cell does
+#: at the places that are looked at is not what the next one does.
+_ERRATIC = 0.1
+
+
+def of_degrees(order: int) -> Rate:
+    """From one degree to the next.
 
     Args:
-        coarse, fine: (states, quantities).
+        order: 2 for resultants and moments, 1 for derivatives.
     """
-    return np.abs(fine - coarse).max(axis=1)
+    return Rate(0.16, 0.16) if order == 2 else Rate(0.33, 0.33, _ERRATIC)
 
 
-def remaining(first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray]) -> NDArray[np.float64]:
+def of_cuts(degree: int, order: int) -> Rate:
+    """Where cells are halved: 2 to the power -(order · degree), and a few times that to be counted on.
+
+    Args:
+        degree: polynomial degree.
+        order: 2 for resultants and moments, 1 for derivatives.
+    """
+    halved = 2.0 ** (-order * degree)
+    return Rate(3.5 * halved, min(16.0 * halved, 0.25))
+
+
+def remaining(
+    first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray], rate: Rate
+) -> NDArray[np.float64]:
     """What is left of the errors after two successive differences, by a geometric series.
 
     d₁ ρ/(1 - ρ), with ``SAFETY``. A state's own ratio ρ = d₁/d₀ shows where its singularity is too strong
@@ -33,12 +68,15 @@ def remaining(first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray]) 
     Args:
         first, second: successive differences of each state, (states,).
         sample: the same of states that stand for all of them.
+        rate: that is counted on.
 
     Returns:
-        Errors of the last degree, (states,).
+        Errors of the last level, (states,).
     """
+    second = np.maximum(second, rate.least * first)
     largest = max(sample[0].max(), np.finfo(float).tiny)
     common = sample[1].max() / largest
     own = second / np.maximum(first, TYPICAL * largest)
-    ρ = np.clip(np.maximum(common, own), *RATIO)
+    ρ = np.maximum(common, own)
+    ρ = np.minimum(np.where(ρ > rate.believed, ρ, rate.usual), SLOWEST)
     return SAFETY * second * ρ / (1.0 - ρ)

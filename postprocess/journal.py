@@ -1,26 +1,27 @@
 """Finished parts of a run, kept beside the archive until that is complete.
 
 A killed HDF5 file cannot be opened again, so every part is a file of its own that appears at once or not
-at all. The folder's name is hidden: ``.NAME.work`` beside the archive ``NAME``.
+at all. It says itself which rows it has, of which run; one that is damaged, or bears another's name, is
+not there. The folder's name is hidden: ``.NAME.work`` beside the archive ``NAME``.
 """
 
 import fcntl
-import json
 import os
 import shutil
-import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
+from galinx import files, sealed
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import ArchiveInUse, LeftOver
+
+_SUFFIX = ".part"
 
 
 @dataclass(frozen=True)
@@ -63,13 +64,16 @@ class Journal:
         #: Where the parts are, and what else belongs to the unfinished run.
         self.folder = target.with_name(f".{target.name}.work")
         self._resume, self._overwrite = resume, overwrite
-        self._lock: IO[str] | None = None
+        self._lock: IO[bytes] | None = None
+        #: How many of the parts to go on with are damaged, or another run's: as good as not kept.
+        self.damaged = 0
+        self._rows: set[tuple[int, int]] = set()
         self._complete = self._stop = False
 
     def __enter__(self) -> "Journal":
         try:
             self.folder.mkdir(exist_ok=True)
-            self._lock = (self.folder / "lock").open("w", encoding="utf-8")
+            self._lock = open(files.open_file(self.folder / "lock", os.O_RDWR | os.O_CREAT), "r+b")
             try:
                 fcntl.lockf(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
@@ -77,13 +81,13 @@ class Journal:
                     f"another run is writing {self.target}; wait for it, or name another file with -o"
                 ) from None
             self._check_left_over()
-            (self.folder / "key").write_text(self._key, encoding="utf-8")
         except OSError as error:
+            self.__exit__()
             raise refused(self.target, error) from error
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._complete or not any(self._files()):
+        if self._complete or not self._files():
             shutil.rmtree(self.folder, ignore_errors=True)
         if self._lock:
             self._lock.close()
@@ -91,13 +95,13 @@ class Journal:
     @property
     def states(self) -> int:
         """Number of states that are kept."""
-        return sum(stop - start for start, stop in map(_bounds, self._files()))
+        return sum(stop - start for start, stop in self._rows)
 
     def parts(self) -> Iterator[Part]:
         """The kept parts in order of their rows; damaged ones are left out and will be done again."""
-        for path in sorted(self._files()):
-            with suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-                yield _load(path)
+        for key, part in filter(None, map(_load, self._files())):
+            if key == self._key:
+                yield part
 
     def keep(self, part: Part) -> None:
         """Keep a part.
@@ -106,15 +110,16 @@ class Journal:
             UnwritableArchive: the file system refused.
             KeyboardInterrupt: the run was asked to stop; the part is kept.
         """
-        told = {"comparisons": [asdict(found) for found in part.comparisons], "record": part.record}
-        path = self.folder / f"{part.rows.start:010d}-{part.rows.stop:010d}.npz"
-        temporary = self.folder / "part.npz"
+        path = self.folder / _name(part.rows)
         try:
-            arrays: dict[str, Any] = part.data | {"told": np.array(json.dumps(told))}
-            np.savez(temporary, **arrays)
-            os.replace(temporary, path)
+            with files.NewFile(path) as new:
+                with new.temporary.open("wb") as file:
+                    file.writelines(_packed(part, self._key))
+                # Not synchronised: what a power cut tears does not fit its digest, and is computed again.
+                os.replace(new.temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
+        self._rows.add((part.rows.start, part.rows.stop))
         if self._stop:
             raise KeyboardInterrupt
 
@@ -131,37 +136,54 @@ class Journal:
         """The archive holds everything; the parts are no longer needed."""
         self._complete = True
 
-    def _files(self) -> Iterator[Path]:
-        return self.folder.glob("*-*.npz")
+    def _files(self) -> list[Path]:
+        return sorted(self.folder.glob(f"*{_SUFFIX}"))
 
     def _check_left_over(self) -> None:
-        left, key = self.states, self.folder / "key"
+        there = self._files()
+        left = [(key, part.rows) for key, part in filter(None, map(_load, there))]
+        own = {(rows.start, rows.stop) for key, rows in left if key == self._key}
+        self.damaged = len(there) - len(own) if self._resume else 0
         if left and self._resume:
-            if key.read_text(encoding="utf-8") != self._key:
+            if not own:
                 raise LeftOver(
                     f"what an interrupted run left of {self.target} belongs to another scene or version "
                     "of the program; give that back, or start anew with --overwrite"
                 )
+            self._rows = own
         elif left and not self._overwrite:
+            states = sum(rows.stop - rows.start for _, rows in left)
             raise LeftOver(
-                f"an interrupted run left {left} finished states of {self.target}; go on with --resume, "
-                "or start anew with --overwrite"
+                f"an interrupted run left {states} finished states of {self.target}; "
+                "go on with --resume, or start anew with --overwrite"
             )
         else:
-            for path in self._files():
+            for path in there:
                 path.unlink()
         for path in self.folder.glob(".*.partial"):
             path.unlink()
 
 
-def _bounds(path: Path) -> tuple[int, int]:
-    start, stop = path.stem.split("-")
-    return int(start), int(stop)
+def _name(rows: slice) -> str:
+    return f"{rows.start:010d}-{rows.stop:010d}{_SUFFIX}"
 
 
-def _load(path: Path) -> Part:
-    with np.load(path) as file:
-        data = {name: file[name] for name in file.files}
-    told = json.loads(str(data.pop("told")))
-    comparisons = [Comparison(**found) for found in told["comparisons"]]
-    return Part(slice(*_bounds(path)), data, comparisons, told["record"])
+def _packed(part: Part, key: str) -> list[Any]:
+    told = {
+        "key": key,
+        "rows": [part.rows.start, part.rows.stop],
+        "comparisons": [asdict(found) for found in part.comparisons],
+        "record": part.record,
+    }
+    return sealed.packed(told, part.data)
+
+
+def _load(path: Path) -> tuple[str, Part] | None:
+    """The key of a part's run, and the part; None where it is damaged or bears another's name."""
+    told, data = sealed.read(path) or ({}, {})
+    with suppress(Exception):  # whatever is wrong with a part, it is not there
+        rows = slice(*told["rows"])
+        if path.name == _name(rows):
+            comparisons = [Comparison(**found) for found in told["comparisons"]]
+            return told["key"], Part(rows, data, comparisons, told["record"])
+    return None

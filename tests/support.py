@@ -1,8 +1,11 @@
 """What tests of several rooms need: commands, processes, scenes computed in memory, spaces and areas."""
 
 import os
+import resource
+import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +54,34 @@ def clean_environment():
         "PRTE_MCA_hwloc_default_binding_policy": "none",
         "PYTHONPATH": str(HOME),
     }
+
+
+@contextmanager
+def full_disk(size):
+    """No file may grow beyond ``size``, which is what a full disk does in the end."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    earlier = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, earlier)
+
+
+@contextmanager
+def at_once(seconds=5):
+    """The block ends by itself; one that waits for somebody is ended with a failure."""
+
+    def late(*_):
+        raise TimeoutError("it waits")
+
+    signal.signal(signal.SIGALRM, late)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
 
 
 def widest(text):

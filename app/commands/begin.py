@@ -10,13 +10,15 @@ from galinx.app import errors, ranks
 from galinx.app.commands import options
 from galinx.app.console.program import program
 from galinx.app.console.terminal import say
-from galinx.app.errors import BadInput, MachineFailure
+from galinx.app.errors import BadInput
+from galinx.postprocess.target import Target
 
 
 @click.command()
 @click.argument("name", required=False)
 @click.option("-o", "output", type=options.FILE, help="Scene; default: NAME.toml.")
-def init(name: str | None, output: Path | None) -> int:
+@options.overwrite
+def init(name: str | None, output: Path | None, overwrite: bool) -> int:
     """Write a commented scene to begin with; without NAME, list them.
 
     Example: ./run.sh init own_material -o mine.toml
@@ -33,13 +35,7 @@ def init(name: str | None, output: Path | None) -> int:
     if name not in known:
         raise BadInput(f"init {name}: no such scene; expected one of {', '.join(known)}")
     target = output or Path(f"{name}.toml")
-    try:
-        with target.open("x", encoding="utf-8") as file:
-            file.write(known[name].text)
-    except FileExistsError:
-        raise BadInput(f"{target} exists; name another file with -o") from None
-    except OSError as error:
-        raise MachineFailure(f"cannot write {target}: {error.strerror}") from None
+    Target(target, None, overwrite, options.inputs()).write(known[name].text.encode())
     print(f"scene: {target}")
     print(f"next: edit it, then {program()} plan {target}")
     return errors.GOOD

@@ -14,13 +14,15 @@ from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import print_summary, print_times, say
 from galinx.app.errors import MachineFailure
+from galinx.postprocess.errors import UnwritableArchive
+from galinx.postprocess.target import Folder, Target
 
 
 @click.command()
 @options.scene
 @click.option("-o", "output", type=options.FILE, help="Archive; default: the scene's name with .h5.")
 @options.changes
-@click.option("--overwrite", is_flag=True, help="Replace an archive of that name.")
+@options.overwrite
 @click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
 @options.talk
 def run(
@@ -33,29 +35,28 @@ def run(
     """
     from galinx.app.plan.plan import make_plan
     from galinx.app.run.flow import compute
-    from galinx.app.run.output import check_output
 
-    target = output or Path(scene.stem + ".h5")
+    path = output or Path(scene.stem + ".h5")
     checked = _read(scene, changes)
     if not ranks.is_root() and not make_plan(checked).fem:
         return errors.GOOD  # nothing to share
-    check_output(target, overwrite)
+    target = Target(path, None, overwrite, options.inputs(scene))
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
     from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
 
-    journal = Journal(target, f"{checked.sha256} {__version__}", resume, overwrite)
+    journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
     with progress:
         progress.note(f"scene: {scene}")
-        verdict = _archived(checked, journal, progress)
-    data, attributes = read(target, stresses=False)
+        verdict = _archived(checked, target, journal, progress)
+    data, attributes = read(path, stresses=False)
     print_summary(data, attributes, quiet)
     if not quiet:
         print_times(data)
-        print(f"archive: {target}")
-        print(f"next: {program()} report {target}")
+        print(f"archive: {path}")
+        print(f"next: {program()} report {path}")
     return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
 
 
@@ -70,7 +71,7 @@ def _read(path: Path, changes: tuple[str, ...]) -> Any:
     return read(path, from_words(changes))
 
 
-def _archived(scene: Any, journal: Any, progress: Progress) -> str:
+def _archived(scene: Any, target: Target, journal: Any, progress: Progress) -> str:
     """Compute a scene into its archive, keeping finished parts on the way; the verdict."""
     from galinx.app.run.flow import compute
     from galinx.postprocess.hdf5 import archive
@@ -78,19 +79,25 @@ def _archived(scene: Any, journal: Any, progress: Progress) -> str:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, journal.stop)
     try:
-        with journal, archive.Writer(journal.target, journal.folder) as writer:
+        with journal, archive.Writer(target, journal.folder) as writer:
             attributes = compute(scene, writer, progress, journal)
             progress.say("checking the archive")
             writer.finish(attributes)
             journal.complete()
-            progress.note(f"verdict: {attributes['verdict']}; archive: {journal.target}")
+            progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except KeyboardInterrupt:
-        kept = journal.states
-        go_on = (
-            f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
-        )
-        raise MachineFailure(f"interrupted; {go_on}") from None
+        raise MachineFailure(f"interrupted; {_kept(journal)}") from None
+    except UnwritableArchive as error:
+        if type(error) is UnwritableArchive:  # others say themselves what is to be done
+            raise UnwritableArchive(f"{error}; {_kept(journal)}") from error
+        raise
     return attributes["verdict"]
+
+
+def _kept(journal: Any) -> str:
+    """What can be done with what is finished."""
+    kept = journal.states
+    return f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
 
 
 @click.command()
@@ -119,8 +126,9 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
 
 @click.command()
 @options.folder("results")
+@options.overwrite
 @options.talk
-def paper(folder: Path, progress: Progress, quiet: bool) -> int:
+def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int:
     """Reproduce the study: Tables 1, 3, 4, 5, Figs 2 and 5-10, a report, into a folder.
 
     Example: ./run.sh paper -o results
@@ -128,20 +136,26 @@ def paper(folder: Path, progress: Progress, quiet: bool) -> int:
     from galinx.app.study.paper import reproduce
 
     with progress:
-        good = reproduce(folder, progress, quiet)
+        good = reproduce(Folder(folder, overwrite, options.inputs()), progress, quiet)
     return errors.GOOD if good else errors.FAILED_VERDICT
 
 
 @click.command()
 @options.folder("stress")
-def stress(folder: Path) -> int:
+@click.option("--seed", type=int, default=1, show_default=True, help="Of the random scenes.")
+@click.option(
+    "--scenes", type=click.IntRange(4), default=300, show_default=True, help="Number of random scenes."
+)
+@options.overwrite
+def stress(folder: Path, seed: int, scenes: int, overwrite: bool) -> int:
     """Try extremes of every parameter, and say whether the promises hold there.
 
     Example: ./run.sh stress -o stress
     """
     from galinx.app.extremes import matrix
 
-    return errors.GOOD if matrix.stress(folder) else errors.FAILED_VERDICT
+    good = matrix.stress(Folder(folder, overwrite, options.inputs()), seed, scenes)
+    return errors.GOOD if good else errors.FAILED_VERDICT
 
 
 COMMANDS: tuple[Any, ...] = (run, plan, paper, stress)

@@ -10,7 +10,6 @@ from galinx.app import errors, ranks
 from galinx.app.commands import options
 from galinx.app.console.program import program
 from galinx.app.console.terminal import print_summary
-from galinx.app.errors import BadInput
 
 
 @click.command()
@@ -52,17 +51,15 @@ def check(archive: Path) -> int:
 @click.command()
 @options.archive
 @click.option("-o", "output", type=options.FILE, help="Page; default: the archive's name with .html.")
-def report(archive: Path, output: Path | None) -> int:
+@options.overwrite
+def report(archive: Path, output: Path | None, overwrite: bool) -> int:
     """Write a page that shows all of ARCHIVE: one HTML file that needs no network.
 
     Example: ./run.sh report tables.h5
     """
-    from galinx.app.results.result import load
-
-    target = _beside(archive, output, f"{archive.stem}.html")
-    result = load(archive)
+    target, result = output or Path(f"{archive.stem}.html"), _loaded(archive)
     if ranks.is_root():
-        result.report(target)
+        result.report(target, overwrite)
         print(f"report: {target}")
         print(f"next: open it in a browser, or {program()} plot {archive} for PDF figures")
     return errors.GOOD
@@ -71,16 +68,15 @@ def report(archive: Path, output: Path | None) -> int:
 @click.command()
 @options.archive
 @options.folder(".")
-def plot(archive: Path, folder: Path) -> int:
+@options.overwrite
+def plot(archive: Path, folder: Path, overwrite: bool) -> int:
     """Draw what ARCHIVE holds, each figure as PDF and PNG.
 
     Example: ./run.sh plot tables.h5 -o figures
     """
-    from galinx.app.results.result import load
-
-    result = load(archive)
+    result = _loaded(archive)
     if ranks.is_root():
-        for path in result.plot(folder, archive.stem):
+        for path in result.plot(folder, archive.stem, overwrite):
             print(f"figure: {path}")
     return errors.GOOD
 
@@ -90,29 +86,29 @@ def plot(archive: Path, folder: Path) -> int:
 @click.option("--state", type=int, default=0, show_default=True, help="Number of the state, see show.")
 @click.option("--extent", type=float, default=10.0, show_default=True, help="How far, over a.")
 @click.option("-o", "output", type=options.FILE, help="File; default: ARCHIVE_STATE.hdf.")
-def fields(archive: Path, state: int, extent: float, output: Path | None) -> int:
+@options.overwrite
+def fields(archive: Path, state: int, extent: float, output: Path | None, overwrite: bool) -> int:
     """Write displacement and stresses of a state of ARCHIVE for ParaView (VTKHDF).
 
     The state is computed once more by finite elements, at the degree that the archive used.
 
     Example: ./run.sh fields tables.h5 --state 3
     """
-    from galinx.app.results.result import load
-
-    target = _beside(archive, output, f"{archive.stem}_{state}.hdf")
-    load(archive, stresses=False).fields(target, state, extent)
+    target = output or Path(f"{archive.stem}_{state}.hdf")
+    _loaded(archive, stresses=False).fields(target, state, extent, overwrite)
     if ranks.is_root():
         print(f"fields: {target}")
         print("next: open it in ParaView (5.11 or newer), and colour by von_mises")
     return errors.GOOD
 
 
-def _beside(archive: Path, output: Path | None, default: str) -> Path:
-    """Where to write; what can be made again may be replaced, the archive may not."""
-    target = output or Path(default)
-    if target.resolve() == archive.resolve():
-        raise BadInput(f"{target} is the archive itself; name another file with -o")
-    return target
+def _loaded(archive: Path, stresses: bool = True) -> Any:
+    """An archive's result, which knows all that the command reads."""
+    from galinx.app.results.result import load
+
+    result = load(archive, stresses)
+    result.inputs = options.inputs(archive)
+    return result
 
 
 def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]:

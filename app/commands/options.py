@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from galinx.app.console.progress import Progress
+from galinx.postprocess.target import LOG, Target
 
 FILE = click.Path(path_type=Path)
 
@@ -16,6 +17,21 @@ changes = click.option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE",
     help="Another value, as in --set friction.mu_c=0.5; may be repeated.",
 )  # fmt: skip
+
+
+overwrite = click.option(
+    "--overwrite", is_flag=True, help="Replace what has that name, whatever kind of file it is."
+)
+
+
+def inputs(*files: Path) -> tuple[Path, ...]:
+    """Files that nothing may be written over: those given, users' models, and the log."""
+    log = click.get_current_context().params.get("log")
+    return (*files, *_extensions(), *([log] if log else []))
+
+
+def _extensions() -> tuple[Path, ...]:
+    return click.get_current_context().find_root().params.get("extensions", ())
 
 
 def folder(default: str) -> Callable[[Any], Any]:
@@ -32,6 +48,9 @@ def talk(command: Any) -> Any:
     def with_progress(quiet: bool, verbose: bool, log: Path | None, **others: Any) -> Any:
         if quiet and verbose:
             raise click.UsageError("--quiet and --verbose exclude each other; keep one")
+        if log:
+            read = [others["scene"]] if "scene" in others else []
+            Target(log, LOG, inputs=[*read, *_extensions()])
         return command(progress=Progress(quiet, verbose, log), quiet=quiet, **others)
 
     with_progress.__name__, with_progress.__doc__ = command.__name__, command.__doc__

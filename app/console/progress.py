@@ -1,10 +1,12 @@
 """What a long run tells: a bar on a terminal, lines for who wants them, a log file."""
 
 import logging
+import os
 import sys
 from pathlib import Path
 from typing import Any
 
+from galinx import files
 from galinx.app import ranks
 from galinx.app.errors import MachineFailure
 
@@ -41,10 +43,7 @@ class Progress:
         elif not self._quiet and sys.stderr.isatty():
             self._bar, self._task = _start_bar()
         if self._log:
-            try:
-                self._add(logging.FileHandler(self._log, encoding="utf-8"), "%(asctime)s %(message)s")
-            except OSError as error:
-                raise MachineFailure(f"cannot write the log {self._log}: {error.strerror}") from None
+            self._add(_LogFile(self._log), "%(asctime)s %(message)s")
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -65,6 +64,14 @@ class Progress:
             self._logger.log(_NOTE, "%s", text)
             self._last = text
 
+    def warn(self, text: str) -> None:
+        """What everybody should know, at once and whatever rank found it."""
+        if self._bar:
+            self._bar.console.print(f"warning: {text}", markup=False, highlight=False, soft_wrap=True)
+        elif not self._verbose:
+            print(f"warning: {text}", file=sys.stderr, flush=True)
+        self.note(f"warning: {text}")
+
     def done(self, states: int, of: int) -> None:
         """So many states are finished."""
         if self._bar:
@@ -74,6 +81,42 @@ class Progress:
     def _add(self, handler: logging.Handler, form: str) -> None:
         handler.setFormatter(logging.Formatter(form))
         self._logger.addHandler(handler)
+
+
+class _LogFile(logging.Handler):
+    """Adds lines to a file; a disk that becomes full ends the log, not the run.
+
+    Args:
+        path: the file; one that is there is added to.
+
+    Raises:
+        MachineFailure: it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path, self._full = path, False
+        try:
+            handle = files.open_file(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+        except OSError as error:
+            raise MachineFailure(f"cannot write the log {path}: {error.strerror}") from None
+        self._file = open(handle, "ab", buffering=0)  # noqa: SIM115 - closed by close
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if self._full:
+            return
+        line, start = memoryview(f"{self.format(record)}\n".encode()), self._file.seek(0, os.SEEK_END)
+        try:
+            while line:  # a disk that becomes full takes a part
+                line = line[self._file.write(line) :]
+        except OSError as error:
+            self._full = True
+            self._file.truncate(start)
+            print(f"warning: the log {self._path} ends here: {error.strerror}", file=sys.stderr)
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
 
 
 def _start_bar() -> tuple[Any, Any]:

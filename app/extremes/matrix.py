@@ -1,42 +1,61 @@
 """Run the matrix, print its table, write its archive and figures."""
 
 from collections.abc import Callable
-from pathlib import Path
+from functools import partial
+from typing import Any
 
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.extremes import friction_law, mechanics, resolution
+from galinx.app.extremes.random_scenes import random_scenes
 from galinx.app.extremes.row import Row
+from galinx.postprocess.target import ARCHIVE, Folder, Target
 
-#: Every row, cheap ones first.
+#: Every row but the random scenes, cheap ones first.
 ROWS: tuple[Callable[[], Row], ...] = (
     friction_law.exact_law, friction_law.runge_kutta_steps, mechanics.units, mechanics.frictions,
     mechanics.speeds, mechanics.solids, resolution.edges, resolution.radii, resolution.degrees,
 )  # fmt: skip
 
 
-def stress(folder: Path) -> bool:
-    """Whether every row keeps its word; archive, figures and table go into ``folder``."""
-    rows = []
+def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
+    """Whether every row keeps its word; archive, figures and table go into ``folder``.
+
+    Args:
+        folder: is made.
+        seed, scenes: random number seed and number of the random scenes.
+
+    Raises:
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
+    """
+    makers: tuple[Callable[[], Row], ...] = (*ROWS, partial(random_scenes, seed, scenes))
+    target, rows = folder.target("stress.h5", ARCHIVE), []
     with Progress() as progress:
-        for i, make in enumerate(ROWS):
-            progress.say((make.__doc__ or make.__name__).splitlines()[0])
+        for i, make in enumerate(makers):
+            progress.say((getattr(make, "func", make).__doc__ or repr(make)).splitlines()[0])
             rows.append(make())
-            progress.done(i + 1, len(ROWS))
+            progress.done(i + 1, len(makers))
     good = all(verdict.holds for row in rows for verdict in row.verdicts)
     if ranks.is_root():
-        _write(folder, rows, good)
+        from galinx.postprocess.figures.canvas import save
+
+        save([(row.name, _figure(row)) for row in rows], folder)
+        _write(target, rows, good)
     return good
 
 
-def _write(folder: Path, rows: list[Row], good: bool) -> None:
-    from galinx.postprocess.figures.canvas import save
+def _figure(row: Row) -> Any:
     from galinx.postprocess.figures.lines import lines_figure
+
+    return lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
+
+
+def _write(target: Target, rows: list[Row], good: bool) -> None:
     from galinx.postprocess.hdf5 import archive
     from galinx.postprocess.tables import new_console
 
-    folder.mkdir(parents=True, exist_ok=True)
-    with archive.Writer(folder / "stress.h5") as writer:
+    with archive.Writer(target) as writer:
         for row in rows:
             writer.put(f"{row.name}/x", row.x, ("1", row.x_label))
             for label, values in row.lines.items():
@@ -46,10 +65,8 @@ def _write(folder: Path, rows: list[Row], good: bool) -> None:
         writer.finish({"program": "galinx stress", "verdict": "PASS" if good else "FAIL"})
     console = new_console()
     for row in rows:
-        figure = lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
-        save(figure, folder, row.name)
         console.print(f"{row.name}: {row.title}")
         for verdict in row.verdicts:
             console.print(f"  {'holds' if verdict.holds else 'FAILS'}  {verdict.text}")
-    console.print(f"written to {folder}: stress.h5, a figure of each row as PDF and PNG")
+    console.print(f"written to {target.path.parent}: stress.h5, a figure of each row as PDF and PNG")
     console.print(f"verdict: {'PASS' if good else 'FAIL'}")

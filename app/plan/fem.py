@@ -3,13 +3,22 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from galinx.app import ranks
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
-from galinx.meshes import MESHES, MeshKind
+from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.solvers.rays import NEAR
+from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
+from galinx.solvers.solution import Places
+
+#: Distance over a from a punch edge that no mesh resolves: rounding of positions.
+_NEAREST = 1e-12
 
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
@@ -27,7 +36,7 @@ class FemPlan:
         solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
-        tolerance: wanted relative accuracy of K_I and of the pressure's moments.
+        wanted: what the mesh has to be good for.
         mode: ``"contact"``, ``"traction"`` or ``"own pressure"``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
@@ -41,9 +50,14 @@ class FemPlan:
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
-    tolerance: float
+    wanted: Wanted
     mode: str
     shared_speeds: bool
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted relative accuracy."""
+        return self.wanted.tolerance
 
     @property
     def pattern(self) -> QuadMesh:
@@ -62,14 +76,16 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = None) -> FemPlan:
+def plan_fem(
+    scene: Scene, responses: Sequence[Response], places: Places, g: tuple[float, float]
+) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
-        view: how far the mesh of a pressure's pieces is looked at, over their half-width; None where no
-            pressure is put in piece by piece.
+        places: where stresses are asked for.
+        g: smallest and largest σ_XY/σ_YY.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -77,14 +93,13 @@ def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = N
     solve, kind = scene.solve, MESHES[scene.solve.mesh]
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
-    β_s = min(response.β_s for response in responses)
-    refinement = kind.refinement(solve.tolerance, β_s)
-    if view:
-        refinement = kind.for_pieces(solve.tolerance, β_s, view)
-    # The mesh of pieces is finer; the degree rises from there.
+    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
+    wanted = wanted_for(solve.tolerance, places, exponent)
+    if solve.own_pressure:
+        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
+    refinement = kind.refinement(wanted)
     degrees = tuple(
-        solve.degree or max(kind.degree(solve.tolerance, response.margin) - bool(view), 4 + mixed)
-        for response in responses
+        solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
     )
     size = _size(refinement, solve.cuts * max(degrees))
     shared = shares_speeds(size, len(responses))
@@ -94,9 +109,24 @@ def plan_fem(scene: Scene, responses: Sequence[Response], view: float | None = N
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, tolerance=solve.tolerance,
+        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=solve.modes[-1], shared_speeds=shared,
     )  # fmt: skip
+
+
+def wanted_for(tolerance: float, places: Places, exponent: float) -> Wanted:
+    """What a mesh has to be good for where stresses are asked for at some places."""
+    X, Y = np.concatenate([np.column_stack([places.X, 0.0 * places.X]), places.points]).T
+    if not len(X):
+        return Wanted(tolerance, exponent=exponent)
+    nearest = np.hypot(np.abs(X) - 1.0, Y).min()
+    farthest = float(np.hypot(X, Y).max())
+    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent)
+
+
+def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:
+    """The same of the mesh that serves every piece of a pressure, over the narrowest one's half-width."""
+    return Wanted(wanted.tolerance, NEAR, (1.0 + wanted.farthest) / (np.diff(knots).min() / 2.0))
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

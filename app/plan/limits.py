@@ -8,7 +8,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.scene import Scene
-from galinx.meshes import MESHES
+from galinx.meshes import MESHES, Wanted
 from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
@@ -101,7 +101,8 @@ def check_places(scene: Scene, places: Places) -> None:
     """
     if not len(places.points):
         return
-    far, limit = float(np.abs(places.points).max()), inner(scene)
+    far = float(np.abs(places.points).max())
+    limit = inner(scene, far)
     if far > limit:
         raise BadInput(
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
@@ -114,14 +115,19 @@ def check_places(scene: Scene, places: Places) -> None:
         )
 
 
-def inner(scene: Scene) -> float:
-    """Distance over a up to which finite elements tell fields inside: well inside the scene's mesh."""
-    return _INNER * MESHES[scene.solve.mesh].reach(scene.solve.tolerance)
+def inner(scene: Scene, far: float = 0.0) -> float:
+    """Distance over a up to which finite elements tell fields inside: well inside the scene's mesh.
+
+    Args:
+        scene: the scene.
+        far: distance that its mesh has to reach, if it can.
+    """
+    return _INNER * MESHES[scene.solve.mesh].reach(Wanted(scene.solve.tolerance, farthest=far))
 
 
 def warnings_of(fem: FemPlan) -> Iterator[str]:
     """What finite elements will not reach, or not fit into."""
-    cut_off = fem.kind.truncation(fem.tolerance)
+    cut_off = fem.kind.truncation(fem.wanted)
     if cut_off > fem.tolerance:
         yield (
             f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "

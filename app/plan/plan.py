@@ -12,7 +12,7 @@ from galinx.app.plan.limits import (
     check_speeds,
     warnings_of,
 )
-from galinx.app.plan.states import speeds, states_a_speed
+from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.scene import Scene
@@ -45,7 +45,8 @@ def make_plan(scene: Scene) -> Plan:
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        fem = plan_fem(scene, responses, _seen_from_pieces(pressure, places) if pressure else None)
+        g = enumerate_states(scene).g
+        fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
     tasks = tuple(
         Task(i, body, response, places, slice(i * count, (i + 1) * count))
@@ -59,15 +60,15 @@ def make_plan(scene: Scene) -> Plan:
     )  # fmt: skip
 
 
-def _seen_from_pieces(pressure: LinearPressure, places: Places) -> float:
-    """Distance from a piece of a pressure to the farthest place, over the narrowest half-width."""
-    farthest = max(np.abs(places.X).max(), np.abs(places.points).max(initial=0.0))
-    return (1.0 + float(farthest)) / (np.diff(pressure.knots).min() / 2.0)
-
-
 def _contact(scene: Scene) -> bool:
     """Does anything ask for contact mechanics?"""
     return bool(set(scene.output.quantities) - {FRICTION_ALONE})
+
+
+def _asked(scene: Scene, places: Places) -> Places:
+    """Those places whose stresses are asked for."""
+    surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
+    return Places(places.X[: len(places.X) * surface], places.points[: len(places.points) * below])
 
 
 def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
@@ -84,12 +85,14 @@ def _quantities(
     """What is read off the solutions, and what a method cannot give, with the reason."""
     asked: dict[str, Quantity] = {}
     refused = []
+    # What is known of a punch's edges says nothing of a pressure of the user's own.
+    sources = methods if body.pressure else (*methods, LOCAL)
     # What is computed from others comes after them, wherever it stands in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         wanted = (
             bool(methods)
             and quantity.solved
-            and quantity.method in (*methods, LOCAL)
+            and quantity.method in sources
             and quantity.mode in scene.solve.modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in asked for need in quantity.needs)

@@ -64,9 +64,11 @@ class Plan:
         """Number of states."""
         return self.tasks[-1].rows.stop
 
-    def asks(self, word: str) -> bool:
-        """Is a quantity computed that this word of output.quantities asks for?"""
-        return any(quantity.asked_by == word for quantity in self.quantities)
+    def asks(self, word: str, method: str = "") -> bool:
+        """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
+        return any(
+            quantity.asked_by == word and method in ("", quantity.method) for quantity in self.quantities
+        )
 
     @property
     def positions(self) -> dict[str, NDArray]:

@@ -18,6 +18,7 @@ from galinx.app.scene.scene import Output, Scene
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.postprocess.target import Target
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure
 
@@ -56,13 +57,14 @@ class StateField:
 
 
 def write_field(
-    scene: Scene, number: int, path: Path, extent: float = 10.0, degree: int | None = None
+    scene: Scene, number: int, path: Path | Target, extent: float = 10.0, degree: int | None = None
 ) -> None:
-    """Compute one state of a scene and write it for ParaView; an earlier file of that name is replaced.
+    """Compute one state of a scene and write it for ParaView; nothing is replaced by a path alone.
 
     Collective over MPI's world; rank 0 writes. Arguments and failures are those of :func:`state_field`.
 
     Raises:
+        Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
     state = _state(scene, number, extent, degree)

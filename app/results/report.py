@@ -1,13 +1,11 @@
 """The report of an archive: one HTML page that needs nothing else."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from galinx.app.console.program import program
-from galinx.app.errors import MachineFailure
 from galinx.app.results.drawings import Drawing
 from galinx.app.scene.scene import Scene
 from galinx.app.study.published import (
@@ -94,18 +92,6 @@ class Report:
                 f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
             )
         return text
-
-
-def write_report(path: Path, report: Report) -> None:
-    """Write the page.
-
-    Raises:
-        MachineFailure: the file system refused.
-    """
-    try:
-        path.write_text(report.text(), encoding="utf-8")
-    except OSError as error:
-        raise MachineFailure(f"cannot write {path}: {error.strerror}") from None
 
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:

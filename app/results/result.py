@@ -9,11 +9,11 @@ from typing import Any
 
 from galinx.app.console.progress import Progress
 from galinx.app.run.flow import compute as compute_into
-from galinx.app.run.output import check_output
 from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states
+from galinx.postprocess.target import FIELDS, PAGE, Folder, Target
 
 
 class Result:
@@ -22,10 +22,13 @@ class Result:
     Args:
         data: datasets by their path in an archive; units and meanings in ``docs/archive.md``.
         attributes: those of an archive's root.
+        inputs: files that it was read from; nothing is written over them.
     """
 
-    def __init__(self, data: dict[str, Any], attributes: dict[str, Any]) -> None:
-        self.data, self.attributes = data, attributes
+    def __init__(
+        self, data: dict[str, Any], attributes: dict[str, Any], inputs: tuple[Path, ...] = ()
+    ) -> None:
+        self.data, self.attributes, self.inputs = data, attributes, inputs
 
     @cached_property
     def scene(self) -> Scene:
@@ -62,53 +65,64 @@ class Result:
 
         return of_archive(self.data, self.scene)
 
-    def plot(self, folder: Path | str = ".", name: str = "galinx") -> list[Path]:
-        """Write every figure as PDF and PNG into a folder, which is made; their paths."""
+    def plot(self, folder: Path | str = ".", name: str = "galinx", overwrite: bool = False) -> list[Path]:
+        """Write every figure as PDF and PNG into a folder, which is made; their paths.
+
+        Raises:
+            Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
+            UnwritableArchive: the file system refused.
+        """
         from galinx.postprocess.figures.canvas import save
 
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        return [path for d in self.drawings() for path in save(d.figure, folder, f"{name}_{d.name}")]
+        figures = ((f"{name}_{drawing.name}", drawing.figure) for drawing in self.drawings())
+        return save(figures, Folder(Path(folder), overwrite, self.inputs))
 
-    def report(self, path: Path | str) -> None:
+    def report(self, path: Path | str, overwrite: bool = False) -> None:
         """Write a self-contained HTML page.
 
         Raises:
-            MachineFailure: the file system refused.
+            Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
+            UnwritableArchive: the file system refused.
         """
-        from galinx.app.results.report import Report, write_report
+        from galinx.app.results.report import Report
 
+        target = Target(Path(path), PAGE, overwrite, self.inputs)
         report = Report(self.data, self.attributes, self.scene)
         for drawing in self.drawings():
             report.add(drawing)
-        write_report(Path(path), report)
+        target.write(report.text().encode())
 
-    def fields(self, path: Path | str, state: int = 0, extent: float = 10.0) -> None:
+    def fields(
+        self, path: Path | str, state: int = 0, extent: float = 10.0, overwrite: bool = False
+    ) -> None:
         """Write displacement and stresses of a state for ParaView (VTKHDF); collective under MPI.
 
         Args:
             path: the file, ``.hdf`` by ParaView's habit.
             state: which, from 0.
             extent: how far from the punch's centre, over a.
+            overwrite: a file that holds no fields of galinx is replaced, too.
 
         Raises:
             BadInput: no such state, or finite elements have no answer there.
+            Occupied: another file is there, and ``overwrite`` is false.
+            UnwritableArchive: the file system refused.
         """
         from galinx.app.results.paraview import write_field
 
-        write_field(self.scene, state, Path(path), extent, self._degree(state))
+        target = Target(Path(path), FIELDS, overwrite, self.inputs)
+        write_field(self.scene, state, target, extent, self._degree(state))
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.
 
         Raises:
-            BadInput: the file exists, or its folder does not.
+            Occupied: the file exists and ``overwrite`` is false, or its folder does not.
             UnwritableArchive: the file system refused.
         """
         from galinx.postprocess.hdf5.archive import Writer
 
-        check_output(Path(path), overwrite)
-        with Writer(Path(path)) as writer:
+        with Writer(Target(Path(path), None, overwrite, self.inputs)) as writer:
             for name, value in self.data.items():
                 writer.put(name, value)
             writer.finish(self.attributes)
@@ -171,4 +185,4 @@ def load(path: Path | str, stresses: bool = True) -> Result:
     """
     from galinx.postprocess.hdf5.archive import read
 
-    return Result(*read(Path(path), stresses))
+    return Result(*read(Path(path), stresses), (Path(path),))

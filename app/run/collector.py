@@ -41,8 +41,12 @@ class Collector:
 
     def earlier(self) -> frozenset[int]:
         """Take in what the journal has; first rows of those parts."""
+        if not self._journal:
+            return frozenset()
+        if self._journal.damaged:
+            self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
         found = set()
-        for part in self._journal.parts() if self._journal else ():
+        for part in self._journal.parts():
             found.add(part.rows.start)
             self._take(part)
         return frozenset(found)

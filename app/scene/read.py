@@ -5,12 +5,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from galinx import files
 from galinx.app.errors import BadInput
 from galinx.app.scene.keys import nearest
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sections import SECTIONS
 from galinx.app.scene.sense import contradictions
+from galinx.app.scene.texts import control_characters
+
+#: Bytes of a scene; a million speeds fit, and what has no end is not read for ever.
+_LARGEST = 50 * 10**6
 
 
 def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
@@ -24,11 +29,11 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         BadInput: the file cannot be read, or the scene has faults; all are listed.
     """
     try:
-        data = path.read_bytes()
-    except IsADirectoryError:
-        raise BadInput(f"{path} is a folder, expected a scene (TOML file)") from None
+        data = files.read(path, _LARGEST + 1)
     except OSError as error:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
+    if len(data) > _LARGEST:
+        raise BadInput(f"{path} is larger than {_LARGEST // 10**6} MB, expected a scene (TOML file)")
     try:
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
@@ -52,7 +57,7 @@ def parse(text: str, name: str = "scene") -> Scene:
         tree = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise BadInput(f"{name} is not TOML: {error}") from None
-    faults: list[str] = []
+    faults = list(control_characters(tree))
     _fill_in_material(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):

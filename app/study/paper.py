@@ -2,7 +2,6 @@
 
 import json
 from io import StringIO
-from pathlib import Path
 from typing import Any
 
 from galinx.app import ranks
@@ -15,45 +14,56 @@ from galinx.app.scene.scene import Scene
 from galinx.app.scene.templates import SCENES
 from galinx.app.study.published import INTENSITIES, intensities, intensity_rows, table1, table3
 from galinx.postprocess.tables import Sheet
+from galinx.postprocess.target import ARCHIVE, PAGE, TABLES, Folder, Target
+
+#: What is written besides figures.
+_FILES = {"study.h5": ARCHIVE, "inside.h5": ARCHIVE, "tables.txt": TABLES, "report.html": PAGE}
 
 
-def reproduce(folder: Path, progress: Progress, quiet: bool = False) -> bool:
-    """Write the study's archives, tables, figures and report into ``folder``; True where all agrees."""
+def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
+    """Write the study's archives, tables, figures and report into ``folder``; True where all agrees.
+
+    Raises:
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
+    """
     study, inside = (scenes.read(SCENES / f"{name}.toml") for name in ("study", "inside"))
+    targets = {name: folder.target(name, kind) for name, kind in _FILES.items()}
     if not ranks.is_root():
         compute(study), compute(inside)
         return True  # the verdict is rank 0's
     from galinx.app.results.drawings import inside as draw_inside
     from galinx.app.results.drawings import mesh
-    from galinx.app.results.report import Report, write_report
+    from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
     from galinx.postprocess.hdf5 import archive
 
-    folder.mkdir(parents=True, exist_ok=True)
     results = []
-    for name, scene in (("study", study), ("inside", inside)):
-        with archive.Writer(folder / f"{name}.h5") as writer:
+    for name, scene in (("study.h5", study), ("inside.h5", inside)):
+        with archive.Writer(targets[name]) as writer:
             writer.finish(compute(scene, writer, progress))
-        results.append(archive.read(folder / f"{name}.h5"))
+        results.append(archive.read(targets[name].path))
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)
+    figures = []
     for drawing in (*of_study(data), draw_inside(below, inside), mesh(study)):
         progress.say(f"figure: {drawing.name}")
         report.add(drawing)
-        save(drawing.figure, folder, drawing.name)
-    write_report(folder / "report.html", report)
-    _print(folder, sheets, attributes, quiet)
+        figures.append((drawing.name, drawing.figure))
+    save(figures, folder)
+    targets["report.html"].write(report.text().encode())
+    _print(targets["tables.txt"], sheets, attributes, quiet)
     if not quiet:
-        figures = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
-        say(f"written to {folder}: study.h5, inside.h5, tables.txt, report.html, {figures}")
+        drawn = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
+        say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
         print(f"verdict: {'PASS' if good else 'FAIL'}")
-        print(f"next: open {folder / 'report.html'} in a browser, or {program()} init")
+        print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
     return good
 
 
-def _print(folder: Path, sheets: list[Sheet], attributes: dict[str, Any], quiet: bool) -> None:
+def _print(target: Target, sheets: list[Sheet], attributes: dict[str, Any], quiet: bool) -> None:
     from galinx.postprocess.tables import new_console, print_sheet
 
     text = StringIO()
@@ -63,7 +73,7 @@ def _print(folder: Path, sheets: list[Sheet], attributes: dict[str, Any], quiet:
             console.print()
         for reason in json.loads(attributes["verdict_reasons"]):
             console.print(reason)
-    (folder / "tables.txt").write_text(text.getvalue(), encoding="utf-8")
+    target.write(text.getvalue().encode())
 
 
 def _tables(data: dict[str, Any], attributes: dict[str, Any], study: Scene) -> tuple[bool, list[Sheet]]:

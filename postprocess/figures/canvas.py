@@ -1,6 +1,7 @@
 """Style of all figures, and how they become files or text."""
 
 from base64 import b64encode
+from collections.abc import Iterable
 from io import BytesIO
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
+
+from galinx.postprocess.target import PDF, PNG, Folder
 
 #: Okabe and Ito's colours, told apart by colour-blind readers.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -26,13 +29,32 @@ plt.rcParams.update(
 )
 
 
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write a figure as PDF and PNG and close it."""
-    paths = [folder / f"{name}.pdf", folder / f"{name}.png"]
-    for path in paths:
-        figure.savefig(path, dpi=160)
-    plt.close(figure)
-    return paths
+#: Ending, kind of file, and what in one says who made it.
+_SAVED = (("pdf", PDF, "Creator"), ("png", PNG, "Software"))
+
+
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> list[Path]:
+    """Write figures as PDF and PNG and close them; none where one of them may not be written.
+
+    Args:
+        figures: by name.
+        folder: where they go.
+
+    Raises:
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
+    """
+    drawn = []
+    for name, figure in figures:
+        for ending, kind, says in _SAVED:
+            target, data = folder.target(f"{name}.{ending}", kind), BytesIO()
+            # In memory: matplotlib leaves half of a figure on a full disk.
+            figure.savefig(data, format=ending, dpi=160, metadata={says: "galinx"})
+            drawn.append((target, data.getvalue()))
+        plt.close(figure)
+    for target, content in drawn:
+        target.write(content)
+    return [target.path for target, _ in drawn]
 
 
 def in_a_page(figure: Figure, pixels: bool) -> str:

@@ -4,7 +4,6 @@ An archive appears under its final name only when it is complete: it is written 
 opened again and compared, synchronised with the disk and renamed.
 """
 
-import os
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -16,11 +15,13 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.files import NewFile
 from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.postprocess.hdf5.patient import PatientFile
 from galinx.postprocess.quantities import declared, large, of_states
 from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.target import Target, as_target
 
 #: Version of the layout; a reader refuses a newer one.
 SCHEMA_VERSION = 1
@@ -33,30 +34,32 @@ class Writer:
     ``finish``, or after an error, nothing is left and an earlier file of that name stays.
 
     Args:
-        path: final name.
+        path: final name; nothing is replaced where it is a path alone.
         folder: where it is written, on the same file system; beside its final name if not given.
 
     Raises:
+        Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused, or what was read back differs.
         KeyError: the path of a dataset is not in the table of quantities.
     """
 
-    def __init__(self, path: Path, folder: Path | None = None) -> None:
-        self.path = path
-        self._temporary = (folder or path.parent) / f".{path.name}.{os.getpid()}.partial"
+    def __init__(self, path: Path | Target, folder: Path | None = None) -> None:
+        self._target = as_target(path)
+        self.path = self._target.path
+        self._new = NewFile(self._target.place, folder)
         self._bytes = 0
         self._written: list[tuple[str, slice, int]] = []
 
     def __enter__(self) -> "Writer":
         with self._told():
-            self._disk = PatientFile(self._temporary)
+            self._disk = PatientFile(self._new.__enter__().temporary)
             self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"))
         return self
 
     def __exit__(self, *_: object) -> None:
         with suppress(OSError):
             self._close()
-        self._temporary.unlink(missing_ok=True)
+        self._new.__exit__()
 
     def put(self, name: str, value: Any, about: tuple[str, str] | None = None) -> None:
         """Write a whole dataset: numbers, texts or one text.
@@ -108,9 +111,7 @@ class Writer:
             self._file.attrs.update(common | attributes | {"complete": True})
             self._close()
             self._compare()
-            _synchronise(self._temporary)
-            os.replace(self._temporary, self.path)
-            _synchronise(self.path.parent)
+            self._target.publish(self._new, self._bytes)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
         if about is None:
@@ -120,7 +121,7 @@ class Writer:
 
     def _compare(self) -> None:
         """A full disk can leave a file that opens and lists its datasets: compare the content."""
-        with h5py.File(self._temporary, "r", locking=False) as file:
+        with h5py.File(self._new.temporary, "r", locking=False) as file:
             for name, rows, checksum in self._written:
                 if _checksum(file[name].dtype, file[name][rows]) != checksum:
                     raise UnwritableArchive(
@@ -145,14 +146,6 @@ class Writer:
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:
     return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).tobytes())
-
-
-def _synchronise(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def read(path: Path, stresses: bool = True) -> tuple[dict[str, Any], dict[str, Any]]:

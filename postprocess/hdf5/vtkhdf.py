@@ -4,9 +4,7 @@ The file grows piece by piece, so that no more than one needs to be in memory, a
 when all of it is on the disk.
 """
 
-import os
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
@@ -14,8 +12,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.files import NewFile
 from galinx.postprocess.disk import refused
 from galinx.postprocess.hdf5.patient import PatientFile
+from galinx.postprocess.target import Target, as_target
 
 #: Layout that VTK 9.1 knows.
 _VERSION = (1, 0)
@@ -42,35 +42,33 @@ class Piece(Protocol):
     def data(self) -> Mapping[str, NDArray]: ...
 
 
-def write(path: Path, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:
-    """Write an unstructured grid; an earlier file of that name is replaced.
+def write(path: Path | Target, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:
+    """Write an unstructured grid.
 
     Args:
-        path: final name; ParaView knows the kind of file by the ending .hdf.
+        path: final name; ParaView knows the kind of file by the ending .hdf. Nothing is replaced where it
+            is a path alone.
         pieces: of the grid, one of them with a quadrilateral; the next is asked for when one is written.
         about: unit and long name of every array by name.
 
     Raises:
+        Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
         KeyError: an array is not in ``about``.
     """
-    temporary, needed = path.with_name(f".{path.name}.{os.getpid()}.partial"), 0
+    target, needed = as_target(path), 0
     try:
-        with PatientFile(temporary) as disk:
-            with h5py.File(disk, "w", libver=("earliest", "v110")) as file:
-                _fill(file.create_group("VTKHDF"), pieces, about)
-                file.flush()
-                needed = file.id.get_filesize()
-            if disk.refusal:
-                raise disk.refusal
-        with open(temporary, "rb") as written:
-            os.fsync(written.fileno())
-        os.replace(temporary, path)
+        with NewFile(target.place) as new:
+            with PatientFile(new.temporary) as disk:
+                with h5py.File(disk, "w", libver=("earliest", "v110")) as file:
+                    _fill(file.create_group("VTKHDF"), pieces, about)
+                    file.flush()
+                    needed = file.id.get_filesize()
+                if disk.refusal:
+                    raise disk.refusal
+            target.publish(new, needed)
     except OSError as error:
-        raise refused(path, error, needed) from error
-    finally:
-        with suppress(OSError):  # the folder itself may be what is wrong
-            temporary.unlink()
+        raise refused(target.path, error, needed) from error
 
 
 def _fill(root: h5py.Group, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+from galinx.texts import unseen
 
 #: Dimensions of datasets, in words.
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
@@ -74,8 +75,11 @@ class Table(Registry[Quantity]):
         """Add a quantity, and return it.
 
         Raises:
-            ValueError: its path is taken.
+            ValueError: its path is taken, or a text of it has a control character.
         """
+        for text in (quantity.unit, quantity.about):
+            if fault := unseen(text):
+                raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")
         return self.register(quantity.path, quantity)
 
     def add_all(self, names: Mapping[str, Any]) -> None:

@@ -10,6 +10,7 @@ from galinx.postprocess.quantities.quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    INTENSITIES,
     LOCAL,
     OWN_PRESSURE,
     QUANTITIES,
@@ -88,25 +89,14 @@ INDENTATION = Quantity(
     lambda s, body: s.v0 * body.displacement, FEM, _CONTACT,
 )  # fmt: skip
 ESTIMATE = Quantity(
-    "states/fem/estimate", "1", "estimated relative error of K_I and moments, no closed form used",
-    (STATE,), lambda s, _: s.estimate, FEM, _CONTACT, compared=("estimate",),
+    "states/fem/estimate", "1",
+    "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
+    (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
 )  # fmt: skip
 
 RESULTANT = Quantity(
     "states/closed_form/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
     lambda s, body: s.normal_force * body.force, CLOSED_FORM, OWN_PRESSURE, compared=("resultant",),
-)  # fmt: skip
-ESTIMATE_IN_PLANE = Quantity(
-    "states/fem/estimate_in_plane", "1",
-    "estimated error of sigma_XX on the surface over its size, no closed form used",
-    (STATE,), lambda s, _: s.estimate_in_plane, FEM, OWN_PRESSURE, "surface",
-    compared=("estimate of sigma_XX",),
-)  # fmt: skip
-ESTIMATE_INSIDE = Quantity(
-    "states/fem/estimate_inside", "1",
-    "estimated error of the stresses inside over the largest of a state, no closed form used",
-    (STATE,), lambda s, _: s.estimate_inside, FEM, OWN_PRESSURE, "interior",
-    compared=("estimate of stresses inside",),
 )  # fmt: skip
 
 

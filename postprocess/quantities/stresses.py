@@ -45,6 +45,20 @@ IN_PLANE = {
     ),
 }  # fmt: skip
 
+ESTIMATE_IN_PLANE = Quantity(
+    "states/fem/estimate_sigma_XX", "1",
+    "estimated error of sigma_XX on the surface over the larger of itself and its largest value further "
+    "than 0.01 a from the edges, no closed form used",
+    (STATE,), lambda s, _: s.estimates[ON_SURFACE], FEM, asked_by=ON_SURFACE,
+    compared=("estimate of sigma_XX",),
+)  # fmt: skip
+ESTIMATE_INSIDE = Quantity(
+    "states/fem/estimate_inside", "1",
+    "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
+    "from the edges, no closed form used",
+    (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
+)  # fmt: skip
+
 INSIDE_X = Quantity(
     "interior/X_over_a", "1", "positions inside, along the surface, over the half-width", (INSIDE,),
     asked_by=BELOW,

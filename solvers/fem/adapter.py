@@ -48,19 +48,19 @@ def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:
     return dolfinx.mesh.meshtags_from_entities(mesh, 1, make(entities), values.astype(np.int32))
 
 
-def vector_space(mesh: Any, degree: int, options: dict[str, Any]) -> Any:
-    """Continuous vector Lagrange elements; ``options`` are the compiler's."""
-    return _space(mesh, _element(degree), options)
+def vector_element(degree: int) -> Any:
+    """Continuous vector Lagrange elements."""
+    return _element(degree)
 
 
-def mixed_space(mesh: Any, degree: int, pressure: int, options: dict[str, Any]) -> Any:
+def mixed_element(degree: int, pressure: int) -> Any:
     """The same together with a discontinuous scalar of the degree ``pressure``."""
     parts = [_element(degree), _element(pressure, vector=False, discontinuous=True)]
-    mixed = elements.mixed_element(parts) if elements else ufl.MixedElement(parts)
-    return _space(mesh, mixed, options)
+    return elements.mixed_element(parts) if elements else ufl.MixedElement(parts)
 
 
-def _space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
+def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
+    """The functions on a mesh; ``options`` are the compiler's."""
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, element)
     return fem.FunctionSpace(mesh, element, jit_params=options)

@@ -1,4 +1,4 @@
-"""What one quadrilateral makes of its nodal values: places, derivatives, and those in the physical plane.
+"""What one quadrilateral makes of its nodal values: places and derivatives.
 
 A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11.
 """
@@ -6,7 +6,6 @@ A cell is the bilinear image of the unit square; its vertices come in dolfinx's 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.fem.chart import Chart
 from galinx.solvers.fem.lagrange import lagrange
 
 
@@ -67,16 +66,3 @@ def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray
     """
     inverse = np.linalg.inv(jacobian(vertices, t))
     return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
-
-
-def to_physical_axes(chart: Chart, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
-    """Derivatives along X and Y from those along the axes of the mesh's chart, at its points x (n, 2).
-
-    Args:
-        chart: the mesh's chart.
-        x: where; not at a punch edge of a chart whose stretch vanishes there.
-        gradients: array (n, component, axis, fields).
-    """
-    cos, sin = (value * np.ones(len(x)) for value in chart.rotation(x.T, np))
-    R = np.array([[cos, -sin], [sin, cos]]) / chart.stretch(x)
-    return np.einsum("ncxf,Xxn->ncXf", gradients, R)

@@ -1,8 +1,10 @@
-"""What the finite element room asks of the chart in which a mesh lives."""
+"""What the finite element room asks of the chart in which a mesh lives, and what speed does to it."""
 
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Protocol
 
+import numpy as np
 from numpy.typing import NDArray
 
 
@@ -12,6 +14,10 @@ class Chart(Protocol):
     @property
     def name(self) -> str:
         """Name of the chart in archives and form caches."""
+
+    @property
+    def contracts(self) -> bool:
+        """Is a mesh drawn for what the solid makes of the plane, see :class:`Contracted`?"""
 
     def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
         """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at x.
@@ -45,3 +51,45 @@ class Chart(Protocol):
 
         Next to an edge X/a itself no longer tells the distance, so this does.
         """
+
+
+@dataclass(frozen=True)
+class Contracted:
+    """A chart of the plane X' = X + Re(p) Y, Y' = Im(p) Y instead of the physical one.
+
+    A solid's fields live in two such planes, where their parts are analytic; isotropic ones at rest
+    in the physical plane. Speed contracts them, and a mesh that follows sees fields like those at rest.
+    The surface stays where it is.
+
+    Attributes:
+        chart: the chart.
+        p: of the contraction, Im p > 0; 1j for none.
+    """
+
+    chart: Chart
+    p: complex
+
+    def to_physical(self, x: NDArray) -> NDArray[np.float64]:
+        """Physical coordinates over a of points (..., 2) of the chart."""
+        drawn = self.chart.to_physical(x)
+        Y = drawn[..., 1] / self.p.imag
+        return np.stack([drawn[..., 0] - self.p.real * Y, Y], axis=-1)
+
+    def from_physical(self, X: NDArray) -> NDArray[np.float64]:
+        """Points of the chart, (..., 2), of physical coordinates over a with Y <= 0."""
+        X = np.asarray(X, dtype=float)
+        return self.chart.from_physical(
+            np.stack([X[..., 0] + self.p.real * X[..., 1], self.p.imag * X[..., 1]], axis=-1)
+        )
+
+    def physical_gradients(self, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
+        """Derivatives along X and Y from those along the chart's axes, at its points x (n, 2).
+
+        Args:
+            x: where; not at a punch edge of a chart whose stretch vanishes there.
+            gradients: array (n, component, axis, fields).
+        """
+        cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T, np))
+        R = np.array([[cos, -sin], [sin, cos]]) / self.chart.stretch(x)
+        M = np.array([[1.0, self.p.real], [0.0, self.p.imag]])
+        return np.einsum("ncxf,dxn,dX->ncXf", gradients, R, M, optimize=True)

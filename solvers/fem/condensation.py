@@ -70,8 +70,10 @@ class CellMatrices:
             # The first of the two pressures that stay is the mean; the rest is orthogonal to it.
             n = self.pressures
             modes, _ = np.linalg.qr(np.column_stack([np.ones(n), np.eye(n)[:, 1:]]))
-            K[:, -n:] = modes.T @ K[:, -n:]
-            K[:, :, -n:] = K[:, :, -n:] @ modes
+            # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
+            scaled = modes / _size(corners)[:, None, None]
+            K[:, -n:] = scaled.transpose(0, 2, 1) @ K[:, -n:]
+            K[:, :, -n:] = K[:, :, -n:] @ scaled
         order, b = np.concatenate([self.outer_dofs, self.inner_dofs]), len(self.outer_dofs)
         K = K.take(order, axis=1).take(order, axis=2)
         E = -np.linalg.solve(K[:, b:, b:], K[:, b:, :b])
@@ -90,6 +92,12 @@ def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
     force = S @ T / nodes
     outer = force @ T.T
     return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force / nodes) @ T.T
+
+
+def _size(corners: NDArray) -> NDArray[np.float64]:
+    """Roots of the areas of cells with vertices (m, 4, 3), to the order of magnitude."""
+    along, across = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
+    return np.sqrt(np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]))
 
 
 def _dofs(nodes: NDArray) -> NDArray[np.int64]:

@@ -15,7 +15,7 @@ class Form:
     """A weak form.
 
     Attributes:
-        stiffness: the form from trial and test functions, chart, its coordinates, constants and degree.
+        stiffness: the form from trial and test functions, what takes gradients, constants and degree.
         constants: what these are called in a solid's response.
         pressure: with an unknown pressure in each cell besides the displacement.
     """
@@ -25,11 +25,19 @@ class Form:
     pressure: bool = False
 
 
-def gradient(u: Any, chart: Chart, x: Any) -> Any:
-    """Gradient of u along the physical axes, up to the chart's stretch: ∇u·Rᵀ."""
+def gradient(u: Any, chart: Chart, x: Any, p: Any) -> Any:
+    """Gradient of u along the physical axes, up to the stretch of chart and plane: ∇u·Rᵀ·M.
+
+    Args:
+        u: the function.
+        chart, x: the chart and its coordinates.
+        p: real and imaginary part of the contraction, see :class:`galinx.solvers.fem.chart.Contracted`;
+            its plane has Im p times the physical area.
+    """
     cos, sin = chart.rotation(x, ufl)
-    R = ufl.as_matrix([[cos, -sin], [sin, cos]])
-    return ufl.dot(ufl.grad(u), ufl.transpose(R))
+    R, (lean, depth) = ufl.as_matrix([[cos, -sin], [sin, cos]]), p
+    M = ufl.as_matrix([[1, lean], [0, depth]]) / ufl.sqrt(depth)
+    return ufl.dot(ufl.dot(ufl.grad(u), ufl.transpose(R)), M)
 
 
 def stress(G: Any, κ: Any) -> Any:
@@ -39,20 +47,20 @@ def stress(G: Any, κ: Any) -> Any:
     return 2 * ε + λ * ufl.tr(ε) * ufl.Identity(2)
 
 
-def moving_stiffness(u: Any, w: Any, chart: Chart, x: Any, constants: Any, degree: int) -> Any:
+def moving_stiffness(u: Any, w: Any, grad: Any, constants: Any, degree: int) -> Any:
     """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed; constants κ and c.
 
     On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial in a conformal
     chart; two degrees above the product of gradients integrate it as well as the space can tell.
     """
     κ, c = constants
-    Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
+    Gu, Gw = grad(u), grad(w)
     energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
 
 
 def mixed_stiffness(
-    trial: tuple[Any, Any], test: tuple[Any, Any], chart: Chart, x: Any, constants: Any, degree: int
+    trial: tuple[Any, Any], test: tuple[Any, Any], grad: Any, constants: Any, degree: int
 ) -> Any:
     """The same with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
 
@@ -60,7 +68,7 @@ def mixed_stiffness(
     displacement alone carries λ, rounding grows with it.
     """
     (u, p), (w, q), (κ, c) = trial, test, constants
-    Gu, Gw = gradient(u, chart, x), gradient(w, chart, x)
+    Gu, Gw = grad(u), grad(w)
     compliance = (κ - 1) / (3 - κ)  # μ/λ
     energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
     energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order, to_physical_axes
+from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -40,7 +40,7 @@ class InteriorGradients:
         self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
         self._basis = gradients_at(
-            space, points, lambda cells: space.cell_values(fields, response, cells)
+            space, response, points, lambda cells: space.cell_values(fields, response, cells)
         )
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
@@ -49,19 +49,21 @@ class InteriorGradients:
 
 
 def gradients_at(
-    space: Space, points: NDArray, values: Callable[[NDArray[np.int64]], NDArray]
+    space: Space, response: Response, points: NDArray, values: Callable[[NDArray[np.int64]], NDArray]
 ) -> NDArray[np.float64]:
     """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
 
     Args:
         space: the finite element space.
+        response: that the fields are solutions for.
         points: with Y <= 0, (n, 2).
         values: of the fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
 
     Raises:
         MeshError: a point lies outside the mesh.
     """
-    x = space.chart.from_physical(points)
+    chart = space.contracted(response)
+    x = chart.from_physical(points)
     vertices = space.vertices[..., :2]
     held = _locate(vertices, x)
     found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
@@ -78,7 +80,7 @@ def gradients_at(
         np.add.at(gradients, held.point[here], in_plane)
     # On the border between cells the gradient jumps; it is their mean.
     gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-    return to_physical_axes(space.chart, x, gradients)
+    return chart.physical_gradients(x, gradients)
 
 
 @dataclass(frozen=True)

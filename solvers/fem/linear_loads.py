@@ -27,11 +27,11 @@ class LinearLoads:
 
     Attributes:
         resultants: ∫ σ_YY dX of the discrete loads of the first and of the second kind, 1 each.
-        record: numbers of the linear algebra.
+        factor: of the linear system, freed, with numbers of its work.
     """
 
     def __init__(self, space: Space, response: Response) -> None:
-        self.space = space
+        self.space, self.response = space, response
         with space.keeping(response):
             loaded = LoadedHalfPlane(space, response, corrected=True)
             try:
@@ -40,7 +40,7 @@ class LinearLoads:
                 self._shapes = shapes(space, response, loaded.fields, loaded.corrections)
             finally:
                 loaded.destroy()
-        self.resultants, self.record = np.array(loaded.resultants), loaded.record
+        self.resultants, self.factor = np.array(loaded.resultants), loaded.factor
 
     def gradients(self, points: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over the load's largest stress, at points (n, 2) with Y <= 0: (n, 2, 2, FIELDS).
@@ -48,4 +48,4 @@ class LinearLoads:
         Raises:
             MeshError: a point lies outside the mesh.
         """
-        return gradients_at(self.space, points, lambda cells: self._shapes[cells])
+        return gradients_at(self.space, self.response, points, lambda cells: self._shapes[cells])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.fem.linear_loads import FIELDS, LinearLoads
-from galinx.solvers.fem.rays import NEAR, rays
+from galinx.solvers.rays import NEAR, rays
 
 #: Pieces that meet have at most this ratio of widths, so that both meshes resolve what cancels there.
 _RATIO = 8.0

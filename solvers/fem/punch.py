@@ -79,7 +79,7 @@ class SlidingPunch:
         if solver == "direct":
             self.factor = Factor(A, space.clock, definite=not space.mixed)
         else:
-            self.factor = Multigrid(A, space.clock, solver, space.rigid_motions)
+            self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
         #: Of the flat punch, and of the profile.
         self._spaces = [self._krylov_space(b, None, -1.0, negligible)]
         if shaped:

@@ -17,9 +17,8 @@ from galinx.solvers.fem.cells import (
     image,
     reference_values,
     tensor_order,
-    to_physical_axes,
 )
-from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.chart import Contracted
 from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
@@ -72,7 +71,8 @@ def sample(
     """
     t, corners = _split(n)
     vertices = space.vertices[..., :2]
-    X = space.chart.to_physical(image(vertices, t))
+    chart = space.contracted(response)
+    X = chart.to_physical(image(vertices, t))
     low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
     wanted = np.all((low < extent) & (high > -extent), axis=2)
     cells = np.flatnonzero(wanted.any(axis=1))
@@ -86,7 +86,7 @@ def sample(
         for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
             quads = corners[wanted[cell]]  # counterclockwise, as every mesh's cells are
             displacement = reference_values(nodes, t, u)[..., 0]
-            gradient = _gradients(space.chart, vertices[cell], nodes, t, u, n)
+            gradient = _gradients(chart, vertices[cell], nodes, t, u, n)
             pieces.append(_without_unused(SampledField(X[cell], quads, displacement, gradient)))
     field.destroy()
     return _joined(pieces)
@@ -102,16 +102,16 @@ def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 
 def _gradients(
-    chart: Chart, vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray, n: int
+    chart: Contracted, vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray, n: int
 ) -> NDArray[np.float64]:
     """Physical displacement gradients of one field at places t of a cell, all finite: (m, 2, 2)."""
     # At a punch edge the chart's stretch is 0 and the stress infinite. What stands there is the stress
     # in the middle of the small quadrilateral at that corner, the mean a viewer would paint it with.
-    stretch = chart.stretch(image(vertices, t))
+    stretch = chart.chart.stretch(image(vertices, t))
     at_edge = stretch < _VANISHING * stretch.max()
     t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
     gradients = gradients_in_plane(vertices, nodes, t, u)
-    return to_physical_axes(chart, image(vertices, t), gradients)[..., 0]
+    return chart.physical_gradients(image(vertices, t), gradients)[..., 0]
 
 
 def _without_unused(field: SampledField) -> SampledField:

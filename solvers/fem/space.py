@@ -1,6 +1,6 @@
 """The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,10 +16,10 @@ from petsc4py import PETSc
 from galinx.clock import Clock
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import adapter
-from galinx.solvers.fem.chart import Chart
+from galinx.solvers.fem.chart import Chart, Contracted
 from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
-from galinx.solvers.fem.forms import FORMS
+from galinx.solvers.fem.forms import FORMS, gradient
 from galinx.solvers.fem.matrix import empty_matrix
 from galinx.solvers.solids.solid import Response
 
@@ -53,6 +53,7 @@ class Space:
         degree: polynomial degree, at least 1.
         form: name of the weak form that a solid asks for.
         clock: takes the time of what is done with the space.
+        say: is told on rank 0 what the user should know of the compiler.
 
     Raises:
         MeshError: a part of the boundary has no facet.
@@ -67,16 +68,16 @@ class Space:
         degree: int,
         form: str = "isotropic",
         clock: Clock | None = None,
+        say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.mixed = self.form.pressure
-        self.clock = Clock() if clock is None else clock
+        self.clock, self._say = Clock() if clock is None else clock, say
         self._kept: tuple[NDArray, ...] | None = None
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        with self.clock("forms"), compiling(self.comm) as options:
-            self.V = adapter.vector_space(mesh, degree, options)
+        self.V = self._functions(adapter.vector_element(degree))
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -116,12 +117,15 @@ class Space:
         owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
         return np.arange(first, first + 2 * owned, dtype=np.int32)
 
-    @property
-    def rigid_motions(self) -> NDArray[np.float64]:
+    def contracted(self, response: Response) -> Contracted:
+        """The chart at a speed."""
+        return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
+
+    def rigid_motions(self, response: Response) -> NDArray[np.float64]:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
         owned = len(self.node_dofs) // 2
         mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
-        X, Y = self.chart.to_physical(self.coordinates[mine]).T  # in the order of their numbers
+        X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
         modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
         modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
         modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
@@ -142,19 +146,26 @@ class Space:
     def _compiled(self) -> tuple[Any, list[fem.Constant]]:
         """The compiled form with its constants, which are set before each assembly."""
         x = ufl.SpatialCoordinate(self.mesh)
-        constants = [fem.Constant(self.mesh, 0.0) for _ in self.form.constants]
+        p, constants = (
+            [fem.Constant(self.mesh, 0.0) for _ in names] for names in ("XY", self.form.constants)
+        )
         trial: Any
         test: Any
         if self.mixed:
             # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
-            with self.clock("forms"), compiling(self.comm) as options:
-                W = adapter.mixed_space(self.mesh, self.degree, self.degree - 2, options)
+            W = self._functions(adapter.mixed_element(self.degree, self.degree - 2))
             trial, test = ufl.TrialFunctions(W), ufl.TestFunctions(W)
         else:
             trial, test = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-        form = self.form.stiffness(trial, test, self.chart, x, constants, self.degree)
-        with self.clock("forms"), compiling(self.comm) as options:
-            return adapter.compile_form(form, options), constants
+        form = self.form.stiffness(
+            trial, test, lambda u: gradient(u, self.chart, x, p), constants, self.degree
+        )
+        with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
+            return adapter.compile_form(form, options), [*p, *constants]
+
+    def _functions(self, element: Any) -> Any:
+        with self.clock("forms"), compiling(self.comm, repr(element), self._say) as options:
+            return adapter.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
@@ -281,8 +292,10 @@ class Space:
             S, E = self._kept
             return S[cells], E[cells]
         form, constants = self._compiled
-        for name, constant in zip(self.form.constants, constants):
-            constant.value = getattr(response, name)
+        p = self.contracted(response).p
+        values = [p.real, p.imag, *(getattr(response, name) for name in self.form.constants)]
+        for constant, value in zip(constants, values):
+            constant.value = value
         return self.kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:

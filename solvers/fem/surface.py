@@ -95,7 +95,7 @@ class SurfaceSlopes:
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
-        u_X, v_X = (weights @ self._basis[:, i].T for i in (0, 1))
+        u_X, v_X = (weights @ self._basis[:, i, : weights.shape[1]].T for i in (0, 1))
         return u_X, v_X
 
 

@@ -79,18 +79,6 @@ class LoadedHalfPlane:
         residual.destroy()
         return found
 
-    @property
-    def record(self) -> dict[str, float]:
-        """Numbers of the linear algebra."""
-        factor = self.factor
-        return {
-            "factorisations": 1,
-            "back_substitutions": factor.solves,
-            "iterations": factor.iterations,
-            "largest_residual": factor.largest_residual,
-            "largest_condition": factor.condition,
-        }
-
     def destroy(self) -> None:
         """Free factor and fields."""
         for held in (self.factor, *self.fields, *self.corrections):

@@ -167,6 +167,11 @@ class MovingFrame:
         """Rayleigh function over its value at rest; 0 at the Rayleigh speed."""
         return self.r / MovingFrame(self.κ, 0.0).r
 
+    @property
+    def contraction(self) -> complex:
+        """i√(β_s β_d), midway between iβ_s and iβ_d in the hyperbolic metric of the half-plane."""
+        return 1j * sqrt(self.β_s * self.β_d)
+
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""
         κ = self.κ

@@ -34,7 +34,8 @@ class Response(Protocol):
         n, m, n12, q: of the surface, dimensionless.
         margin: 1 at rest, 0 at the highest speed that finite elements can do, negative beyond;
             displacements grow as it falls.
-        β_s: how much the slowest field is flattened: fields turn within an angle of that size.
+        contraction: p of the plane X + pY, Im p > 0, midway between those in which the fields are
+            analytic; 1j at rest in an isotropic solid.
     """
 
     @property
@@ -50,7 +51,7 @@ class Response(Protocol):
     @property
     def margin(self) -> float: ...
     @property
-    def β_s(self) -> float: ...
+    def contraction(self) -> complex: ...
 
     def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from galinx.meshes import MESHES
+from galinx.meshes import MESHES, Wanted
 from galinx.meshes.cells import check_cells
 from galinx.meshes.graded import BOX_DEPTH, BOX_WIDTH
 from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS, QuadMesh
@@ -11,10 +11,10 @@ TOLERANCES = [1e-2, 1e-6, 1e-9]
 
 @pytest.mark.parametrize("mesh", MESHES)
 @pytest.mark.parametrize("tolerance", TOLERANCES)
-@pytest.mark.parametrize("β_s", [1.0, 0.4])
-def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, β_s):
+@pytest.mark.parametrize("nearest, exponent", [(None, -0.5), (None, -0.95), (1e-6, -0.6), (1e-12, -0.9)])
+def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, nearest, exponent):
     kind = MESHES[mesh]
-    cells = kind.build(MESHES[mesh].refinement(tolerance, β_s))
+    cells = kind.build(MESHES[mesh].refinement(Wanted(tolerance, nearest, 5.0, exponent)))
     check_cells(cells)
     x, y = np.moveaxis(cells.points[cells.cells], -1, 0)
     area = 0.5 * np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1))
@@ -33,7 +33,7 @@ def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, β_s):
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_have_no_cracks(mesh, times):
     """Every inner edge is shared by two cells: no vertex is there twice but for its last digit."""
-    cells = MESHES[mesh].build(MESHES[mesh].refinement(1e-5, 1.0), times)
+    cells = MESHES[mesh].build(MESHES[mesh].refinement(Wanted(1e-5)), times)
     check_cells(cells)
     edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
     _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
@@ -44,7 +44,7 @@ def test_cut_meshes_have_no_cracks(mesh, times):
 @pytest.mark.parametrize("mesh", MESHES)
 def test_boundary_parts_lie_where_they_should(mesh):
     kind = MESHES[mesh]
-    cells = kind.build(MESHES[mesh].refinement(1e-6, 1.0))
+    cells = kind.build(MESHES[mesh].refinement(Wanted(1e-6)))
     X = {tag: kind.chart.to_physical(cells.points[np.unique(cells.edges[tag])]) for tag in TAGS.values()}
     for tag in (CONTACT, FREE):
         np.testing.assert_allclose(X[tag][:, 1], 0.0, atol=1e-12 * np.abs(X[tag]).max())
@@ -53,7 +53,7 @@ def test_boundary_parts_lie_where_they_should(mesh):
     if mesh == "box":
         assert (np.isclose(np.abs(X[FAR][:, 0]), 100.0) | np.isclose(X[FAR][:, 1], -100.0)).all()
     else:
-        radius = kind.reach(1e-6)
+        radius = kind.reach(Wanted(1e-6))
         np.testing.assert_allclose(np.linalg.norm(X[FAR], axis=1), radius, rtol=1e-9)
 
 
@@ -66,7 +66,7 @@ def test_a_turned_cell_is_refused():
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
-    coarse = MESHES[mesh].refinement(1e-3, 1.0)
+    coarse = MESHES[mesh].refinement(Wanted(1e-3))
     whole, fine = (MESHES[mesh].build(coarse, cuts) for cuts in (1, 3))
     assert len(fine.cells) == 9 * len(whole.cells)
     np.testing.assert_array_equal(fine.points[: len(whole.points)], whole.points)
@@ -77,7 +77,7 @@ def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_pieces_of_a_mesh_make_the_whole(mesh):
-    kind, pattern = MESHES[mesh], MESHES[mesh].refinement(1e-3, 1.0)
+    kind, pattern = MESHES[mesh], MESHES[mesh].refinement(Wanted(1e-3))
     whole, pieces = kind.build(pattern, 4), [kind.build(pattern, 4, i, 3) for i in range(3)]
     for name in ("points", "cells"):
         np.testing.assert_array_equal(

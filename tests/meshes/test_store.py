@@ -1,16 +1,31 @@
+import os
+import random
 import sys
+import types
 
 import numpy as np
 import pytest
 
-from galinx.meshes import MESHES, store
+from galinx import sealed
+from galinx.meshes import MESHES, Wanted, store
 from galinx.meshes.rings import QuadMesh
+
+#: Bits that are flipped in a mesh; GALINX_THOROUGH=1 asks for as many as a release does.
+FLIPS = 5000 if os.environ.get("GALINX_THOROUGH") else 50
 
 
 @pytest.fixture
 def pattern(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return MESHES["graded"].build(MESHES["graded"].refinement(1e-3, 1.0))
+    return MESHES["graded"].build(MESHES["graded"].refinement(Wanted(1e-3)))
+
+
+@pytest.fixture
+def kept(pattern, tmp_path):
+    """The file of the pattern's mesh."""
+    store.obtain(pattern)
+    (path,) = (tmp_path / "galinx" / "meshes").iterdir()
+    return path
 
 
 def same(one, other):
@@ -19,12 +34,19 @@ def same(one, other):
     assert all(np.array_equal(one.edges[tag], other.edges[tag]) for tag in one.edges)
 
 
+def made_again(pattern):
+    """Was the kept mesh of a pattern found damaged, and is the right one there now?"""
+    said = []
+    same(store.obtain(pattern, said.append), pattern)
+    assert store.is_kept(pattern) and len(said) < 2
+    return "is damaged; it is made again" in "".join(said)
+
+
 def test_gmsh_gives_the_pattern_back_and_is_not_asked_twice(pattern, monkeypatch):
     assert not store.is_kept(pattern)
-    same(store.obtain(pattern), pattern)
-    assert store.is_kept(pattern)
+    assert not made_again(pattern)
     monkeypatch.setitem(sys.modules, "galinx.meshes.gmsh_model", None)  # its import would raise
-    same(store.obtain(pattern), pattern)
+    assert not made_again(pattern)
 
 
 def test_another_pattern_is_another_mesh(pattern):
@@ -32,13 +54,45 @@ def test_another_pattern_is_another_mesh(pattern):
     assert not store.is_kept(QuadMesh(pattern.points * (1.0 + 1e-15), pattern.cells, pattern.edges))
 
 
-@pytest.mark.parametrize("damage", [lambda data: b"", lambda data: data[:200], lambda data: b"x" * 500])
-def test_a_damaged_file_is_replaced(pattern, tmp_path, damage):
-    store.obtain(pattern)
-    (path,) = (tmp_path / "galinx" / "meshes").iterdir()
-    path.write_bytes(damage(path.read_bytes()))
-    same(store.obtain(pattern), pattern)
-    assert store._load(path) is not None
+DAMAGES = {
+    "empty": lambda whole: b"",
+    "cut": lambda whole: whole[:200],
+    "foreign": lambda whole: b"x" * 500,
+    "of nothing": lambda whole: b"".join(sealed.packed(None, {})),
+    "of another kind": lambda whole: b"".join(sealed.packed({"key": "a"}, {})),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_file_is_replaced(pattern, kept, damage):
+    kept.write_bytes(DAMAGES[damage](kept.read_bytes()))
+    assert not store.is_kept(pattern)
+    assert made_again(pattern) and not made_again(pattern)
+
+
+def test_what_is_no_file_is_replaced(pattern, kept):
+    kept.unlink()
+    os.mkfifo(kept)
+    assert made_again(pattern) and not made_again(pattern)
+
+
+def test_the_mesh_of_another_pattern_is_no_mesh(pattern, kept):
+    wide = QuadMesh(2.0 * pattern.points, pattern.cells, pattern.edges)
+    store.obtain(wide)
+    (other,) = set(kept.parent.iterdir()) - {kept}
+    other.replace(kept)
+    assert made_again(pattern) and not made_again(wide)
+
+
+def test_a_flipped_bit_is_no_other_mesh(pattern, kept, monkeypatch):
+    quick = types.SimpleNamespace(through_gmsh=lambda mesh: mesh)  # proved above, and slow
+    monkeypatch.setitem(sys.modules, "galinx.meshes.gmsh_model", quick)
+    chance, whole = random.Random(4), kept.read_bytes()
+    for _ in range(FLIPS):
+        data, bit = bytearray(whole), chance.randrange(8 * len(whole))
+        data[bit // 8] ^= 1 << bit % 8
+        kept.write_bytes(data)
+        assert made_again(pattern) and not made_again(pattern)
 
 
 def test_a_folder_that_cannot_be_written_is_no_fault(pattern, tmp_path):

@@ -1,18 +1,32 @@
 import numpy as np
 
 from galinx.postprocess import estimate
+from galinx.postprocess.estimate import Rate
+
+ANY = Rate(0.0, 0.0)
 
 
 def test_the_estimate_sums_a_geometric_series():
-    limit = np.array([[1.0, 2.0], [3.0, 4.0]])
-    error = np.array([[0.3, -0.2], [0.0, 0.1]])
-    coarse, middle, fine = (limit + error * 0.5**n for n in range(3))
-    first, second = estimate.differences(coarse, middle), estimate.differences(middle, fine)
-    np.testing.assert_allclose(first, [0.15, 0.05])
+    error = np.array([0.3, 0.1])
+    first, second = (error * (0.5**n - 0.5 ** (n + 1)) for n in range(2))
     sample = first, second
-    left = estimate.remaining(first, second, sample)
+    left = estimate.remaining(first, second, sample, ANY)
     np.testing.assert_allclose(left, estimate.SAFETY * np.array([0.075, 0.025]))
-    assert (estimate.remaining(0.0 * first, second, sample) >= left).all()  # a lucky first difference
-    slow = estimate.remaining(first, 0.9 * first, sample)
+    # a lucky first difference
+    assert (estimate.remaining(0.0 * first, second, sample, ANY) >= left).all()
+    slow = estimate.remaining(first, 0.9 * first, sample, ANY)
     np.testing.assert_allclose(slow, estimate.SAFETY * 0.9 * first * 9.0)
-    assert np.isfinite(estimate.remaining(first, second, (0.0 * first, 0.0 * second))).all()
+    assert np.isfinite(estimate.remaining(first, second, (0.0 * first, 0.0 * second), ANY)).all()
+
+
+def test_a_faster_fall_than_is_believed_counts_as_the_usual_one():
+    first = np.array([1.0])
+    for seen, counted in ((0.01, 0.2), (0.3, 0.2), (0.4, 0.4)):
+        second = seen * first
+        left = estimate.remaining(first, second, (first, second), Rate(0.2, 0.3))
+        np.testing.assert_allclose(left, estimate.SAFETY * second * counted / (1.0 - counted))
+
+
+def test_halved_cells_gain_by_their_degree():
+    assert estimate.of_cuts(4, 2).usual == 3.5 * 2.0**-8
+    assert estimate.of_cuts(4, 1).usual == 3.5 * 2.0**-4

@@ -1,24 +1,60 @@
 """Parts that an interrupted run keeps."""
 
+import os
+import random
+
 import numpy as np
 import pytest
+from support import at_once, full_disk
 
-from galinx.postprocess.errors import LeftOver
+from galinx import sealed
+from galinx.postprocess.compare import Comparison
+from galinx.postprocess.errors import LeftOver, UnwritableArchive
 from galinx.postprocess.journal import Journal, Part
 
+#: Bits that are flipped in parts; GALINX_THOROUGH=1 asks for as many as a release does.
+FLIPS = 5000 if os.environ.get("GALINX_THOROUGH") else 50
 
-def part(start, stop, value=1.0):
-    return Part(slice(start, stop), {"states/f": np.full(stop - start, value)}, [], None)
+
+def part(start, stop):
+    n = stop - start
+    data = {
+        "states/f": np.arange(start, stop) / 7.0,
+        "turned": np.arange(6.0 * n).reshape(6, n).T,
+        "none": np.ones((n, 0)),
+        "whole": np.arange(n) > 1,
+        "unknown": np.full((n, 2), np.nan),
+    }
+    found = Comparison("balance", "forces", 1e-9 * stop)
+    return Part(slice(start, stop), data, [found], {"speed": start})
+
+
+#: What a killed run leaves; the last is only half full.
+PARTS = (part(0, 3), part(3, 6), part(6, 7))
 
 
 def interrupted(target, key="key"):
-    """Leave what a killed run leaves: two parts and a half-written archive."""
+    """Leave what a killed run leaves: its parts and a half-written archive."""
     with pytest.raises(KeyboardInterrupt), Journal(target, key) as journal:
-        journal.keep(part(0, 3))
-        journal.keep(part(3, 5))
+        for one in PARTS:
+            journal.keep(one)
         (journal.folder / ".out.h5.1.partial").write_bytes(b"half")
         raise KeyboardInterrupt
     return journal.folder
+
+
+def exactly(part):
+    """A part as something that can be compared, NaN included."""
+    arrays = [(name, x.dtype, x.shape, x.tobytes()) for name, x in part.data.items()]
+    return part.rows, arrays, part.comparisons, part.record
+
+
+def kept(target, key="key"):
+    """Numbers of the parts that a run finds when it goes on, and how many are as good as not kept."""
+    with Journal(target, key, resume=True) as journal:
+        found = [[*map(exactly, PARTS)].index(exactly(part)) for part in journal.parts()]
+        assert journal.states == sum(PARTS[n].rows.stop - PARTS[n].rows.start for n in found)
+    return found, journal.damaged
 
 
 def test_parts_of_another_scene_are_refused(tmp_path):
@@ -26,12 +62,10 @@ def test_parts_of_another_scene_are_refused(tmp_path):
     interrupted(target)
     with pytest.raises(LeftOver, match="belongs to another scene"), Journal(target, "other", resume=True):
         pass
-    with pytest.raises(LeftOver, match="left 5 finished states"), Journal(target, "key"):
+    with pytest.raises(LeftOver, match="left 7 finished states"), Journal(target, "key"):
         pass
+    assert kept(target) == ([0, 1, 2], 0)
     with Journal(target, "key", resume=True) as journal:
-        assert [(p.rows, p.data["states/f"].tolist()) for p in journal.parts()] == [
-            (slice(0, 3), [1.0] * 3), (slice(3, 5), [1.0] * 2),
-        ]  # fmt: skip
         assert not list(journal.folder.glob(".*"))
         journal.complete()
     assert not list(tmp_path.iterdir())
@@ -41,15 +75,81 @@ def test_a_new_start_gives_parts_up(tmp_path):
     target = tmp_path / "out.h5"
     interrupted(target)
     with Journal(target, "key", overwrite=True) as journal:
-        assert journal.states == 0
+        assert journal.states == 0 and not list(journal.parts())
 
 
-def test_a_damaged_part_is_computed_again(tmp_path):
+def exchange(*paths):
+    contents = [path.read_bytes() for path in paths]
+    for path, content in zip(paths, reversed(contents)):
+        path.write_bytes(content)
+
+
+def become(path, make):
+    path.unlink()
+    make(path)
+
+
+#: What happens to the first two of the parts, and what is left.
+DAMAGES = {
+    "cut": (lambda first, _: os.truncate(first, 100), [1, 2]),
+    "empty": (lambda first, _: os.truncate(first, 0), [1, 2]),
+    "a folder": (lambda first, _: become(first, os.mkdir), [1, 2]),
+    "a FIFO": (lambda first, _: become(first, os.mkfifo), [1, 2]),
+    "of another kind": (lambda first, _: first.write_bytes(b"".join(sealed.packed("a", {}))), [1, 2]),
+    "renamed": (lambda first, _: first.rename(first.with_name("0000000007-0000000010.part")), [1, 2]),
+    "without a number": (lambda first, _: first.rename(first.with_name("a-b.part")), [1, 2]),
+    "copied": (lambda first, second: second.write_bytes(first.read_bytes()), [0, 2]),
+    "exchanged": (lambda first, second: exchange(first, second), [2]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_what_is_not_as_it_was_kept_is_not_there(tmp_path, damage):
     target = tmp_path / "out.h5"
-    folder = interrupted(target)
-    first = sorted(folder.glob("*-*.npz"))[0]
-    data = bytearray(first.read_bytes())
-    data[data.index(np.ones(3).tobytes()) + 7] ^= 1
-    first.write_bytes(data)
-    with Journal(target, "key", resume=True) as journal:
-        assert [p.rows for p in journal.parts()] == [slice(3, 5)]
+    first, second, _ = sorted(interrupted(target).glob("*.part"))
+    make, left = DAMAGES[damage]
+    make(first, second)
+    assert kept(target) == (left, len(PARTS) - len(left))
+
+
+def test_a_part_of_another_run_is_not_there(tmp_path):
+    target = tmp_path / "out.h5"
+    first, *_ = sorted(interrupted(target).glob("*.part"))
+    theirs = interrupted(tmp_path / "other.h5", "other") / first.name
+    theirs.rename(first)
+    assert kept(target) == ([1, 2], 1)
+
+
+def test_a_run_of_which_nothing_is_whole_begins_anew(tmp_path):
+    target = tmp_path / "out.h5"
+    for path in interrupted(target).glob("*.part"):
+        os.truncate(path, 50)
+    assert kept(target) == ([], 3)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_flipped_bit_changes_no_number(tmp_path):
+    target, chance = tmp_path / "out.h5", random.Random(2)
+    paths = sorted(interrupted(target).glob("*.part"))
+    for _ in range(FLIPS):
+        n = chance.randrange(len(paths))
+        whole = paths[n].read_bytes()
+        data, bit = bytearray(whole), chance.randrange(8 * len(whole))
+        data[bit // 8] ^= 1 << bit % 8
+        paths[n].write_bytes(data)
+        assert kept(target) == ([m for m in range(len(paths)) if m != n], 1)
+        paths[n].write_bytes(whole)
+
+
+def test_a_full_disk_leaves_nothing_where_nothing_is_kept(tmp_path):
+    journal = Journal(tmp_path / "a.h5", "key")
+    with full_disk(0), pytest.raises(UnwritableArchive, match="File too large"), journal:
+        journal.keep(part(0, 3))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lock_that_is_a_fifo_is_not_waited_for(tmp_path):
+    (tmp_path / ".a.h5.work").mkdir()
+    os.mkfifo(tmp_path / ".a.h5.work" / "lock")
+    with at_once(), pytest.raises(UnwritableArchive, match="it is a FIFO"):
+        Journal(tmp_path / "a.h5", "key").__enter__()

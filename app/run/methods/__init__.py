@@ -45,8 +45,8 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if quantity and not body.flat and quantity is states.SLOPE:
-        return "the punch is not flat"
+    if quantity is states.SLOPE and (body.pressure or not body.flat):
+        return "the pressure is given" if body.pressure else "the punch is not flat"
     return ""
 
 

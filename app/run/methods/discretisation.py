@@ -14,6 +14,8 @@ from galinx.clock import Clock
 from galinx.meshes.cells import check_cells
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
+from galinx.postprocess.quantities.quantity import FEM
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
 
@@ -29,6 +31,7 @@ class Discretisation:
     Attributes:
         plan: the finite elements' part.
         chunk: states that are treated at once.
+        stresses: words of output.quantities that ask for stresses of finite elements.
         comm: the ranks that share a mesh.
     """
 
@@ -36,6 +39,7 @@ class Discretisation:
         assert plan.fem
         self.plan: FemPlan = plan.fem
         self.chunk, self.clock = plan.chunk, clock
+        self.stresses = frozenset(word for word in (ON_SURFACE, BELOW) if plan.asks(word, FEM))
         self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
         self._progress = progress
         self._meshes: dict[int, tuple[Any, Any]] = {}
@@ -46,8 +50,9 @@ class Discretisation:
         if (degree, cuts) not in self._spaces:
             with quiet_compiler():
                 self._spaces[degree, cuts] = Space(
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock
-                )
+                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
+                    self.clock, self._progress.warn,
+                )  # fmt: skip
         return self._spaces[degree, cuts]
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
@@ -63,7 +68,7 @@ class Discretisation:
         check_cells(pattern)
         if cuts > 1:  # gmsh's copy of a cut mesh would only be large
             return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
-        return distribute(obtain(pattern) if comm.rank == 0 else None, comm)
+        return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)
 
 
 @contextmanager

@@ -1,6 +1,6 @@
 """Stresses from the displacement fields of a speed, on the surface and inside."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
+from galinx.postprocess.quantities.stresses import BELOW
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
@@ -25,6 +26,13 @@ class Displacement:
 
     def __init__(self, task: Task, space: Space, fields: Sequence[Any]) -> None:
         self._task, self._space, self._fields = task, space, fields
+
+    def prepare(self, words: Collection[str]) -> None:
+        """Take the derivatives that words of output.quantities ask for, before the fields are freed."""
+        if words:
+            self._slopes  # noqa: B018 - cached
+        if BELOW in words:
+            self._gradients  # noqa: B018
 
     @cached_property
     def _slopes(self) -> SurfaceSlopes:

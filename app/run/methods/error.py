@@ -1,12 +1,12 @@
-"""The error of a punch, measured on punches of lower degree, and the degree that it asks for."""
+"""The error of finite elements, measured on solutions of lower degree, and the degree it asks for."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.run.methods.ladder import Ladder, Level
+from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import differences, remaining
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.postprocess.estimate import Rate, of_cuts, of_degrees, remaining
+from galinx.postprocess.quantities.quantity import INTENSITIES
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
@@ -28,9 +28,7 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
     probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
     error = MeasuredError(ladder, probes)
     changes = dict(error.changes)
-    # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
-    enough = max(plan.tolerance, 1.1 * error.truncation(probes).max())
-    while not plan.fixed and ladder.degree < DEGREES[1] and error.of(probes).max() > enough:
+    while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive(probes):
         ladder.add(g, ladder.degree + 1)
         error = MeasuredError(ladder, probes)
         changes |= error.changes
@@ -51,42 +49,61 @@ class MeasuredError:
 
     def __init__(self, ladder: Ladder, probes: NDArray) -> None:
         self._ladder = ladder
-        self._sample = self._differences(probes)
-        self._rounding = self._asymmetry(probes)
+        self._sample = self._changes(probes)
+        self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
-            degrees = (ladder.degree - 1, ladder.degree)
-            self.changes = {p: float(found.max()) for p, found in zip(degrees, self._sample)}
+            for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
+                found = (float(pair[i].max()) for pair in self._sample.values())
+                self.changes[degree] = max(found, default=0.0)
 
-    def of(self, g: NDArray) -> NDArray[np.float64]:
-        """Estimated relative error of K_I and of the pressure's moments, (states,)."""
-        left = remaining(*self._differences(g), self._sample)
-        return left + self.truncation(g) + self._rounding
+    def record(self) -> dict[str, list[float]]:
+        """The changes by degree, as they are archived."""
+        changes = np.zeros(DEGREES[1] + 1)
+        for degree, change in self.changes.items():
+            changes[degree] = change
+        return {"change_by_degree": changes.tolist() if changes.any() else []}
 
-    def truncation(self, g: NDArray) -> NDArray[np.float64]:
-        """Estimated relative error from the finite outer radius, (states,)."""
-        plan, response = self._ladder.work.plan, self._ladder.task.response
-        return plan.kind.truncation(plan.tolerance, response.margin) * np.abs(g)
+    def of(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
+        truncation = self._truncation(g)
+        return {
+            word: remaining(*pair, self._sample[word], self._rate(word))
+            + truncation[word]
+            + self._rounding[word]
+            for word, pair in self._changes(g).items()
+        }
 
-    def _differences(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        coarse, middle, fine = (self._measured(level, g) for level in self._ladder.levels)
-        return differences(coarse, middle), differences(middle, fine)
-
-    def _measured(self, level: Level, g: NDArray) -> NDArray[np.float64]:
-        """What the error is measured on, each about 1: (states, several)."""
-        states = level.punch.states(g)
-        K_I = level.pressure(states, FlatPunch(self._ladder.task.response, g)).K_I
-        moments = states.normal @ level.recovery.moments[:, 1:6]
-        return np.column_stack([K_I * np.pi, moments / 2.0])
-
-    def _asymmetry(self, g: NDArray) -> float:
-        """Largest relative difference of K_I left at g and right at -g, which only rounding makes.
-
-        Of a flat punch, since a profile need not be its own mirror image.
-        """
-        level, response = self._ladder.levels[-1], self._ladder.task.response
-        K_I, mirrored = (
-            level.pressure(level.punch.states(sign * g, flat=True), FlatPunch(response, sign * g)).K_I
-            for sign in (1.0, -1.0)
+    def excessive(self, g: NDArray) -> bool:
+        """Is an error larger than the tolerance, and would a higher degree make it smaller?"""
+        found, truncation = self.of(g), self._truncation(g)
+        tolerance = self._ladder.work.plan.tolerance
+        # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
+        return any(
+            bool((found[word] > np.maximum(tolerance, 1.1 * truncation[word])).any()) for word in found
         )
-        return float(np.abs(K_I - mirrored[:, ::-1]).max() * np.pi)
+
+    def _rate(self, word: str) -> Rate:
+        ladder = self._ladder
+        order = 2 if word == INTENSITIES else 1
+        return of_cuts(ladder.degree, order) if ladder.work.plan.fixed else of_degrees(order)
+
+    def _truncation(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
+        plan, response = self._ladder.work.plan, self._ladder.task.response
+        at_edges = plan.kind.truncation(plan.wanted, response.margin)
+        gauges = self._ladder.levels[-1].measured(g)
+        # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
+        of_edges = 2.4 * np.abs(g) + 1.3 * at_edges
+        unseen = plan.kind.unseen(plan.wanted)
+        return {
+            gauge.word: unseen
+            + at_edges
+            * (of_edges if gauge.word == INTENSITIES else 0.4 + of_edges + 3.0 / gauge.scale.min(axis=1))
+            for gauge in gauges
+        }
+
+    def _changes(self, g: NDArray) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Largest changes of each state from the first level to the second, and to the last."""
+        found = zip(*(level.measured(g) for level in self._ladder.levels))
+        return {fine.word: (middle.change(coarse), fine.change(middle)) for coarse, middle, fine in found}

@@ -1,4 +1,4 @@
-"""Mode ``traction`` at one speed: the closed form's σ_YY put in, σ_XY = g σ_YY."""
+"""Mode ``traction`` at one speed: σ_YY put in, σ_XY = g σ_YY."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
+from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.gauge import Gauge, StressGauges
+from galinx.app.run.methods.ladder import Ladder
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -20,17 +23,13 @@ from galinx.solvers.solution import Surface
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
-    """Solve for every load."""
-    # One degree above the rule: no measured error corrects it here.
-    loaded = LoadedHalfPlane(work.space(work.plan.degrees[task.number] + 1), task.response)
+    """Raise the degree until the measured error of sample states is within tolerance."""
+    ladder = Ladder(work, task, lambda space, g: LoadsAtDegree(work, task, space, g))
     try:
-        columns = {}
-        for value in g.tolist():
-            columns[value] = len(loaded.fields)
-            loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
-        yield LoadsAtSpeed(task, loaded, columns)
+        error = climb(ladder, g)
+        yield LoadsAtSpeed(ladder, error)
     finally:
-        loaded.destroy()
+        ladder.destroy()
 
 
 @contextmanager
@@ -46,27 +45,82 @@ def one_state(
         loaded.destroy()
 
 
-class LoadsAtSpeed:
-    """Loads at one speed, solved.
+class LoadsAtDegree:
+    """The pressures of all states at one speed and degree.
 
     Args:
+        work: gives spaces.
         task: the speed.
-        loaded: the half-plane with all loads.
-        columns: the first of a load's two fields, by σ_XY/σ_YY.
+        space: of the degree.
+        g: all values of σ_XY/σ_YY that will be asked for.
     """
 
-    def __init__(self, task: Task, loaded: LoadedHalfPlane, columns: dict[float, int]) -> None:
-        self.task, self.loaded, self.columns = task, loaded, columns
-        self.displacement = Displacement(task, loaded.space, loaded.fields)
+    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
+        self.task, self.space = task, space
+        self.loaded = LoadedHalfPlane(space, task.response)
+        #: The first of a load's two fields, by σ_XY/σ_YY.
+        self._columns: dict[float, int] = {}
+        for value in dict.fromkeys(g.tolist()):
+            self._columns[value] = len(self.loaded.fields)
+            self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
+        self._gauges = StressGauges(work, task, space, self.loaded.fields)
+
+    @property
+    def factor(self) -> Any:
+        return self.loaded.factor
+
+    def measured(self, g: NDArray) -> list[Gauge]:
+        return self._gauges.of(g, self.weights(g), self.σ_YY(g))
+
+    def rounding(self, g: NDArray) -> list[float]:
+        """Not seen here: the mirror images of loads are no loads."""
+        return [0.0] * len(self.measured(g[:1]))
+
+    def columns(self, g: NDArray) -> NDArray[np.int64]:
+        """The first of each state's two fields, (states,)."""
+        return np.array([self._columns[value] for value in g.tolist()])
+
+    def weights(self, g: NDArray) -> NDArray[np.float64]:
+        """Of the fields, (states, fields)."""
+        weights, columns = np.zeros((len(g), len(self.loaded.fields))), self.columns(g)
+        rows = np.arange(len(g))
+        weights[rows, columns], weights[rows, columns + 1] = 1.0, g
+        return weights
+
+    def σ_YY(self, g: NDArray) -> NDArray[np.float64]:
+        """What is put in at the places on the surface, NaN beside the punch, (states, n)."""
+        places = self.task.places
+        r = places.X[places.under]
+        σ_YY = np.full((len(g), len(places.X)), np.nan)
+        local = FlatPunch(self.task.response, g[:, None])
+        σ_YY[:, places.under] = local.σ_YY_by_distance(1.0 + r, 1.0 - r)
+        return σ_YY
+
+    def release(self) -> None:
+        self.loaded.destroy()
+
+    def destroy(self) -> None:
+        self.loaded.destroy()
+
+
+class LoadsAtSpeed:
+    """Loads at one speed, solved to the tolerance.
+
+    Args:
+        ladder: climbed.
+        error: of its last level.
+    """
+
+    def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
+        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        self.displacement = Displacement(ladder.task, self.level.space, self.level.loaded.fields)
+        self._ladder = ladder
 
     def states(self, g: NDArray) -> "GivenLoads":
-        columns = np.array([self.columns[value] for value in g.tolist()])
-        return GivenLoads(self, g, columns)
+        return GivenLoads(self, g)
 
     def record(self) -> dict[str, Any]:
-        space = self.loaded.space
-        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
-        return size | self.loaded.record
+        return self._ladder.record() | self.error.record()
 
 
 @dataclass(frozen=True)
@@ -76,12 +130,10 @@ class GivenLoads:
     Attributes:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
-        columns: the first of each state's two fields, (states,).
     """
 
     at: LoadsAtSpeed
     g: NDArray[np.float64]
-    columns: NDArray[np.int64]
 
     @property
     def local(self) -> FlatPunch:
@@ -90,7 +142,8 @@ class GivenLoads:
     @property
     def normal_force(self) -> NDArray[np.float64]:
         """Resultant over N/2, (states,)."""
-        return np.array(self.at.loaded.resultants)[self.columns // 2]
+        level = self.at.level
+        return np.array(level.loaded.resultants)[level.columns(self.g) // 2]
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
@@ -98,21 +151,15 @@ class GivenLoads:
         return self.g * self.normal_force
 
     @cached_property
-    def _weights(self) -> NDArray[np.float64]:
-        weights = np.zeros((len(self.g), len(self.at.loaded.fields)))
-        rows = np.arange(len(self.g))
-        weights[rows, self.columns], weights[rows, self.columns + 1] = 1.0, self.g
-        return weights
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        return self.at.error.of(self.g)
 
     @cached_property
     def surface(self) -> Surface:
-        places = self.at.task.places
-        r = places.X[places.under]
-        σ_YY = np.full((len(self.g), len(places.X)), np.nan)
-        response = self.at.task.response
-        σ_YY[:, places.under] = FlatPunch(response, self.g[:, None]).σ_YY_by_distance(1.0 + r, 1.0 - r)
-        return self.at.displacement.surface(self.g, self._weights, σ_YY)
+        level = self.at.level
+        return self.at.displacement.surface(self.g, level.weights(self.g), level.σ_YY(self.g))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self.at.displacement.inside(self._weights)
+        return self.at.displacement.inside(self.at.level.weights(self.g))

@@ -1,6 +1,6 @@
 """A pressure of the user's own at one speed, put in: finite elements, the degree found by measuring."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,33 +11,27 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import differences, remaining
-from galinx.solvers.contact import from_edge
+from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
+from galinx.app.run.methods.ladder import Ladder
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Surface
-
-#: States, spread over all of a speed, whose measured error decides the degree.
-PROBES = 9
 
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressureAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
-    first = work.plan.degrees[task.number]
-    levels = [Level(work, task, degree) for degree in (first - 2, first - 1, first)]
-    while True:
-        error = MeasuredError(levels[-3:], probes)
-        if error.of(probes) <= work.plan.tolerance or levels[-1].degree >= DEGREES[1]:
-            break
-        levels.append(Level(work, task, levels[-1].degree + 1))
-    yield OwnPressureAtSpeed(task, levels, error)
+    ladder = Ladder(work, task, lambda space, _: PiecesLevel(work, task, space))
+    try:
+        error = climb(ladder, g)
+        yield OwnPressureAtSpeed(ladder, error)
+    finally:
+        ladder.destroy()
 
 
 @contextmanager
@@ -45,7 +39,8 @@ def one_state(
     work: Discretisation, task: Task, g: float, degree: int
 ) -> Iterator[tuple[Space, Any, NDArray]]:
     """Space, fields and weights of one state: the pressure as a whole, not piece by piece."""
-    loaded, pressure = LoadedHalfPlane(work.space(degree), task.response), _put_in(task)
+    # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
+    loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _put_in(task)
     try:
         loaded.load(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
@@ -61,127 +56,109 @@ def _put_in(task: Task) -> LinearPressure:
     return task.body.pressure
 
 
-class Level:
-    """What finite elements of one degree make of the pressure, for every σ_XY/σ_YY.
+class PiecesSeen:
+    """Displacement gradients of the pressure at places, of σ_YY alone and of σ_XY equal to it.
 
     Args:
-        work: gives the space.
-        task: the speed.
-        degree: polynomial degree.
-
-    Attributes:
-        degree: the same.
-        resultant: of the discrete loads, over N/2.
-        looks_inside: are there places inside?
-        record: numbers of the linear algebra, by the names of ``quantities.runs.RECORD``.
+        task: the speed, and the places.
+        pieces: of the pressure.
+        loads: with which these are made.
+        words: of output.quantities, that ask for stresses.
     """
 
-    def __init__(self, work: Discretisation, task: Task, degree: int) -> None:
-        self._task, self.degree = task, degree
-        space, pressure, places = work.space(degree), _put_in(task), task.places
-        loads, pieces = LinearLoads(space, task.response), Pieces(pressure.knots, pressure.values)
-        self.record = {"cells": space.cells, "unknowns": space.size, "degree": degree} | loads.record
-        self.resultant = pieces.resultant(loads)
-        self.looks_inside = len(places.points) > 0
-        self._σ_YY = np.where(places.under, pressure(places.X), np.nan)
-        with work.clock("recovery"):
-            on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
-            # Of σ_YY alone, and of σ_XY equal to it.
-            self._on_surface = pieces.gradients(loads, on_surface)[:, :, 0]
-            self._inside = pieces.gradients(loads, places.points)
+    def __init__(self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str]) -> None:
+        self._task, places = task, task.places
+        on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
+        self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
+        self._inside = pieces.gradients(loads, places.points[: len(places.points) * (BELOW in words)])
 
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""
-        u_X, v_X = np.einsum("nid,ds->isn", self._on_surface, np.array([np.ones_like(g), g]))
-        σ_YY = np.tile(self._σ_YY, (len(g), 1))
+        places = self._task.places
+        u_X, v_X = np.einsum("nid,ds->isn", self._on_surface[:, :, 0], _weights(g))
+        σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
         σ = np.nan_to_num(σ_YY)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
-        return Surface(self._task.places, σ_YY, σ_XX, None, v_X)
+        return Surface(places, σ_YY, σ_XX, None, v_X)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
-        weights = np.array([np.ones_like(g), g])
-        return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, weights))
+        return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, _weights(g)))
 
 
-#: Values of a level's states that should not change any more, and their size, both (states, values).
-_Measure = Callable[[Level, NDArray], tuple[NDArray, NDArray]]
-
-_TINY = np.finfo(float).tiny
+def _weights(g: NDArray) -> NDArray[np.float64]:
+    return np.array([np.ones_like(g), g])
 
 
-def _in_plane(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
-    surface = level.surface(g)
-    size = np.abs(surface.σ_XX)
-    away = from_edge(surface.places.X) >= 1e-2
-    return surface.σ_XX, np.maximum(size, size[:, away].max(axis=1, keepdims=True))
-
-
-def _inside(level: Level, g: NDArray) -> tuple[NDArray, NDArray]:
-    stresses = np.concatenate(level.inside(g), axis=1)
-    return stresses, np.abs(stresses).max(axis=1, keepdims=True)
-
-
-class MeasuredError:
-    """How far the last of three levels is off, by what changed from level to level.
+class PiecesLevel:
+    """What finite elements of one degree make of the pressure, for every σ_XY/σ_YY.
 
     Args:
-        levels: of successive degrees.
-        probes: values of σ_XY/σ_YY that stand for all of the speed.
+        work: knows what is asked for.
+        task: the speed.
+        space: of the degree.
+
+    Attributes:
+        factor: of the linear system, with numbers of its work.
+        resultant: of the discrete loads, over N/2.
     """
 
-    def __init__(self, levels: list[Level], probes: NDArray) -> None:
-        self._levels = levels
-        self._in_plane = self._changes(_in_plane, probes)
-        self._inside = self._changes(_inside, probes) if levels[-1].looks_inside else None
+    def __init__(self, work: Discretisation, task: Task, space: Space) -> None:
+        self._work, self._task, self.space = work, task, space
+        pressure = _put_in(task)
+        self._pieces = Pieces(pressure.knots, pressure.values)
+        self._loads: LinearLoads | None = LinearLoads(space, task.response)
+        self.factor: Any = self._loads.factor
+        self.resultant = self._pieces.resultant(self._loads)
+        self._gauged = self._seen(gauged(task))
 
-    def of(self, g: NDArray) -> float:
-        """The largest of both."""
-        return float(max(self.in_plane(g).max(), self.inside(g).max()))
+    @cached_property
+    def everywhere(self) -> PiecesSeen:
+        """At all places; not after the level's release."""
+        everywhere = gauged(self._task) is self._task
+        return self._gauged if everywhere else self._seen(self._task)
 
-    def in_plane(self, g: NDArray) -> NDArray[np.float64]:
-        """Of σ_XX on the surface, over its size there or its largest away from the ends, (states,)."""
-        return remaining(*self._changes(_in_plane, g), self._in_plane)
+    def _seen(self, task: Task) -> PiecesSeen:
+        assert self._loads
+        with self._work.clock("recovery"):
+            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
 
-    def inside(self, g: NDArray) -> NDArray[np.float64]:
-        """Of the stresses inside, over the largest of a state, (states,); 0 where none are asked for."""
-        if self._inside is None:
-            return np.zeros(len(g))
-        return remaining(*self._changes(_inside, g), self._inside)
+    def measured(self, g: NDArray) -> list[Gauge]:
+        found, words, places = [], self._work.stresses, gauged(self._task).places
+        if ON_SURFACE in words:
+            found.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
+        if BELOW in words:
+            found.append(of_inside(self._gauged.inside(g), places.points))
+        return found
 
-    def _changes(self, measure: _Measure, g: NDArray) -> tuple[NDArray, NDArray]:
-        found = [measure(level, g) for level in self._levels]
-        coarse, middle, fine = (values / np.maximum(found[-1][1], _TINY) for values, _ in found)
-        return differences(coarse, middle), differences(middle, fine)
+    def rounding(self, g: NDArray) -> list[float]:
+        """Not seen here: the mirror images of loads are no loads."""
+        return [0.0] * len(self.measured(g[:1]))
+
+    def release(self) -> None:
+        self._loads = None
+
+    def destroy(self) -> None:
+        self._loads = None
 
 
 class OwnPressureAtSpeed:
-    """A pressure put in at one speed.
+    """A pressure put in at one speed, solved to the tolerance.
 
     Args:
-        task: the speed.
-        levels: all that were solved.
-        error: of the last.
+        ladder: climbed.
+        error: of its last level.
     """
 
-    def __init__(self, task: Task, levels: list[Level], error: MeasuredError) -> None:
-        self.task, self.level, self.error = task, levels[-1], error
-        self._levels = levels
+    def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
+        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        self._ladder = ladder
 
     def states(self, g: NDArray) -> "OwnPressures":
         return OwnPressures(self, g)
 
     def record(self) -> dict[str, Any]:
-        records = [level.record for level in self._levels]
-        return (
-            records[-1]
-            | {name: max(record[name] for record in records) for name in _LARGEST}
-            | {name: sum(record[name] for record in records) for name in _TOTAL}
-        )
-
-
-_LARGEST = ("iterations", "largest_residual", "largest_condition")
-_TOTAL = ("factorisations", "back_substitutions")
+        return self._ladder.record() | self.error.record()
 
 
 @dataclass(frozen=True)
@@ -197,10 +174,6 @@ class OwnPressures:
     g: NDArray[np.float64]
 
     @property
-    def local(self) -> FlatPunch:
-        return FlatPunch(self.at.task.response, self.g)
-
-    @property
     def normal_force(self) -> NDArray[np.float64]:
         """Resultant over N/2, (states,)."""
         return np.full(len(self.g), self.at.level.resultant)
@@ -210,20 +183,15 @@ class OwnPressures:
         """Resultant over N/2, (states,)."""
         return self.g * self.normal_force
 
-    @property
-    def estimate_in_plane(self) -> NDArray[np.float64]:
-        """Of σ_XX on the surface, see :class:`MeasuredError`, (states,)."""
-        return self.at.error.in_plane(self.g)
-
-    @property
-    def estimate_inside(self) -> NDArray[np.float64]:
-        """Of the stresses inside, (states,)."""
-        return self.at.error.inside(self.g)
+    @cached_property
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        return self.at.error.of(self.g)
 
     @cached_property
     def surface(self) -> Surface:
-        return self.at.level.surface(self.g)
+        return self.at.level.everywhere.surface(self.g)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self.at.level.inside(self.g)
+        return self.at.level.everywhere.inside(self.g)

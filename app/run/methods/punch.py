@@ -10,22 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
+from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import MeasuredError, climb
-from galinx.app.run.methods.ladder import Ladder, profile_on
-from galinx.meshes.kind import DEGREES
-from galinx.postprocess.pressure import JacobiPressure
+from galinx.app.run.methods.gauge import Gauge, StressGauges
+from galinx.app.run.methods.ladder import Ladder
+from galinx.postprocess.pressure import JacobiPressure, contact_recovery, from_moments
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Body, Surface
+
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
+#: most keeps results on any number of ranks equal to 1e-9.
+NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
 
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    ladder = Ladder(work, task)
+    ladder = Ladder(work, task, lambda space, g: PunchLevel(work, task, space, g))
     try:
         error = climb(ladder, g)
         yield PunchesAtSpeed(ladder, error)
@@ -47,6 +52,68 @@ def one_state(
         punch.destroy()
 
 
+class PunchLevel:
+    """A punch at one degree, and the maps that read its contact forces.
+
+    Args:
+        work: gives spaces.
+        task: the speed.
+        space: of the degree.
+        g: all values of σ_XY/σ_YY that will be asked for.
+    """
+
+    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
+        plan, self.task, self.space = work.plan, task, space
+        negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
+        height = profile_on(space, task.body)
+        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, height)
+        self.recovery = contact_recovery(space.contact.s, space.degree, space.chart, task.places.X)
+        # The basis is complete before traces are taken, and the same whatever states are still to do.
+        for first in range(0, len(g), work.chunk):
+            self.punch.states(g[first : first + work.chunk])
+        self._gauges = StressGauges(work, task, space, self.punch.fields)
+
+    @property
+    def factor(self) -> Any:
+        return self.punch.factor
+
+    def pressure(self, states: ContactStates) -> JacobiPressure:
+        """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""
+        local = FlatPunch(self.task.response, states.g)
+        return from_moments(states.normal @ self.recovery.moments, local.α, local.β)
+
+    def measured(self, g: NDArray) -> list[Gauge]:
+        states = self.punch.states(g)
+        pressure = self.pressure(states)
+        moments = states.normal @ self.recovery.moments
+        return [
+            gauge.of_pressure(pressure, moments),
+            *self._gauges.of(g, states.weights, pressure.σ_YY(self.task.places.X)),
+        ]
+
+    def rounding(self, g: NDArray) -> list[float]:
+        """What is not the mirror image of itself at -g, of a flat punch: a profile need not be one."""
+        found = []
+        for sign in (1.0, -1.0):
+            states = self.punch.states(sign * g, flat=True)
+            pressure = self.pressure(states)
+            σ_YY = pressure.σ_YY(self.task.places.X)
+            gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY)
+            found.append([gauge.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
+        return [float(one.change(other).max()) for one, other in zip(*found)]
+
+    def release(self) -> None:
+        self.punch.release()
+
+    def destroy(self) -> None:
+        self.punch.destroy()
+
+
+def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
+    """The punch's height over N/(2μ) at the contact nodes; None for a flat punch, which needs none."""
+    return None if body.flat else body.height(space.chart.surface_position(space.contact.s))
+
+
 class PunchesAtSpeed:
     """Rigid punches at one speed, their pressure found to the tolerance.
 
@@ -57,18 +124,14 @@ class PunchesAtSpeed:
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
         self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
-        self.displacement = Displacement(ladder.task, self.level.punch.space, self.level.punch.fields)
+        self.displacement = Displacement(ladder.task, self.level.space, self.level.punch.fields)
         self._ladder = ladder
 
     def states(self, g: NDArray) -> "Punches":
         return Punches(self, g, self.level.punch.states(g))
 
     def record(self) -> dict[str, Any]:
-        changes = np.zeros(DEGREES[1] + 1)
-        for degree, change in self.error.changes.items():
-            changes[degree] = change
-        told = changes.tolist() if changes.any() else []
-        return self._ladder.record() | {"change_by_degree": told}
+        return self._ladder.record() | self.error.record()
 
 
 @dataclass(frozen=True)
@@ -91,7 +154,7 @@ class Punches:
 
     @cached_property
     def _pressure(self) -> JacobiPressure:
-        return self.at.level.pressure(self.contact, self.local)
+        return self.at.level.pressure(self.contact)
 
     @property
     def K_I(self) -> NDArray[np.float64]:
@@ -119,8 +182,8 @@ class Punches:
         return self.contact.v0
 
     @cached_property
-    def estimate(self) -> NDArray[np.float64]:
-        """Relative error of K_I and moments, (states,)."""
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
         return self.at.error.of(self.g)
 
     @cached_property

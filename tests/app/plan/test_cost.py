@@ -19,7 +19,7 @@ LARGE = {"solve.degree": 2, "solve.cuts": 64}
 )
 def test_planned_memory_covers_what_runs_took(degree, cuts, measured):
     """Largest resident sets of runs with one speed, on one rank."""
-    mesh = {"solve.degree": degree, "solve.cuts": cuts}
+    mesh = {"solve.degree": degree, "solve.cuts": cuts, "output.quantities": ["sif"]}
     scene = template("tables4_5", mesh | {"solve.tolerance": 1e-4, "motion.c": 0.0})
     planned = float(re.search(r"and (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
     assert 0.95 * measured < planned < 1.6 * measured

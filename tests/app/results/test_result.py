@@ -6,6 +6,7 @@ from support import HOME, command
 
 from galinx import load, read_scene, template
 from galinx.app.errors import BadInput
+from galinx.postprocess.errors import Occupied
 
 
 def test_named_arrays_have_units_and_the_archives_numbers(map_run):
@@ -30,7 +31,7 @@ def test_saved_and_loaded_is_the_same(map_run, tmp_path):
     for name, values in map_run.data.items():
         np.testing.assert_array_equal(again.data[name], values)
     assert command("check", tmp_path / "a.h5").returncode == 0
-    with pytest.raises(BadInput, match="exists"):
+    with pytest.raises(Occupied, match="exists"):
         map_run.save(tmp_path / "a.h5")
 
 

@@ -71,7 +71,7 @@ def started(*arguments):
 
 def wait_for_parts(folder, count=1):
     deadline = time.monotonic() + 60.0
-    while len(list(folder.glob(".*.work/*-*.npz"))) < count:
+    while len(list(folder.glob(".*.work/*.part"))) < count:
         assert time.monotonic() < deadline
         time.sleep(0.005)
 
@@ -105,10 +105,10 @@ def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
     assert "interrupted; " in errors and "go on with --resume" in errors and "Traceback" not in errors
     refused = command("run", scene, "-o", target)
     assert refused.returncode == 3 and "an interrupted run left" in refused.stderr
-    files = {path.name for path in tmp_path.glob(".*.work/*-*.npz")}
-    assert len(files) >= 3
+    first, _, third, *_ = sorted(tmp_path.glob(".*.work/*.part"))  # of 1000 states each
+    first.rename(tmp_path / "first"), third.rename(first), (tmp_path / "first").rename(third)
     done = command("run", scene, "-o", target, "--resume")
-    assert done.returncode == 0
+    assert done.returncode == 0 and "kept parts that are damaged: 2; computed again" in done.stderr
     same(contents(target), whole)
 
 
@@ -190,7 +190,7 @@ def test_a_full_disk(sweep, tiny_disk):
     target.write_bytes(b"an earlier archive")
     done = command("run", scene, "-o", target, "--overwrite")
     assert done.returncode == 3 and "Traceback" not in done.stderr
-    assert "No space left on device" in done.stderr and "MB are free" in done.stderr
+    assert "No space left on device" in done.stderr and " are free" in done.stderr
     assert target.read_bytes() == b"an earlier archive"
     assert not list(tiny_disk.rglob("*.partial"))
     subprocess.run(["mount", "-o", "remount,size=1g", str(tiny_disk)], check=True)
@@ -203,7 +203,7 @@ def test_a_full_disk_for_a_field(sweep, tiny_disk):
     subprocess.run(["mount", "-o", "remount,size=100k", str(tiny_disk)], check=True)
     done = command("fields", archive, "-o", tiny_disk / "state.hdf")
     assert done.returncode == 3 and "Traceback" not in done.stderr
-    assert "No space left on device; it needs" in done.stderr and "MB are free" in done.stderr
+    assert "No space left on device; it needs" in done.stderr and " are free" in done.stderr
     assert not list(tiny_disk.iterdir())
 
 

@@ -51,7 +51,7 @@ def within_tolerance_and_estimate(result, tolerance):
     force, in_plane, inside = errors(data)
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert force <= 1e-12
-    assert in_plane <= data["states/fem/estimate_in_plane"].max() <= tolerance
+    assert in_plane <= data["states/fem/estimate_sigma_XX"].max() <= tolerance
     if "interior/fem/sigma_XX" in data:
         assert inside <= data["states/fem/estimate_inside"].max() <= tolerance
 
@@ -126,14 +126,14 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
 
 
 def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
-    solved, true = [], own_pressure.Level.__init__
+    solved, true = [], own_pressure.PiecesLevel.__init__
 
-    def counted(self, work, task, degree):
-        solved.append(degree)
-        true(self, work, task, degree)
+    def counted(self, work, task, space):
+        solved.append(space.degree)
+        true(self, work, task, space)
 
-    monkeypatch.setattr(own_pressure.Level, "__init__", counted)
-    result = put_in(SPIKE, {"solve.tolerance": 1e-5, "motion.c": 0.91})
+    monkeypatch.setattr(own_pressure.PiecesLevel, "__init__", counted)
+    result = put_in(HUMP, {"solve.tolerance": 1e-4, "motion.c": 0.91})
     assert solved == list(range(solved[0], solved[0] + len(solved))) and len(solved) > 3
     assert result.data["run/fem/degree"] == [solved[-1]]
     assert result.data["run/fem/factorisations"] == [len(solved)]
@@ -145,6 +145,18 @@ def test_the_exact_solution_needs_no_finite_elements():
     assert np.isfinite(result.data["interior/closed_form/sigma_XX"]).all()
     np.testing.assert_allclose(result.data["states/closed_form/normal_force"], -55.3e3, rtol=1e-14)
     assert not any("K_I" in path for path in result.data)
+
+
+@pytest.mark.parametrize("pressure", [HUMP, "closed_form"], ids=["own", "closed form"])
+def test_forces_alone_can_be_asked_for(pressure):
+    changes = {"output.quantities": ["sif"], "output.points": None, "solve.tolerance": 1e-3}
+    assert put_in(pressure, changes).verdict == "PASS"
+
+
+def test_nothing_of_a_punch_is_said():
+    result = put_in(HUMP, {"solve.tolerance": 1e-3})
+    punch = {"states/alpha", "states/beta", "states/fem/slope_under_punch", "states/closed_form/K_I"}
+    assert not punch & set(result.data)
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def test_a_mutated_scene_runs_or_is_refused_with_a_message(text):
         K_I = data["states/closed_form/K_I"]
         assert ((K_I >= 0.0) & (1.0 / np.pi >= K_I)).all()
     if "states/fem/true_error" in data and result.verdict == "PASS":
-        assert (data["states/fem/true_error"] <= 3.0 * data["states/fem/estimate"]).all()
+        assert (data["states/fem/true_error"] <= data["states/fem/estimate"]).all()
 
 
 def legal(n):
@@ -119,5 +119,5 @@ def test_finite_elements_agree_with_the_closed_form_at_random(n):
     data = result.data
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert data["states/fem/true_error"].max() <= tolerance
-    assert (data["states/fem/true_error"] <= 3.0 * data["states/fem/estimate"]).all()
+    assert (data["states/fem/true_error"] <= data["states/fem/estimate"]).all()
     assert not math.isnan(data["states/fem/v0"].sum())

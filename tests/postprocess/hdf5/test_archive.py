@@ -4,8 +4,10 @@ import h5py
 import numpy as np
 import pytest
 
+from galinx import files
 from galinx.postprocess.errors import UnreadableArchive, UnwritableArchive
 from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.target import Target
 
 DATA = {
     "scene/text": "title = 'σ'\n",
@@ -52,9 +54,9 @@ def test_an_earlier_archive_survives_a_failing_write(tmp_path, monkeypatch):
     def fail(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(archive, "_synchronise", fail)
+    monkeypatch.setattr(files, "synchronise", fail)
     with pytest.raises(UnwritableArchive, match="No space left"):
-        write(path, DATA | {"states/f": np.zeros(2)})
+        write(Target(path, overwrite=True), DATA | {"states/f": np.zeros(2)})
     assert path.read_bytes() == before and os.listdir(tmp_path) == ["a.h5"]
 
 

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
+from support import full_disk
 
 from galinx.app.results.paraview import StateField
-from galinx.postprocess.errors import UnwritableArchive
+from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
+from galinx.postprocess.target import FIELDS, Target
 
 
 def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
@@ -11,7 +13,6 @@ def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
 
     points, quads = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.arange(4)[None]
     path = tmp_path / "square.hdf"
-    path.write_bytes(b"an earlier file")
     square = StateField(points, quads, {"u": np.zeros((4, 3))})
     nothing = StateField(points[:0], quads[:0], {"u": np.zeros((0, 3))})
     vtkhdf.write(path, [nothing, square, nothing, square], {"u": ("m", "displacement")})
@@ -29,12 +30,12 @@ def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
 
 def test_a_refused_file_is_said_and_leaves_nothing(tmp_path):
     square = [StateField(np.zeros((4, 2)), np.arange(4)[None], {})]
-    with pytest.raises(UnwritableArchive, match="No such file or directory"):
+    with pytest.raises(Occupied, match=r"the folder .*no does not exist"):
         vtkhdf.write(tmp_path / "no" / "f.hdf", square, {})
-    (tmp_path / "file").write_text("")
-    with pytest.raises(UnwritableArchive, match="Not a directory"):
-        vtkhdf.write(tmp_path / "file" / "f.hdf", square, {})
-    (tmp_path / "folder.hdf").mkdir()
-    with pytest.raises(UnwritableArchive, match="folder"):
-        vtkhdf.write(tmp_path / "folder.hdf", square, {})
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder.hdf"]
+    (tmp_path / "file.hdf").write_text("precious")
+    with pytest.raises(Occupied, match="exists; name another"):
+        vtkhdf.write(tmp_path / "file.hdf", square, {})
+    with full_disk(1000), pytest.raises(UnwritableArchive, match=r"File too large; it needs .* kB"):
+        vtkhdf.write(Target(tmp_path / "file.hdf", FIELDS, overwrite=True), square, {})
+    assert (tmp_path / "file.hdf").read_text() == "precious"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["file.hdf"]

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from support import space_on
 
-from galinx.meshes import MESHES
+from galinx.meshes import MESHES, Wanted
+from galinx.solvers import rays
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem import pieces, rays
+from galinx.solvers.fem import pieces
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.sie.linear import LinearPressure
@@ -20,8 +21,9 @@ VALUES = np.array([-1.0, -2.0, -1.0, -4.0, -2.0, 0.0])
 
 @pytest.fixture(scope="module")
 def loads():
-    refinement = MESHES["confocal"].for_pieces(1e-6, FRAME.β_s, 1e7)
-    return LinearLoads(space_on("confocal", refinement, 8), FRAME)
+    """The mesh of a tolerance of 1e-6, at a degree to which measured errors raise it there."""
+    refinement = MESHES["confocal"].refinement(Wanted(1e-6, rays.NEAR, 1e7))
+    return LinearLoads(space_on("confocal", refinement, 10), FRAME)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,132 @@
+"""Random scenes: is the estimate an upper bound of the true error, and a tight one?"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.extremes.row import Row, Verdict, solved
+from galinx.postprocess import scale
+from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import stresses as at
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.solvers.solids.isotropic import Isotropic
+
+#: Largest ratio of estimate to true error, of the median scene and of any above ``ROUNDING``.
+MEDIAN, MOST, ROUNDING = 10.0, 100.0, 1e-11
+
+#: Every so many scenes ask for stresses as well.
+_STRESSES = 4
+
+
+@dataclass
+class Ratios:
+    """Estimates over true errors.
+
+    Attributes:
+        found: of K_I, one a scene.
+        above_rounding: of those whose estimate is above rounding.
+        stresses: of σ_XX on the surface and of stresses inside.
+    """
+
+    found: list[float] = field(default_factory=list)
+    above_rounding: list[float] = field(default_factory=list)
+    stresses: list[float] = field(default_factory=list)
+
+    def take(self, data: dict[str, NDArray]) -> None:
+        """Take the results of one state."""
+        estimate = float(data[of.ESTIMATE.path].max())
+        self.found.append(_over(estimate, float(data[of.TRUE_ERROR.path].max())))
+        if estimate > ROUNDING:
+            self.above_rounding.append(self.found[-1])
+        for row, error in ((at.ESTIMATE_IN_PLANE, _in_plane), (at.ESTIMATE_INSIDE, _inside)):
+            if row.path in data:
+                self.stresses.append(_over(float(data[row.path].max()), error(data)))
+
+    def verdicts(self, name: str) -> list[Verdict]:
+        least, median, most = min(self.found), float(np.median(self.found)), max(self.above_rounding)
+        good = least >= 1.0 and median <= MEDIAN and most <= MOST
+        told = [
+            Verdict(
+                f"{name}: estimate of K_I over its true error {least:.2f} to {most:.1f}, "
+                f"median {median:.1f}; allowed 1 to {MOST:g}, median {MEDIAN:g}",
+                good,
+            )
+        ]
+        if self.stresses:
+            least = min(self.stresses)
+            told.append(
+                Verdict(f"{name}: estimates of stresses at least {least:.2f} of the errors", least >= 1.0)
+            )
+        return told
+
+
+def random_scenes(seed: int = 1, scenes: int = 300) -> Row:
+    """Random solids, speeds, frictions and tolerances on every mesh.
+
+    Args:
+        seed: of the random numbers.
+        scenes: how many, a quarter of each kind.
+    """
+    rng, kinds = np.random.default_rng(seed), ("confocal", "graded", "box", "fixed degree")
+    each = max(scenes // len(kinds), 1)
+    ratios = {kind: Ratios() for kind in kinds}
+    for i in range(each):
+        for kind in kinds:
+            ratios[kind].take(solved(**_drawn(rng, kind, stresses=i % _STRESSES == 0)))
+    return Row(
+        "random", f"{each} random scenes of each kind, seed {seed}", "scenes with less (1)",
+        (np.arange(each) + 0.5) / each, "estimate over true error of K_I (1)",
+        {kind: np.sort(ratios[kind].found) for kind in kinds},
+        tuple(verdict for kind in kinds for verdict in ratios[kind].verdicts(kind)), log_x=False,
+    )  # fmt: skip
+
+
+def _drawn(rng: np.random.Generator, kind: str, stresses: bool) -> dict[str, Any]:
+    """Parameters of a scene with one state."""
+    ν, plane = float(rng.uniform(-0.9, 0.5)), str(rng.choice(["strain", "stress"]))
+    solid = Isotropic(193e9, ν, 7860.0, plane)
+    share = rng.choice([0.0, rng.uniform(0.0, 0.995), 1.0 - 10.0 ** rng.uniform(-2.3, -0.5)])
+    g = rng.choice([rng.uniform(0.0, 1.2), 10.0 ** rng.uniform(-6.0, 0.0)])
+    tolerance = 10.0 ** rng.uniform(-9.0, -2.0)
+    # So stiff a law has reached μ_C: f = μ_C.
+    drawn: dict[str, Any] = {
+        "nu": ν, "plane": plane, "c": [float(share) * solid.limit()], "mu_c": float(g),
+        "stiffness": 1e9, "X_over_L": [1.0], "strokes": '["forward"]', "tolerance": float(tolerance),
+        "mesh": "confocal" if kind == "fixed degree" else kind,
+    }  # fmt: skip
+    if kind == "box":
+        drawn["tolerance"] = float(10.0 ** rng.uniform(-2.5, -1.5))
+    if kind == "fixed degree":
+        drawn["fixed"] = f", degree = {rng.integers(2, 9)}, cuts = 4"
+    words = ["sif"]
+    if stresses:
+        words += ["surface"]
+        if not solid.nearly_incompressible:
+            words += ["interior"]
+            drawn["points"] = _points(rng).tolist()
+    return drawn | {"quantities": str(words).replace("'", '"')}
+
+
+def _points(rng: np.random.Generator) -> NDArray[np.float64]:
+    """Places inside, at all distances from both edges and the middle."""
+    r, angle = 10.0 ** rng.uniform(-5.0, 1.0, 12), rng.uniform(0.02, np.pi - 0.02, 12)
+    return np.column_stack([rng.choice([-1.0, 0.0, 1.0], 12) + r * np.cos(angle), -r * np.sin(angle)])
+
+
+def _over(estimate: float, true: float) -> float:
+    return estimate / max(true, np.finfo(float).tiny)
+
+
+def _in_plane(data: dict[str, NDArray]) -> float:
+    fem, exact = (data[at.IN_PLANE[method].path] for method in (FEM, CLOSED_FORM))
+    return float((np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])).max())
+
+
+def _inside(data: dict[str, NDArray]) -> float:
+    fem, exact = (
+        np.array([data[row.path] for row in at.STRESSES_INSIDE[method]]) for method in (FEM, CLOSED_FORM)
+    )
+    size = scale.of_inside(exact, data[at.INSIDE_X.path], data[at.INSIDE_Y.path])
+    return float((np.abs(fem - exact) / size).max())

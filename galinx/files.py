@@ -1,0 +1,164 @@
+"""Files that appear whole or not at all, and files that are read without waiting for anybody."""
+
+import errno
+import os
+import secrets
+import stat
+from contextlib import suppress
+from pathlib import Path
+
+#: Names of what is open already: whoever started the program chose it, be it a pipe or a terminal.
+_OPEN = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
+#: What file systems without hard links answer to a request for one.
+_NO_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS}
+
+#: Hidden names of files in the making.
+_unfinished: set[Path] = set()
+
+
+class NewFile:
+    """A file in the making: it has a hidden name until :meth:`publish` gives it its own.
+
+    Use it as a context manager and write to ``temporary``; what is not published is removed.
+
+    Args:
+        path: final name, not that of a link.
+        folder: where it is written, on the same file system; beside its final name if not given.
+
+    Attributes:
+        temporary: hidden name, ``.*.partial``; the file is there, and empty.
+
+    Raises:
+        OSError: the file system refused.
+    """
+
+    def __init__(self, path: Path, folder: Path | None = None) -> None:
+        self.path = path
+        # Not made of the final name, to which nothing may be added where it is as long as can be.
+        self.temporary = (folder or path.parent) / f".{os.getpid()}-{secrets.token_hex(4)}.partial"
+
+    def __enter__(self) -> "NewFile":
+        _unfinished.add(self.temporary)
+        os.close(os.open(self.temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with suppress(OSError):
+            self.temporary.unlink()
+        _unfinished.discard(self.temporary)
+
+    def publish(self, replace: bool) -> None:
+        """Bring the file to the disk, then give it its name, at once.
+
+        Args:
+            replace: a file of that name; its permissions are kept.
+
+        Raises:
+            FileExistsError: there is something of that name, which ``replace`` does not allow to replace.
+            OSError: the file system refused; what was there before is still there.
+        """
+        if replace:
+            with suppress(FileNotFoundError):
+                os.chmod(self.temporary, stat.S_IMODE(os.stat(self.path).st_mode))
+        synchronise(self.temporary)
+        if replace:
+            os.replace(self.temporary, self.path)
+        else:
+            self._link()
+        with suppress(OSError):  # some file systems cannot synchronise folders
+            synchronise(self.path.parent)
+
+    def _link(self) -> None:
+        """Take a name that is free: a rename would replace what appeared a moment ago."""
+        try:
+            os.link(self.temporary, self.path)
+        except OSError as error:
+            if error.errno not in _NO_LINKS:
+                raise
+            os.close(os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC))
+            os.replace(self.temporary, self.path)
+
+
+def write(path: Path, data: bytes, replace: bool = True) -> None:
+    """Write a file beside its name, bring it to the disk, and give it its name at once.
+
+    Raises:
+        FileExistsError: there is something of that name, and ``replace`` is false.
+        OSError: the file system refused; what was there before is still there, and nothing is left.
+    """
+    with NewFile(path) as new:
+        new.temporary.write_bytes(data)
+        new.publish(replace)
+
+
+def give_up() -> None:
+    """Remove all files in the making, for a process that ends where it stands."""
+    for path in _unfinished:
+        with suppress(OSError):
+            path.unlink()
+
+
+def synchronise(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk.
+
+    Raises:
+        OSError: the file system refused.
+    """
+    handle = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def open_file(path: Path, flags: int = os.O_RDONLY) -> int:
+    """A descriptor of a regular file; nothing else is opened, so nobody is waited for.
+
+    Args:
+        path: the file.
+        flags: of ``os.open``.
+
+    Raises:
+        OSError: it cannot be opened, or is a folder, FIFO, device or socket.
+    """
+    with suppress(FileNotFoundError):
+        _expect_file(os.stat(path))  # before it is opened: that alone can make a device do something
+    handle = os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC, 0o666)
+    try:
+        _expect_file(os.fstat(handle))  # it may have been exchanged since
+    except OSError:
+        os.close(handle)
+        raise
+    return handle
+
+
+def read(path: Path, most: int = -1) -> bytes:
+    """What a regular file holds, or standard input and other open descriptors by their names.
+
+    Args:
+        path: the file.
+        most: bytes that are read; all if negative.
+
+    Raises:
+        OSError: it cannot be read, or is a folder, FIFO, device or socket.
+    """
+    handle = os.open(path, os.O_RDONLY) if str(path).startswith(_OPEN) else open_file(path)
+    with open(handle, "rb") as file:
+        return file.read(most)
+
+
+def noun(mode: int) -> str:
+    """What ``st_mode`` says something is."""
+    if stat.S_ISDIR(mode):
+        return "a folder"
+    if stat.S_ISFIFO(mode):
+        return "a FIFO"
+    if stat.S_ISSOCK(mode):
+        return "a socket"
+    return "a file" if stat.S_ISREG(mode) else "a device"
+
+
+def _expect_file(found: os.stat_result) -> None:
+    if not stat.S_ISREG(found.st_mode):
+        number = errno.EISDIR if stat.S_ISDIR(found.st_mode) else errno.EINVAL
+        raise OSError(number, f"it is {noun(found.st_mode)}, expected a file")

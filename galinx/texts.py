@@ -1,0 +1,16 @@
+"""Texts that can be archived and shown: none of their characters acts instead of being seen."""
+
+import unicodedata
+
+#: Characters that turn the direction of others around.
+_DIRECTIONS = {0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)}
+#: Unicode's categories of control characters, separators of lines and halves of characters.
+_UNSEEN = {"Cc", "Zl", "Zp", "Cs"}
+
+
+def unseen(text: str) -> str:
+    """For a message, where a text has its first control character; "" if it has none."""
+    for i, character in enumerate(text):
+        if unicodedata.category(character) in _UNSEEN or ord(character) in _DIRECTIONS:
+            return f"character {i + 1} is the control character U+{ord(character):04X}, expected none"
+    return ""

@@ -1,0 +1,45 @@
+"""What stresses are measured against: what a relative error of theirs is relative to."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.contact import from_edge
+
+#: Distance over a from a punch edge within which stresses, infinite there, stand for themselves only.
+NEAR = 1e-2
+
+#: Share of the largest below which the smooth factor of a pressure, which may vanish, is not measured
+#: against itself.
+_VANISHING = 0.1
+
+
+def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
+    """The larger of each value and a state's largest further than ``NEAR`` from the edges.
+
+    Args:
+        σ_XX: on the surface, (states, n).
+        X: positions over a, (n,).
+
+    Returns:
+        (states, n).
+    """
+    return _at_least_far(np.abs(σ_XX), from_edge(X) >= NEAR)
+
+
+def of_inside(σ: NDArray, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+    """The same of stresses inside, the largest component at a point taken for all: (states, m).
+
+    Args:
+        σ: components, (3, states, m).
+        X, Y: positions over a, (m,).
+    """
+    return _at_least_far(np.abs(σ).max(axis=0), np.hypot(from_edge(X), Y) >= NEAR)
+
+
+def of_factor(f: NDArray) -> NDArray[np.float64]:
+    """The larger of each value of a smooth factor and a tenth of a state's largest, (states, n)."""
+    return np.maximum(np.abs(f), _VANISHING * np.abs(f).max(axis=1, keepdims=True))
+
+
+def _at_least_far(size: NDArray, far: NDArray) -> NDArray[np.float64]:
+    return np.maximum(size, np.where(far, size, 0.0).max(axis=1, keepdims=True, initial=0.0))

@@ -1,0 +1,211 @@
+"""Where a command writes: what is there already is not lost, and what it reads is not written over."""
+
+import mmap
+import os
+import re
+import stat
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from galinx import files
+from galinx.postprocess.disk import refused
+from galinx.postprocess.errors import Occupied, UnwritableArchive
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Files that a command makes, and so may make again.
+
+    Attributes:
+        noun: what messages call one.
+        looks: what the whole of one matches from its beginning.
+        option: how another name is given.
+        asked: may a file of another kind be replaced where that is asked for?
+    """
+
+    noun: str
+    looks: re.Pattern[bytes]
+    option: str = "-o"
+    asked: bool = True
+
+    def of(self, path: Path) -> bool:
+        """Is a file one of these?"""
+        with open(files.open_file(path), "rb") as file:
+            if not os.fstat(file.fileno()).st_size:  # which cannot be mapped
+                return bool(self.looks.match(b""))
+            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+                return bool(self.looks.match(data))
+
+
+def _kind(noun: str, looks: bytes) -> Kind:
+    return Kind(noun, re.compile(looks, re.DOTALL))
+
+
+#: How HDF5 files begin, and how the names in the root of one go on whose only group is VTK's.
+_HDF5, _VTK = rb"\x89HDF\r\n\x1a\n", rb".{,2000}HEAP.{,60}\0VTKHDF\0"
+#: With its digest before it, or without.
+ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
+FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK)
+PAGE = _kind("a report of galinx", rb'<!doctype html>.{,500}<meta name="generator" content="galinx')
+PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
+PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
+TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
+LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
+
+
+class Target:
+    """A file to be made; whether it may be is found out here, before any work is done.
+
+    Args:
+        path: its name; where that is a link, what it points to is meant.
+        kind: of file that it replaces unasked; none at all if not given.
+        overwrite: it replaces any file.
+        inputs: files that are read, and never replaced.
+
+    Attributes:
+        path: as given.
+        place: the name at the end of all links.
+
+    Raises:
+        Occupied: something is there that may not be replaced, or the folder does not exist.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        kind: Kind | None = None,
+        overwrite: bool = False,
+        inputs: Iterable[Path] = (),
+    ) -> None:
+        self.path, self._kind, self._overwrite = path, kind, overwrite
+        option = kind.option if kind else "-o"
+        self._another = f"name another file with {option}"
+        self.place = self._followed()
+        self._earlier = self._there()
+        if not self._earlier and not self.place.parent.is_dir():
+            raise Occupied(f"the folder {self.place.parent} does not exist; make it, or {self._another}")
+        if any(_same(self.place, one) for one in inputs):
+            raise Occupied(f"{path} is also a file that this command reads or writes; {self._another}")
+        if self._earlier:
+            self._check_replaceable()
+
+    def write(self, data: bytes) -> None:
+        """Write the file, whole or not at all.
+
+        Raises:
+            UnwritableArchive: the file system refused, or something has appeared there.
+        """
+        try:
+            with files.NewFile(self.place) as new:
+                new.temporary.write_bytes(data)
+                self.publish(new, len(data))
+        except OSError as error:
+            raise refused(self.path, error, len(data)) from error
+
+    def publish(self, new: files.NewFile, needed: int = 0) -> None:
+        """Give a finished file its name.
+
+        Args:
+            new: the file, at :attr:`place`.
+            needed: its size in bytes, for messages.
+
+        Raises:
+            UnwritableArchive: the file system refused, or something has appeared there.
+        """
+        try:
+            now = self._there()
+            if now != self._earlier and not self._overwrite:
+                raise FileExistsError
+            new.publish(replace=self._overwrite or now is not None)
+        except (FileExistsError, Occupied):
+            raise UnwritableArchive(
+                f"cannot write {self.path}: something appeared there meanwhile, and was left as it is; "
+                "move it away, or name another file"
+            ) from None
+        except OSError as error:
+            raise refused(self.path, error, needed) from error
+
+    def _followed(self) -> Path:
+        if not os.path.islink(self.path):  # what cannot be asked is none, and refused below
+            return self.path
+        try:
+            return self.path.resolve(strict=True)
+        except (OSError, RuntimeError):  # the second for links that point to one another
+            raise Occupied(
+                f"{self.path} is a link to {os.readlink(self.path)}, which cannot be reached; remove the "
+                f"link, or {self._another}"
+            ) from None
+
+    def _there(self) -> tuple[int, ...] | None:
+        """What tells the file of that name from any other; None if there is none."""
+        try:
+            found = os.lstat(self.place)
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as error:
+            raise refused(self.path, error) from error
+        if not stat.S_ISREG(found.st_mode):
+            raise Occupied(
+                f"{self.path} is {files.noun(found.st_mode)}, expected a file; {self._another}"
+            )
+        return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+
+    def _check_replaceable(self) -> None:
+        if not os.access(self.place, os.W_OK):
+            raise Occupied(f"{self.path} is protected against writing; {self._another}")
+        if self._overwrite:
+            return
+        or_else = ", or add --overwrite" if not self._kind or self._kind.asked else ""
+        if not self._kind:
+            raise Occupied(f"{self.path} exists; {self._another}{or_else}")
+        try:
+            if self._kind.of(self.place):
+                return
+        except OSError as error:
+            raise refused(self.path, error) from error
+        raise Occupied(f"{self.path} exists and is not {self._kind.noun}; {self._another}{or_else}")
+
+
+def as_target(path: Path | Target) -> Target:
+    """A target; where it is a path alone, nothing is replaced."""
+    return path if isinstance(path, Target) else Target(path)
+
+
+class Folder:
+    """A folder to write several files into; it is made.
+
+    Args:
+        path: its name.
+        overwrite: files of any kind are replaced.
+        inputs: files that are read, and never replaced.
+
+    Raises:
+        Occupied: something else has that name.
+        UnwritableArchive: the file system refused.
+    """
+
+    def __init__(self, path: Path, overwrite: bool = False, inputs: Iterable[Path] = ()) -> None:
+        self.path, self._overwrite, self._inputs = path, overwrite, tuple(inputs)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+        except (FileExistsError, NotADirectoryError):
+            raise Occupied(f"{path} is not a folder, expected one; name another with -o") from None
+        except OSError as error:
+            raise refused(path, error) from error
+
+    def target(self, name: str, kind: Kind) -> Target:
+        """A file in it.
+
+        Raises:
+            Occupied: something is there that may not be replaced.
+        """
+        return Target(self.path / name, kind, self._overwrite, self._inputs)
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Are two names those of one file, or would they be?"""
+    try:
+        return one.samefile(other)
+    except OSError:
+        return os.path.realpath(one) == os.path.realpath(other)

@@ -1,0 +1,229 @@
+"""What is there is not lost, and what a command reads is not written over."""
+
+import os
+import socket
+
+import numpy as np
+import pytest
+from support import at_once, full_disk
+
+from galinx import compute, load, template
+from galinx.app.console.progress import Progress
+from galinx.app.results.paraview import StateField
+from galinx.postprocess.errors import Occupied, UnwritableArchive
+from galinx.postprocess.hdf5 import vtkhdf
+from galinx.postprocess.tables import Sheet, new_console, print_sheet
+from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PDF, PNG, TABLES, Folder, Target
+
+FOREIGN = b"precious"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A file of each kind, by kind, of a scene whose title takes after all of them."""
+    folder = tmp_path_factory.mktemp("made")
+    result = compute(template("table1", {"title": "galinx VTKHDF Table 1 %PDF-"}))
+    result.save(folder / "a.h5")
+    result.report(folder / "a.html")
+    pdf, png = result.plot(folder, "a")[:2]
+    square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
+    vtkhdf.write(folder / "a.hdf", [square], {"u": ("m", "galinx")})
+    with (folder / "tables.txt").open("w") as file:
+        print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))
+    with Progress(log=folder / "a.log") as progress:
+        progress.note("scene: a.toml")
+    paths = {ARCHIVE: folder / "a.h5", PAGE: folder / "a.html", PDF: pdf, PNG: png}
+    return paths | {FIELDS: folder / "a.hdf", TABLES: folder / "tables.txt", LOG: folder / "a.log"}
+
+
+def test_each_kind_knows_its_own_files_and_no_other(made, tmp_path):
+    for kind in made:
+        assert [other.noun for other, path in made.items() if kind.of(path)] == [kind.noun]
+    (tmp_path / "empty").touch()
+    assert [kind for kind in made if kind.of(tmp_path / "empty")] == [LOG]
+
+
+def test_foreign_files_that_look_alike_are_no_ones_own(made, tmp_path):
+    for kind, path in made.items():
+        start = path.read_bytes()[:9]
+        for content in (start + b" and more", b"x" + path.read_bytes(), FOREIGN):
+            (tmp_path / "other").write_bytes(content)
+            assert not kind.of(tmp_path / "other"), (kind.noun, content[:20])
+
+
+def test_what_one_makes_is_made_again_and_all_else_is_kept(made, tmp_path):
+    for kind, path in made.items():
+        own, foreign = tmp_path / "own", tmp_path / "foreign"
+        own.write_bytes(path.read_bytes())
+        foreign.write_bytes(FOREIGN)
+        Target(own, kind).write(b"new")
+        assert own.read_bytes() == b"new"
+        with pytest.raises(Occupied, match=f"foreign exists and is not {kind.noun}; name "):
+            Target(foreign, kind)
+        assert foreign.read_bytes() == FOREIGN
+    with pytest.raises(Occupied, match=r"own exists; name another file with -o, or add --overwrite"):
+        Target(own)
+    Target(own, overwrite=True).write(b"newer")
+    Target(foreign, PAGE, overwrite=True).write(b"newer")
+    assert own.read_bytes() == foreign.read_bytes() == b"newer"
+    assert sorted(os.listdir(tmp_path)) == ["foreign", "own"]
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_only_files_are_replaced(tmp_path, overwrite):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "null").symlink_to("/dev/null")
+    (tmp_path / "dangling").symlink_to("nowhere")
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "file").touch()
+    expected = {
+        "fifo": "is a FIFO, expected a file", "folder": "is a folder, expected", "null": "is a device",
+        "socket": "is a socket", "dangling": "is a link to nowhere, which cannot be reached",
+        "loop": "is a link to loop", "missing/a": "missing does not exist; make it",
+        "file/a": "file does not exist", "..": "is a folder",
+    }  # fmt: skip
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "socket"))
+        before = sorted(os.listdir(tmp_path))
+        for name, message in expected.items():
+            for kind in (None, PAGE, LOG):
+                with at_once(), pytest.raises(Occupied, match=message):
+                    Target(tmp_path / name, kind, overwrite)
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_a_link_is_followed_and_stays(tmp_path):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "a").write_bytes(FOREIGN)
+    (tmp_path / "link").symlink_to("there/a")
+    with pytest.raises(Occupied, match="link exists"):
+        Target(tmp_path / "link")
+    Target(tmp_path / "link", overwrite=True).write(b"new")
+    assert (tmp_path / "link").is_symlink() and (tmp_path / "there" / "a").read_bytes() == b"new"
+    assert os.listdir(tmp_path / "there") == ["a"]
+
+
+def test_inputs_are_never_written_over(tmp_path):
+    own = tmp_path / "in"
+    own.write_bytes(FOREIGN)
+    (tmp_path / "hard").hardlink_to(own)
+    (tmp_path / "soft").symlink_to(own)
+    (tmp_path / "there").symlink_to(tmp_path)
+    for name in ("in", "hard", "soft", "there/in"):
+        for read in (own, tmp_path / "hard", tmp_path / "soft"):
+            with pytest.raises(Occupied, match="is also a file that this command reads or writes"):
+                Target(tmp_path / name, overwrite=True, inputs=[tmp_path / "missing", read])
+    with pytest.raises(Occupied, match="also"):  # what is not there yet, as a log may be
+        Target(tmp_path / "there" / "new", inputs=[tmp_path / "new"])
+    Target(tmp_path / "new", inputs=[own])
+
+
+def test_what_appears_or_changes_meanwhile_is_kept(made, tmp_path):
+    path = tmp_path / "a"
+    target = Target(path, PAGE)
+    path.write_bytes(FOREIGN)
+    with pytest.raises(UnwritableArchive, match=r"something appeared there meanwhile.*; move it away"):
+        target.write(b"new")
+    assert path.read_bytes() == FOREIGN
+    path.write_bytes(made[PAGE].read_bytes())
+    target = Target(path, PAGE)
+    path.unlink()
+    path.write_bytes(FOREIGN)
+    with pytest.raises(UnwritableArchive, match="meanwhile"):
+        target.write(b"new")
+    assert path.read_bytes() == FOREIGN
+    target = Target(path, PAGE, overwrite=True)
+    path.unlink()
+    os.mkfifo(path)
+    with at_once(), pytest.raises(UnwritableArchive, match="meanwhile"):
+        target.write(b"new")
+    assert path.is_fifo() and os.listdir(tmp_path) == ["a"]
+
+
+def test_what_appears_at_the_last_moment_is_kept(tmp_path, monkeypatch):
+    target, link = Target(tmp_path / "a"), os.link
+
+    def appears(source, path):
+        path.write_bytes(FOREIGN)
+        link(source, path)
+
+    monkeypatch.setattr(os, "link", appears)
+    with pytest.raises(UnwritableArchive, match="meanwhile"):
+        target.write(b"new")
+    assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
+
+
+def test_a_folder_that_is_gone_meanwhile_is_said(tmp_path):
+    (tmp_path / "a").mkdir()
+    target = Target(tmp_path / "a" / "b")
+    (tmp_path / "a").rmdir()
+    with pytest.raises(UnwritableArchive, match="No such file or directory"):
+        target.write(b"new")
+
+
+def test_a_name_that_is_too_long_is_said(tmp_path):
+    with pytest.raises(UnwritableArchive, match="File name too long"):
+        Target(tmp_path / (300 * "n"))
+
+
+def test_a_full_disk_is_said_and_leaves_what_was_there(tmp_path):
+    (tmp_path / "a").write_bytes(FOREIGN)
+    target = Target(tmp_path / "a", overwrite=True)
+    with full_disk(100), pytest.raises(UnwritableArchive) as caught:
+        target.write(2000 * b"x")
+    assert "a: File too large; it needs 2 kB; " in str(caught.value) and "B are free" in str(caught.value)
+    assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
+
+
+def test_what_is_protected_is_kept(tmp_path, monkeypatch):
+    (tmp_path / "a").write_bytes(FOREIGN)
+    monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK)  # root may write everything
+    with pytest.raises(Occupied, match="a is protected against writing"):
+        Target(tmp_path / "a", overwrite=True)
+
+
+def test_a_folder_is_made_and_nothing_else_is_taken_for_one(tmp_path):
+    Folder(tmp_path / "a" / "b").target("c", PAGE).write(b"new")
+    assert (tmp_path / "a" / "b" / "c").read_bytes() == b"new"
+    (tmp_path / "link").symlink_to("nowhere")
+    for name in ("a/b/c", "a/b/c/d", "link"):
+        with pytest.raises(Occupied, match="is not a folder, expected one"):
+            Folder(tmp_path / name)
+    with pytest.raises(Occupied, match="also"):
+        Folder(tmp_path / "a", inputs=[tmp_path / "a" / "in"]).target("in", PAGE)
+
+
+def test_no_figure_is_written_where_one_cannot_be(made, tmp_path):
+    result = compute(template("table1"))
+    (tmp_path / "a_friction.png").write_bytes(FOREIGN)
+    with pytest.raises(Occupied, match=r"a_friction.png exists and is not a figure of galinx"):
+        result.plot(tmp_path, "a")
+    assert os.listdir(tmp_path) == ["a_friction.png"]
+    assert len(result.plot(tmp_path, "a", overwrite=True)) == 2
+    assert len(result.plot(tmp_path, "a")) == 2
+
+
+def test_a_log_that_cannot_grow_ends_and_the_run_goes_on(tmp_path, capsys):
+    log = tmp_path / "a.log"
+    with Progress(log=log) as progress:
+        progress.note("one")
+        before = log.read_bytes()
+        with full_disk(len(before) + 5):
+            progress.note("two")
+            progress.note("three")
+    assert log.read_bytes() == before and before.endswith(b" one\n")
+    assert capsys.readouterr().err == f"warning: the log {log} ends here: File too large\n"
+    with Progress(log=log) as progress:
+        progress.note("four")
+    assert log.read_bytes().startswith(before) and log.read_bytes().endswith(b" four\n")
+
+
+def test_an_archive_is_no_output_of_its_own(made, tmp_path):
+    path = tmp_path / "a.h5"
+    path.write_bytes(made[ARCHIVE].read_bytes())
+    result = load(path)
+    for write in (result.report, result.save, result.fields):
+        with pytest.raises(Occupied, match="also"):
+            write(path, overwrite=True)
+    assert path.read_bytes() == made[ARCHIVE].read_bytes()

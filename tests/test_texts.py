@@ -1,0 +1,49 @@
+"""Texts that act instead of being seen are refused where they come in."""
+
+import unicodedata
+
+import pytest
+
+from galinx.app.errors import BadInput
+from galinx.app.scene.read import parse
+from galinx.postprocess.quantities import QUANTITIES, Quantity
+from galinx.registry import Registry
+from galinx.texts import unseen
+
+
+@pytest.mark.parametrize("code", [0, 7, 10, 27, 127, 0x9B, 0x2028, 0x202E, 0x2066, 0x061C, 0xD800])
+def test_control_characters_are_found(code):
+    found = unseen(f"ab{chr(code)}c")
+    assert found == f"character 3 is the control character U+{code:04X}, expected none"
+
+
+def test_what_can_be_seen_is_allowed():
+    assert not unseen("σ₀ l/N — “Müller” 摩擦 حك 👩‍🔬 ")
+    shown = "".join(chr(i) for i in range(0x20, 0x3000) if unicodedata.category(chr(i))[0] in "LNPS")
+    assert not unseen(shown)
+
+
+@pytest.mark.parametrize(
+    "text, fault",
+    [
+        ('title = "a\\u0000"\n', "title: character 2 is the control character U+0000"),
+        ('"q\\u001b" = 1\n', "the key q\\x1b: character 2 is the control character U+001B"),
+        ('[solve]\nmethods = ["fem", "\\u0007"]\n', "solve.methods[1]: character 1 is"),
+        ('[output]\nmap = {X = [[{a = "\\u202E"}]]}\n', "output.map.X[0][0].a: character 1 is"),
+        (f'{"a." * 5000}a = "\\u0000"\n', "a.a: character 1 is the control character U+0000"),
+    ],
+    ids=["title", "key", "list", "deep", "deepest"],
+)
+def test_a_scene_with_one_is_refused_at_the_start(text, fault):
+    with pytest.raises(BadInput) as caught:
+        parse(text)
+    assert fault in str(caught.value)
+
+
+def test_names_of_ones_own_models_have_none():
+    with pytest.raises(ValueError, match=r"law 'a\\x00': character 2 is the control character U\+0000"):
+        Registry("law").register("a\0", object())
+    for quantity in (Quantity("states/\0", "1", "one"), Quantity("states/x", "1\0", "one")):
+        with pytest.raises(ValueError, match=r"control character U\+0000"):
+            QUANTITIES.add(quantity)
+    assert "states/x" not in QUANTITIES

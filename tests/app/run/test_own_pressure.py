@@ -153,6 +153,15 @@ def test_forces_alone_can_be_asked_for(pressure):
     assert put_in(pressure, changes).verdict == "PASS"
 
 
+def test_many_points_are_judged_by_some():
+    """Errors are measured on 400 of them, stresses told at all."""
+    rng = np.random.default_rng(0)
+    points = np.column_stack([rng.uniform(-3.0, 3.0, 500), -(10.0 ** rng.uniform(-9.0, 0.5, 500))])
+    result = put_in(HUMP, {"output.points": points.tolist(), "solve.tolerance": 1e-4})
+    assert result.data["interior/fem/sigma_XX"].shape == (1, 500)
+    within_tolerance_and_estimate(result, 1e-4)
+
+
 def test_nothing_of_a_punch_is_said():
     result = put_in(HUMP, {"solve.tolerance": 1e-3})
     punch = {"states/alpha", "states/beta", "states/fem/slope_under_punch", "states/closed_form/K_I"}

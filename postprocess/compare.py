@@ -36,7 +36,7 @@ class Rule:
             nothing to say.
         limit: largest value of a PASS; None where it is no fixed one.
         tolerances: the same in units of the scene's tolerance.
-        mode: of the finite elements in which it is judged; "" for each.
+        mode: in which it is judged, as of a quantity; "" for each.
         own_pressure: judged also where the pressure is the user's own.
     """
 
@@ -74,6 +74,13 @@ def _imbalance(data: dict[str, Any], load: float) -> float:
     normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
     off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
     return off.max()
+
+
+def _resultant(data: dict[str, Any], load: float) -> float:
+    rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO)
+    normal, tangential, exact, g = (data[row.path] for row in rows)
+    off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
+    return (off / np.maximum(np.abs(exact), load)).max()
 
 
 def _exponents(data: dict[str, Any], _: float) -> float | None:
@@ -135,6 +142,11 @@ RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
+        "resultant": Rule(
+            "nodal forces against the resultant of the pressure, over it or N",
+            (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO), _resultant,
+            limit=BALANCE.limit, own_pressure=True,
+        ),
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
@@ -164,20 +176,20 @@ RULES: Registry[Rule] = Registry(
         ),
         "sigma_XX": Rule(
             "σ_XX pointwise, over the larger of itself and its largest 0.01 a from the edges",
-            (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0,
+            (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
         ),
         "estimate of sigma_XX": Rule(
             "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,), _largest(at.ESTIMATE_IN_PLANE),
-            tolerances=1.0,
+            tolerances=1.0, own_pressure=True,
         ),
         "stresses inside": Rule(
             "stresses inside pointwise, over the larger of the largest there and 0.01 a from the edges",
             (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM], at.INSIDE_X, at.INSIDE_Y),
-            _inside, tolerances=1.0,
+            _inside, tolerances=1.0, own_pressure=True,
         ),
         "estimate inside": Rule(
             "estimated error of stresses inside, relative", (at.ESTIMATE_INSIDE,),
-            _largest(at.ESTIMATE_INSIDE), tolerances=1.0,
+            _largest(at.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
         ),
         # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
         # and so has about half the digits of the moments that the tolerance speaks of.

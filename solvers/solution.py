@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
 from galinx.solvers.profiles import Profile
+from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 
 
@@ -38,11 +39,13 @@ class Body:
         solid: the half-plane.
         profile: the punch.
         load: N per depth [N/m].
+        pressure: that is put in; None where it is the punch's.
     """
 
     solid: Solid
     profile: Profile
     load: float
+    pressure: LinearPressure | None = None
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
         """The profile's height over N/(2μ) at X over a."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.errors import BadInput
@@ -12,6 +12,7 @@ from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Places
@@ -36,9 +37,7 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         wanted: what the mesh has to be good for.
-        mode: ``"contact"`` or ``"traction"``.
-        pressure: of the traction mode: ``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)].
-        own_pressure: is it one of the user's own that is put in?
+        mode: ``"contact"``, ``"traction"`` or ``"own pressure"``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
     """
@@ -53,8 +52,6 @@ class FemPlan:
     fixed: bool
     wanted: Wanted
     mode: str
-    pressure: Any
-    own_pressure: bool
     shared_speeds: bool
 
     @property
@@ -98,6 +95,8 @@ def plan_fem(
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
     wanted = wanted_for(solve.tolerance, places, exponent)
+    if solve.own_pressure:
+        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -111,8 +110,7 @@ def plan_fem(
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=solve.mode, pressure=solve.pressure, own_pressure=solve.own_pressure,
-        shared_speeds=shared,
+        mode=solve.modes[-1], shared_speeds=shared,
     )  # fmt: skip
 
 
@@ -124,6 +122,11 @@ def wanted_for(tolerance: float, places: Places, exponent: float) -> Wanted:
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = float(np.hypot(X, Y).max())
     return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent)
+
+
+def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:
+    """The same of the mesh that serves every piece of a pressure, over the narrowest one's half-width."""
+    return Wanted(wanted.tolerance, NEAR, (1.0 + wanted.farthest) / (np.diff(knots).min() / 2.0))
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

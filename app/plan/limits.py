@@ -16,6 +16,9 @@ from galinx.solvers.solution import Body, Places
 #: Share of the far boundary's distance up to which points inside are asked for.
 _INNER = 0.6
 
+#: Narrowest piece of a pressure, over a, within which positions have digits enough.
+_NARROWEST = 1e-9
+
 
 def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
     """Warnings about speeds.
@@ -78,6 +81,35 @@ def check_mode(scene: Scene, body: Body) -> None:
         raise BadInput(
             'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
             'give solve.pressure, or take mode = "contact"'
+        )
+
+
+def check_pressure(scene: Scene, body: Body) -> None:
+    """Can finite elements put in a pressure of the user's own?
+
+    Raises:
+        BadInput: they cannot.
+    """
+    if body.pressure is None:
+        return
+    kind = MESHES[scene.solve.mesh]
+    if kind.walls or not kind.rings:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own, expected "confocal" or '
+            '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
+            "and has no walls"
+        )
+    if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own and '
+            f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
+            "differ so much in size that with an unknown pressure rounding spoils the matrix"
+        )
+    width = float(np.diff(body.pressure.knots).min())
+    if width < _NARROWEST:
+        raise BadInput(
+            f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
+            f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
         )
 
 

@@ -5,7 +5,14 @@ from collections.abc import Iterable
 import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
-from galinx.app.plan.limits import check_mode, check_places, check_speeds, check_states, warnings_of
+from galinx.app.plan.limits import (
+    check_mode,
+    check_places,
+    check_pressure,
+    check_speeds,
+    check_states,
+    warnings_of,
+)
 from galinx.app.plan.states import enumerate_states, laws_followed, speeds, states_a_speed
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
@@ -14,6 +21,7 @@ from galinx.app.scene.sense import oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, LOCAL
+from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
 
 #: What words of output.quantities ask for, where a plan says so.
@@ -28,13 +36,15 @@ def make_plan(scene: Scene) -> Plan:
     """
     all_speeds, count = speeds(scene), states_a_speed(scene)
     check_states(len(all_speeds) * count)
-    body = Body(scene.solid, scene.punch.profile, scene.punch.load)
+    pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
+    body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure)
     methods = _methods(scene, body)
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
+        check_pressure(scene, body)
         check_places(scene, places)
         g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in all_speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
@@ -74,13 +84,15 @@ def _quantities(
     """What is read off the solutions, and what a method cannot give, with the reason."""
     asked: dict[str, Quantity] = {}
     refused = []
+    # What is known of a punch's edges says nothing of a pressure of the user's own.
+    sources = methods if body.pressure else (*methods, LOCAL)
     # What is computed from others comes after them, wherever it stands in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         wanted = (
             bool(methods)
             and quantity.solved
-            and quantity.method in (*methods, LOCAL)
-            and quantity.mode in ("", scene.solve.mode)
+            and quantity.method in sources
+            and quantity.mode in scene.solve.modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in asked for need in quantity.needs)
         )

@@ -114,10 +114,10 @@ class Plan:
     def rules(self) -> frozenset[str]:
         """Names of the rules by which what is computed is compared.
 
-        A pressure of the user's own is held against nothing: it need not even carry the load.
+        A pressure of the user's own is held against its own exact solution: it need not carry the load.
         """
         names = {FINITE, *(rule for quantity in self.quantities for rule in quantity.compared)}
-        own = self.fem is not None and self.fem.own_pressure
+        own = self.body.pressure is not None
         return frozenset(name for name in names if RULES[name].own_pressure or not own)
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:

@@ -21,6 +21,7 @@ from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.target import Target
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.linear import GivenPressure
 
 #: What a field may hold, by name: (unit, long name).
 ABOUT = {
@@ -140,7 +141,7 @@ def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _Sta
     if degree is None:
         # Given tractions are solved one degree above the rule, as in a run.
         degree = plan.fem.degrees[task.number] + (scene.solve.mode == "traction")
-    exact = "closed_form" in scene.solve.methods and not scene.solve.own_pressure
+    exact = "closed_form" in scene.solve.methods
     return _State(plan, task, float(states.g[number]), degree, exact)
 
 
@@ -208,12 +209,14 @@ def _in_si(state: _State, sampled: Any) -> StateField:
         "maximum_shear": maximum_shear(XX, YY, XY),
     }
     if state.exact:
-        exact = FlatPunch(task.response, state.g)
+        exact: FlatPunch | GivenPressure = FlatPunch(task.response, state.g)
+        if body.pressure:
+            exact = GivenPressure(task.response, state.g, body.pressure)
         data["sigma_error"] = body.stress * _error(exact, sampled.points, found)
     return StateField(body.profile.half_width * sampled.points, sampled.quads, data)
 
 
-def _error(exact: FlatPunch, points: NDArray, found: NDArray) -> NDArray[np.float64]:
+def _error(exact: FlatPunch | GivenPressure, points: NDArray, found: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     X, Y = points.T
     inside = -_SURFACE * np.maximum(1.0, np.abs(X)) > Y

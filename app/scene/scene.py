@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.scene.values import Spread
+from galinx.postprocess.quantities.quantity import OWN_PRESSURE
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.parameters import made
 from galinx.solvers.profiles import Profile
@@ -95,6 +96,11 @@ class Solve:
     def own_pressure(self) -> bool:
         """Is a pressure of the user's own put in?"""
         return self.mode == "traction" and self.pressure != "closed_form"
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Words by which quantities and rules say that they are of this mode."""
+        return ("", self.mode, *(OWN_PRESSURE,) * self.own_pressure)
 
 
 @dataclass(frozen=True)

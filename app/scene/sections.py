@@ -108,7 +108,10 @@ _SOLVE_KEYS = {
     "solver": Key(
         Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
     ),
-    "pressure": Key(Pressure(), "σ_YY of the traction mode", "closed_form", "for the mode traction"),
+    "pressure": Key(
+        Pressure(), "σ_YY of the traction mode", "closed_form",
+        "for the mode traction; linear between the pairs, of any resultant",
+    ),
 }  # fmt: skip
 
 _OUTPUT_KEYS = {

@@ -163,6 +163,8 @@ class Pressure:
         positions = [x for x, _ in pairs]
         if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
             raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
+        if not any(σ for _, σ in pairs):
+            raise ValueError("found no pressure but 0, expected some σ_YY/(N/2a) below 0")
         return pairs
 
     def schema(self) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from galinx.postprocess.quantities.quantity import (
     FEM,
     INTENSITIES,
     LOCAL,
+    OWN_PRESSURE,
     QUANTITIES,
     STATE,
     Quantity,
@@ -96,6 +97,11 @@ ESTIMATE = Quantity(
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
     range=_NOT_NEGATIVE,
+)  # fmt: skip
+
+RESULTANT = Quantity(
+    "states/closed_form/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
+    lambda s, body: s.normal_force * body.force, CLOSED_FORM, OWN_PRESSURE, compared=("resultant",),
 )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +17,6 @@ from galinx.solvers.solids.solid import Response
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
-
-#: Pairs of a cell and a point that are looked at together; keeps memory within some ten megabytes.
-_AT_ONCE = 10**6
 
 #: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
 #: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
@@ -42,29 +39,48 @@ class InteriorGradients:
     def __init__(
         self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
     ) -> None:
-        chart = space.contracted(response)
-        x = chart.from_physical(points)
-        vertices = space.vertices[..., :2]
-        held = _locate(vertices, x)
-        found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
-        if not found.all():
-            X, Y = points[np.argmin(found)]
-            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-        cells = np.unique(held.cell)
-        values = space.cell_values(fields, response, cells)
-        gradients = np.zeros((len(points), 2, 2, len(fields)))
-        grid, nodes = tensor_order(space.reference_nodes)
-        for cell, u in zip(cells, values[:, grid]):
-            here = held.cell == cell
-            in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], u)
-            np.add.at(gradients, held.point[here], in_plane)
-        # On the border between cells the gradient jumps; it is their mean.
-        gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-        self._basis = chart.physical_gradients(x, gradients)
+        self._basis = gradients_at(
+            space, response, points, lambda cells: space.cell_values(fields, response, cells)
+        )
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
         return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
+
+
+def gradients_at(
+    space: Space, response: Response, points: NDArray, values: Callable[[NDArray[np.int64]], NDArray]
+) -> NDArray[np.float64]:
+    """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        points: with Y <= 0, (n, 2).
+        values: of the fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+    chart = space.contracted(response)
+    x = chart.from_physical(points)
+    vertices = space.vertices[..., :2]
+    held = _locate(vertices, x)
+    found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
+    if not found.all():
+        X, Y = points[np.argmin(found)]
+        raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+    cells = np.unique(held.cell)
+    u = values(cells)
+    gradients = np.zeros((len(points), 2, 2, u.shape[-1]))
+    grid, nodes = tensor_order(space.reference_nodes)
+    for cell, nodal in zip(cells, u[:, grid]):
+        here = held.cell == cell
+        in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], nodal)
+        np.add.at(gradients, held.point[here], in_plane)
+    # On the border between cells the gradient jumps; it is their mean.
+    gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
+    return chart.physical_gradients(x, gradients)
 
 
 @dataclass(frozen=True)
@@ -92,15 +108,18 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     """Pairs of a cell and a point within the smallest box around it."""
     low, high = vertices.min(axis=1), vertices.max(axis=1)
     slack = _SLACK * (high - low)
-    low, high = (low - slack)[:, None], (high + slack)[:, None]
-    found = [np.empty((2, 0), dtype=np.int64)]
-    cells = max(1, _AT_ONCE // max(len(x), 1))
-    for start in range(0, len(vertices), cells):
-        some = slice(start, start + cells)
-        cell, point = np.nonzero(np.all((low[some] <= x) & (x <= high[some]), axis=2))
-        found.append(np.stack([start + cell, point]))
-    cell, point = np.concatenate(found, axis=1)
-    return cell, point
+    low, high = low - slack, high + slack
+    order = np.argsort(x[:, 0], kind="stable")
+    along, across = x[order].T
+    first = np.searchsorted(along, low[:, 0], side="left")
+    last = np.searchsorted(along, high[:, 0], side="right")
+    cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for i in np.flatnonzero(first < last):
+        some = slice(first[i], last[i])
+        found = order[some][(low[i, 1] <= across[some]) & (across[some] <= high[i, 1])]
+        cell.append(np.full(len(found), i))
+        point.append(found)
+    return np.concatenate(cell), np.concatenate(point)
 
 
 def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:

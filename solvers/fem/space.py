@@ -1,6 +1,7 @@
 """The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -72,6 +73,7 @@ class Space:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.mixed = self.form.pressure
         self.clock, self._say = Clock() if clock is None else clock, say
+        self._kept: tuple[NDArray, ...] | None = None
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
@@ -170,12 +172,12 @@ class Space:
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
-        numbers = self._outer_numbers  # the form is compiled here, the first time
+        numbers = self.outer_numbers  # the form is compiled here, the first time
         with self.clock("assembly"):
             A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
                 cells = slice(start, start + CHUNK)
-                condensed, _ = self._condensed(response, cells)
+                condensed, _ = self.condensed(response, cells)
                 for rows, S in zip(numbers[cells], condensed):
                     A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
@@ -209,15 +211,29 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        outer = self.fetch(fields, self._outer_numbers[cells])
-        _, E = self._condensed(response, cells)
-        u = np.empty((len(cells), self._kernel.nodes, 2, len(fields)))
-        kernel = self._kernel
+        return self.extended(self.fetch(fields, self.outer_numbers[cells]), response, cells)
+
+    def extended(
+        self, outer: NDArray, response: Response, cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Values at all nodes of some of this rank's cells from the outer ones.
+
+        Args:
+            outer: at the nodes of ``outer_numbers``, (cells, nodes, 2, fields).
+            response: that the fields are solutions for.
+            cells: numbers of the cells.
+
+        Returns:
+            Array (cells, nodes of a cell, 2, fields).
+        """
+        _, E = self.condensed(response, cells)
+        kernel, fields = self.kernel, outer.shape[-1]
+        u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
         for values, extension, boundary in zip(u, E, outer):
-            inner = extension @ boundary.reshape(-1, len(fields))
+            inner = extension @ boundary.reshape(-1, fields)
             displacement = inner[: 2 * len(kernel.inner)]
-            values[kernel.inner] = displacement.reshape(-1, 2, len(fields))
+            values[kernel.inner] = displacement.reshape(-1, 2, fields)
         return u
 
     @property
@@ -231,7 +247,8 @@ class Space:
         return adapter.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
 
     @cached_property
-    def _kernel(self) -> CellMatrices:
+    def kernel(self) -> CellMatrices:
+        """The compiled form of a cell, and which of its nodes stay."""
         layout = self.V.dofmap.dof_layout
         pressures = (self.degree - 1) ** 2 * self.mixed
         inner = np.array(layout.entity_dofs(2, 0))
@@ -243,24 +260,43 @@ class Space:
         return adapter.cell_nodes(self.V)[: self.mesh.topology.index_map(2).size_local]
 
     @cached_property
-    def _outer_numbers(self) -> NDArray[np.int32]:
+    def outer_numbers(self) -> NDArray[np.int32]:
         """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
 
         The two pressures of a cell are numbered like the two unknowns of a node.
         """
-        nodes = self.numbers[self._cell_nodes[:, self._kernel.outer]]
+        nodes = self.numbers[self._cell_nodes[:, self.kernel.outer]]
         if not self.mixed:
             return nodes
         cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
-    def _condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+    @contextmanager
+    def keeping(self, response: Response) -> Iterator[None]:
+        """Condensed cells of a response are computed once as long as this lasts; they take memory."""
+        cells = len(self.outer_numbers)  # the form is compiled here, the first time
+        with self.clock("assembly"):
+            chunks = [
+                self.condensed(response, slice(start, start + CHUNK))
+                for start in range(0, max(cells, 1), CHUNK)
+            ]
+            self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
+        try:
+            yield
+        finally:
+            self._kept = None
+
+    def condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
+        """S and E of some of this rank's cells, see ``CellMatrices.condense``."""
+        if self._kept:
+            S, E = self._kept
+            return S[cells], E[cells]
         form, constants = self._compiled
         p = self.contracted(response).p
         values = [p.real, p.imag, *(getattr(response, name) for name in self.form.constants)]
         for constant, value in zip(constants, values):
             constant.value = value
-        return self._kernel.condense(adapter.constants(form), self.vertices[cells])
+        return self.kernel.condense(adapter.constants(form), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

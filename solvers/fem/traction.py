@@ -1,11 +1,13 @@
 """Half-plane under given surface tractions: the cheaper mode, in which the pressure is put in."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.solvers.fem.deformation import forces
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
@@ -27,9 +29,10 @@ class LoadedHalfPlane:
     Args:
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
+        corrected: are corrections wanted?
     """
 
-    def __init__(self, space: Space, response: Response) -> None:
+    def __init__(self, space: Space, response: Response, corrected: bool = False) -> None:
         self.space, self.response = space, response
         A = space.assemble(response)
         A.zeroRowsColumns(space.far_dofs, 1.0)
@@ -38,45 +41,74 @@ class LoadedHalfPlane:
         self.fields: list[PETSc.Vec] = []
         #: ∫ σ_YY d(X/a) over N/(2a) of each load.
         self.resultants: list[float] = []
+        #: What each field lacks where cells are small: its last digit is one of the motion of all.
+        self.corrections: list[PETSc.Vec] = []
+        self._corrected = corrected
         self._facets = surface_facets(space, ("contact",))
 
-    def load(self, σ_YY: Traction) -> None:
-        """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant."""
-        forces = self._consistent_forces(σ_YY)
+    def load(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> None:
+        """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant.
+
+        Args:
+            σ_YY: the load.
+            knots: positions X over a, under the punch, between which it is smooth.
+        """
+        load = self._consistent_forces(σ_YY, self.space.chart.surface_coordinate(np.asarray(knots)))
         node = self.space.numbers[self._facets.nodes.ravel()]
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(
                 (2 * node + component).astype(np.int32),
-                forces.ravel(),
+                load.ravel(),
                 addv=PETSc.InsertMode.ADD_VALUES,
             )
             b.assemble()
             self.fields.append(self.factor.solve(b))
+            if self._corrected:
+                self.corrections.append(self._correction(self.fields[-1], b))
             b.destroy()
-        self.resultants.append(self.space.comm.allreduce(float(forces.sum())))
+        self.resultants.append(self.space.comm.allreduce(float(load.sum())))
+
+    def _correction(self, field: PETSc.Vec, load: PETSc.Vec) -> PETSc.Vec:
+        """The field of what the forces of the cells' deformation leave of the load."""
+        residual = forces(self.space, self.response, field)
+        residual.aypx(-1.0, load)
+        residual.setValues(self.space.far_dofs, np.zeros(len(self.space.far_dofs)))
+        residual.assemble()
+        found = self.factor.solve(residual)
+        residual.destroy()
+        return found
 
     def destroy(self) -> None:
         """Free factor and fields."""
-        for held in (self.factor, *self.fields):
+        for held in (self.factor, *self.fields, *self.corrections):
             held.destroy()
 
-    def _consistent_forces(self, σ_YY: Traction) -> NDArray[np.float64]:
-        """∫ σ_YY φ d(X/a) on each of this rank's contact facets, (F, p+1)."""
+    def _consistent_forces(self, σ_YY: Traction, knots: NDArray) -> NDArray[np.float64]:
+        """∫ σ_YY φ d(X/a) on each of this rank's contact facets, (F, p+1), smooth between knots in s."""
         s = self._facets.s
         forces = np.zeros_like(s)
         left, right = self.space.contact.s[[0, -1]]
-        τ, weight = np.polynomial.legendre.leggauss(_POINTS)
-        τ, weight = (τ + 1.0) / 2.0, weight / 2.0
-        graded = τ**_EDGE_POWER, weight * _EDGE_POWER * τ ** (_EDGE_POWER - 1)
         for i, nodes in enumerate(s):
             length = nodes[-1] - nodes[0]
-            at_left, at_right = nodes[0] == left, nodes[-1] == right
-            t, w = graded if at_left or at_right else (τ, weight)
-            from_left = nodes[0] - left + length * (1.0 - t if at_right else t)
-            from_right = right - nodes[-1] + length * (t if at_right else 1.0 - t)
-            position = 1.0 - t if at_right else t
-            basis, _ = lagrange((nodes - nodes[0]) / length, position)
-            d_left, d_right, stretch = self.space.chart.under_punch(from_left, from_right)
-            forces[i] = (w * length * stretch * σ_YY(d_left, d_right)) @ basis
+            within = (knots[(nodes[0] < knots) & (knots < nodes[-1])] - nodes[0]) / length
+            for a, b in pairwise([0.0, *within, 1.0]):
+                from_a, from_b, w = _rule(nodes[0] == left and a == 0.0, nodes[-1] == right and b == 1.0)
+                # How far from the facet's two ends, over its length; each is exact at its own end.
+                start, end = a + (b - a) * from_a, (1.0 - b) + (b - a) * from_b
+                basis, _ = lagrange((nodes - nodes[0]) / length, start)
+                d_left, d_right, stretch = self.space.chart.under_punch(
+                    nodes[0] - left + length * start, right - nodes[-1] + length * end
+                )
+                forces[i] += (w * (b - a) * length * stretch * σ_YY(d_left, d_right)) @ basis
         return forces
+
+
+def _rule(at_left: bool, at_right: bool) -> tuple[NDArray, NDArray, NDArray]:
+    """Distances of the points from both ends of an interval of length 1, and weights."""
+    τ, weight = np.polynomial.legendre.leggauss(_POINTS)
+    τ, weight = (τ + 1.0) / 2.0, weight / 2.0
+    if not (at_left or at_right):
+        return τ, 1.0 - τ, weight
+    τ, weight = τ**_EDGE_POWER, weight * _EDGE_POWER * τ ** (_EDGE_POWER - 1)
+    return (1.0 - τ, τ, weight) if at_right else (τ, 1.0 - τ, weight)

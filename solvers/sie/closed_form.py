@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
 from galinx.solvers.contact import from_edge, under_punch
 from galinx.solvers.solids.solid import Response
@@ -88,8 +89,26 @@ class FlatPunch:
 
     def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
-        return self.response.inside(self.α, self.β, self.g, np.asarray(X), np.asarray(Y))
+        return self.response.inside(EdgePotential(self.α, self.β), self.g, np.asarray(X), np.asarray(Y))
 
     def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
         """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""
         return (1.0 - r) ** self.α * (1.0 + r) ** self.β
+
+
+@dataclass(frozen=True)
+class EdgePotential:
+    """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, the flat punch's; α and β broadcast against z."""
+
+    α: Any
+    β: Any
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+
+    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+        by_right, by_left = step / (z - 1.0), step / (z + 1.0)
+        if share == 0.0:
+            return self.at(z) * (self.α * by_right + self.β * by_left)
+        growth = self.α * log1p(share * by_right) + self.β * log1p(share * by_left)
+        return self.at(z) * np.expm1(growth) / share

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.parameters import check, choice, parameter
-from galinx.solvers.solids.solid import SOLIDS
+from galinx.solvers.solids.potentials import stresses
+from galinx.solvers.solids.solid import SOLIDS, Potential
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04
@@ -182,11 +183,9 @@ class MovingFrame:
         λ_div = (3.0 - self.κ) / (self.κ - 1.0) * (u_X + v_Y)
         return np.array([2.0 * u_X + λ_div, 2.0 * v_Y + λ_div, G[..., 0, 1] + G[..., 1, 0]])
 
-    def inside(self, α: Any, β: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Stresses below a flat punch from the two potentials."""
-        from galinx.solvers.solids.potentials import stresses  # SciPy's special functions, a slow import
-
-        return stresses(self, α, β, g, X, Y)
+    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Stresses from a pressure's potential at the two z_j = X + i β_j Y."""
+        return stresses(self, Φ, g, X, Y)
 
     @property
     def ω(self) -> tuple[float, float, float, float]:

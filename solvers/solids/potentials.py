@@ -1,4 +1,4 @@
-"""Exact stresses inside the half-plane under the sliding flat punch, stable for every 0 <= c < 1.
+"""Exact stresses inside the half-plane under a known pressure, stable for every 0 <= c < 1.
 
 The two potentials live at z_j = (X + i β_j Y)/a. At slow speed they nearly coincide, and what counts
 is their difference over c², which is therefore computed as such.
@@ -8,19 +8,20 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import log1p  # NumPy's loses digits for small complex arguments
+
+from galinx.solvers.solids.solid import Potential
 
 #: c² below which its part in the difference of the potentials, over c², has no digit left.
 _AT_REST = 1e-30
 
 
-def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+def stresses(frame: Any, Φ: Potential, g: Any, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
     """σ_XX, σ_YY, σ_XY over N/(2a) at points below the surface.
 
     Args:
         frame: constants of the moving frame, :class:`galinx.solvers.solids.isotropic.MovingFrame`.
-        α, β: exponents of the pressure at X = a and X = -a; like g they broadcast against points.
-        g: σ_XY/σ_YY under the punch.
+        Φ: the pressure's potential.
+        g: σ_XY/σ_YY on the surface; broadcasts against points.
         X, Y: coordinates over a, of one shape; Y < 0.
 
     Returns:
@@ -31,8 +32,10 @@ def stresses(frame: Any, α: Any, β: Any, g: Any, X: ArrayLike, Y: ArrayLike) -
     """
     X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
     if np.any(Y >= 0.0):
-        raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use FlatPunch on the surface")
-    Φ_s, d = _potentials(frame, α, β, X, Y)
+        raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use the formulas of the surface there")
+    z = X + 1j * frame.β_s * Y
+    δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
+    Φ_s, d = Φ.at(z), Φ.change(z, δ, frame.c**2 if frame.c**2 >= _AT_REST else 0.0)
     return np.array(field(frame, g, -Φ_s.imag, Φ_s.real, -d.imag, d.real))
 
 
@@ -62,17 +65,3 @@ def field(frame: Any, g: Any, s_s: Any, h_s: Any, s: Any, h: Any) -> tuple[Any, 
     σ_XX = u_X - v_Y + 2.0 * dilatation  # Eq 6
     σ_YY = v_Y - u_X + 2.0 * dilatation  # Eq 7
     return σ_XX, σ_YY, σ_XY
-
-
-def _potentials(
-    frame: Any, α: Any, β: Any, X: NDArray[np.float64], Y: NDArray[np.float64]
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Φ(z_s) and (Φ(z_d) - Φ(z_s))/c² with Φ(z) = (2/π)(z - 1)^α (z + 1)^β."""
-    c2 = frame.c**2
-    z = X + 1j * frame.β_s * Y
-    Φ: Any = 2.0 / np.pi * np.exp(α * np.log(z - 1.0) + β * np.log(z + 1.0))
-    δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
-    if c2 < _AT_REST:
-        return Φ, Φ * δ * (α / (z - 1.0) + β / (z + 1.0))
-    growth = α * log1p(c2 * δ / (z - 1.0)) + β * log1p(c2 * δ / (z + 1.0))
-    return Φ, Φ * np.expm1(growth) / c2

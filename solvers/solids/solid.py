@@ -8,6 +8,19 @@ from numpy.typing import NDArray
 from galinx.registry import Registry
 
 
+class Potential(Protocol):
+    """Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt below the surface, Im z < 0, of a pressure under the punch.
+
+    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform.
+    """
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z)."""
+
+    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+        """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0."""
+
+
 class Response(Protocol):
     """A half-plane of a solid seen from a load that moves over it, lengths over a, stresses over N/(2a).
 
@@ -46,12 +59,12 @@ class Response(Protocol):
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
 
-    def inside(self, α: Any, β: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY, (3, ...), below a flat punch.
+    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, ...), below a pressure.
 
         Args:
-            α, β: exponents of its pressure at X = a and X = -a.
-            g: σ_XY/σ_YY under it.
+            Φ: its potential.
+            g: σ_XY/σ_YY on the surface.
             X, Y: positions, Y < 0.
         """
 

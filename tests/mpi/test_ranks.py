@@ -5,11 +5,15 @@ import pytest
 from mpi4py import MPI
 from support import space_on
 
+from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem import surface
 from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem.linear_loads import LinearLoads
+from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.traction import LoadedHalfPlane
+from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -49,3 +53,16 @@ def test_shared_tractions_give_what_one_rank_gives():
         slopes.append(surface.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))
         solver.destroy()
     np.testing.assert_allclose(slopes[1], slopes[0], rtol=1e-8, atol=1e-10)
+
+
+@pytest.mark.parametrize("form", ["isotropic", "nearly incompressible"])
+def test_shared_pieces_give_what_one_rank_gives(form):
+    pieces = Pieces(np.array([-1.0, 0.2, 0.201, 1.0]), np.array([-1.0, -2.0, -7.0, 0.0]))
+    points = np.array([[0.3, -0.2], [0.2, 0.0], [-1.0, -1e-9], [0.201, -1e-12], [4.0, -3.0]])
+    found = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        refinement = MESHES["confocal"].refinement(Wanted(1e-3, NEAR, 1e5))
+        loads = LinearLoads(space_on("confocal", refinement, 5, comm, form), MovingFrame(2.0, 0.6))
+        found.append(pieces.gradients(loads, points))
+        assert pieces.resultant(loads) == pytest.approx(-1.8 - 0.0045 - 2.7965, rel=1e-12)
+    np.testing.assert_allclose(found[1], found[0], rtol=0.0, atol=1e-11)

@@ -24,13 +24,17 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if scene.solve.own_pressure:
-        return "the pressure is given"
+    if body.pressure:
+        return "the pressure is given" if quantity in _INTENSITIES else ""
     if quantity and not body.flat and quantity.asked_by == stresses.BELOW:
         return "known below flat punches only"
     if quantity and not body.flat and quantity is states.K_I_BOTH:
         return "the two ends differ"
     return ""
+
+
+#: What only a punch has.
+_INTENSITIES = (states.K_I_BOTH, states.K_I_LEFT[CLOSED_FORM], states.K_I_RIGHT[CLOSED_FORM])
 
 
 def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
@@ -41,8 +45,8 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if quantity and not body.flat and quantity is states.SLOPE:
-        return "the punch is not flat"
+    if quantity is states.SLOPE and (body.pressure or not body.flat):
+        return "the pressure is given" if body.pressure else "the punch is not flat"
     return ""
 
 

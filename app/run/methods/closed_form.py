@@ -1,4 +1,4 @@
-"""The singular integral equation: its closed form, or its collocation where the punch is not flat."""
+"""The singular integral equation: closed forms, or its collocation where the punch is not flat."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.method import Solver
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.linear import GivenPressure, LinearPressure
 from galinx.solvers.solution import Surface
 
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
@@ -31,6 +32,8 @@ class _AtSpeed:
     task: Task
 
     def states(self, g: NDArray) -> Any:
+        if self.task.body.pressure:
+            return OwnPressures(self.task, g)
         return (FlatPunches if self.task.body.flat else ShapedPunches)(self.task, g)
 
     def record(self) -> dict[str, Any]:
@@ -72,6 +75,34 @@ class FlatPunches(Punches):
         places = self.task.places
         σ_YY = np.where(places.under, self._over_places.σ_YY(places.X), np.nan)
         return Surface(places, σ_YY, self._over_places.σ_XX(places.X))
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        return self._over_places.inside(*self.task.places.points.T)
+
+
+class OwnPressures(Punches):
+    """A pressure of the user's own, exact."""
+
+    @property
+    def _pressure(self) -> LinearPressure:
+        assert self.task.body.pressure
+        return self.task.body.pressure
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return np.full(len(self.g), self._pressure.resultant)
+
+    @cached_property
+    def _over_places(self) -> GivenPressure:
+        return GivenPressure(self.task.response, self.g[:, None], self._pressure)
+
+    @cached_property
+    def surface(self) -> Surface:
+        places = self.task.places
+        σ_YY = np.where(places.under, self._pressure(places.X), np.nan)
+        return Surface(places, np.tile(σ_YY, (len(self.g), 1)), self._over_places.σ_XX(places.X))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

@@ -60,7 +60,8 @@ class MeasuredError:
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
-                self.changes[degree] = max(float(pair[i].max()) for pair in self._sample.values())
+                found = (float(pair[i].max()) for pair in self._sample.values())
+                self.changes[degree] = max(found, default=0.0)
         tolerance, unseen = ladder.work.plan.tolerance, self._unseen(levels[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         self.excessive = any(

@@ -1,6 +1,6 @@
 """Mode ``traction`` at one speed: σ_YY put in, σ_XY = g σ_YY."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -39,38 +39,14 @@ def one_state(
     """Space, fields and weights of one state."""
     loaded = LoadedHalfPlane(work.space(degree), task.response)
     try:
-        loaded.load(Pressures(task, work.plan.pressure).at(g))
+        loaded.load(FlatPunch(task.response, g).σ_YY_by_distance)
         yield loaded.space, loaded.fields, np.array([1.0, g])
     finally:
         loaded.destroy()
 
 
-@dataclass(frozen=True)
-class Pressures:
-    """What is put in at one speed.
-
-    Attributes:
-        task: the speed.
-        given: ``"closed_form"``, or pairs [X/a, σ_YY/(N/2a)].
-    """
-
-    task: Task
-    given: Any
-
-    def key(self, g: float) -> float:
-        """What tells loads apart: a pressure of the user's own is the same for every g."""
-        return g if self.given == "closed_form" else 0.0
-
-    def at(self, g: float) -> Callable[[NDArray, NDArray], NDArray]:
-        """σ_YY by the distances from both edges."""
-        if self.given == "closed_form":
-            return FlatPunch(self.task.response, g).σ_YY_by_distance
-        X, σ = np.array(self.given).T
-        return lambda left, right: np.interp(np.where(left < right, left - 1.0, 1.0 - right), X, σ)
-
-
 class LoadsAtDegree:
-    """Loads at one speed and degree; a pressure of the user's own is one load for every g.
+    """The pressures of all states at one speed and degree.
 
     Args:
         work: gives spaces.
@@ -82,12 +58,11 @@ class LoadsAtDegree:
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         self.task, self.space = task, space
         self.loaded = LoadedHalfPlane(space, task.response)
-        self.pressures = Pressures(task, work.plan.pressure)
-        #: The first of a load's two fields, by the load's key.
+        #: The first of a load's two fields, by σ_XY/σ_YY.
         self._columns: dict[float, int] = {}
-        for value in dict.fromkeys(map(self.pressures.key, g.tolist())):
+        for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
-            self.loaded.load(self.pressures.at(value))
+            self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
         self._gauges = StressGauges(work, task, space, self.loaded.fields)
 
     @property
@@ -103,7 +78,7 @@ class LoadsAtDegree:
 
     def columns(self, g: NDArray) -> NDArray[np.int64]:
         """The first of each state's two fields, (states,)."""
-        return np.array([self._columns[self.pressures.key(value)] for value in g.tolist()])
+        return np.array([self._columns[value] for value in g.tolist()])
 
     def weights(self, g: NDArray) -> NDArray[np.float64]:
         """Of the fields, (states, fields)."""
@@ -117,8 +92,8 @@ class LoadsAtDegree:
         places = self.task.places
         r = places.X[places.under]
         σ_YY = np.full((len(g), len(places.X)), np.nan)
-        keys = map(self.pressures.key, g.tolist())
-        σ_YY[:, places.under] = [self.pressures.at(key)(1.0 + r, 1.0 - r) for key in keys]
+        local = FlatPunch(self.task.response, g[:, None])
+        σ_YY[:, places.under] = local.σ_YY_by_distance(1.0 + r, 1.0 - r)
         return σ_YY
 
     def release(self) -> None:

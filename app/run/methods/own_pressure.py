@@ -1,0 +1,197 @@
+"""A pressure of the user's own at one speed, put in: finite elements, the degree found by measuring."""
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.plan.task import Task
+from galinx.app.run.methods.discretisation import Discretisation
+from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
+from galinx.app.run.methods.ladder import Ladder
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.solvers.fem.linear_loads import LinearLoads
+from galinx.solvers.fem.pieces import Pieces
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.traction import LoadedHalfPlane
+from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.solution import Surface
+
+
+@contextmanager
+def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressureAtSpeed"]:
+    """Raise the degree until the measured error of sample states is within tolerance."""
+    ladder = Ladder(work, task, lambda space, _: PiecesLevel(work, task, space))
+    try:
+        error = climb(ladder, g)
+        yield OwnPressureAtSpeed(ladder, error)
+    finally:
+        ladder.destroy()
+
+
+@contextmanager
+def one_state(
+    work: Discretisation, task: Task, g: float, degree: int
+) -> Iterator[tuple[Space, Any, NDArray]]:
+    """Space, fields and weights of one state: the pressure as a whole, not piece by piece."""
+    # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
+    loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _put_in(task)
+    try:
+        loaded.load(
+            lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
+            pressure.knots[1:-1],
+        )
+        yield loaded.space, loaded.fields, np.array([1.0, g])
+    finally:
+        loaded.destroy()
+
+
+def _put_in(task: Task) -> LinearPressure:
+    assert task.body.pressure
+    return task.body.pressure
+
+
+class PiecesSeen:
+    """Displacement gradients of the pressure at places, of σ_YY alone and of σ_XY equal to it.
+
+    Args:
+        task: the speed, and the places.
+        pieces: of the pressure.
+        loads: with which these are made.
+        words: of output.quantities, that ask for stresses.
+    """
+
+    def __init__(self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str]) -> None:
+        self._task, places = task, task.places
+        on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
+        self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
+        self._inside = pieces.gradients(loads, places.points[: len(places.points) * (BELOW in words)])
+
+    def surface(self, g: NDArray) -> Surface:
+        """The surface of states with these values of σ_XY/σ_YY."""
+        places = self._task.places
+        u_X, v_X = np.einsum("nid,ds->isn", self._on_surface[:, :, 0], _weights(g))
+        σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
+        σ = np.nan_to_num(σ_YY)
+        σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
+        return Surface(places, σ_YY, σ_XX, None, v_X)
+
+    def inside(self, g: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
+        return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, _weights(g)))
+
+
+def _weights(g: NDArray) -> NDArray[np.float64]:
+    return np.array([np.ones_like(g), g])
+
+
+class PiecesLevel:
+    """What finite elements of one degree make of the pressure, for every σ_XY/σ_YY.
+
+    Args:
+        work: knows what is asked for.
+        task: the speed.
+        space: of the degree.
+
+    Attributes:
+        factor: of the linear system, with numbers of its work.
+        resultant: of the discrete loads, over N/2.
+    """
+
+    def __init__(self, work: Discretisation, task: Task, space: Space) -> None:
+        self._work, self._task, self.space = work, task, space
+        pressure = _put_in(task)
+        self._pieces = Pieces(pressure.knots, pressure.values)
+        self._loads: LinearLoads | None = LinearLoads(space, task.response)
+        self.factor: Any = self._loads.factor
+        self.resultant = self._pieces.resultant(self._loads)
+        self._gauged = self._seen(gauged(task))
+
+    @cached_property
+    def everywhere(self) -> PiecesSeen:
+        """At all places; not after the level's release."""
+        everywhere = gauged(self._task) is self._task
+        return self._gauged if everywhere else self._seen(self._task)
+
+    def _seen(self, task: Task) -> PiecesSeen:
+        assert self._loads
+        with self._work.clock("recovery"):
+            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
+
+    def measured(self, g: NDArray) -> list[Gauge]:
+        found, words, places = [], self._work.stresses, gauged(self._task).places
+        if ON_SURFACE in words:
+            found.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
+        if BELOW in words:
+            found.append(of_inside(self._gauged.inside(g), places.points))
+        return found
+
+    def rounding(self, g: NDArray) -> list[float]:
+        """Not seen here: the mirror images of loads are no loads."""
+        return [0.0] * len(self.measured(g[:1]))
+
+    def release(self) -> None:
+        self._loads = None
+
+    def destroy(self) -> None:
+        self._loads = None
+
+
+class OwnPressureAtSpeed:
+    """A pressure put in at one speed, solved to the tolerance.
+
+    Args:
+        ladder: climbed.
+        error: of its last level.
+    """
+
+    def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
+        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        self._ladder = ladder
+
+    def states(self, g: NDArray) -> "OwnPressures":
+        return OwnPressures(self, g)
+
+    def record(self) -> dict[str, Any]:
+        return self._ladder.record() | self.error.record()
+
+
+@dataclass(frozen=True)
+class OwnPressures:
+    """States with a pressure of the user's own.
+
+    Attributes:
+        at: their speed.
+        g: σ_XY/σ_YY, (states,).
+    """
+
+    at: OwnPressureAtSpeed
+    g: NDArray[np.float64]
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return np.full(len(self.g), self.at.level.resultant)
+
+    @property
+    def tangential_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return self.g * self.normal_force
+
+    @cached_property
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        return self.at.error.of(self.g)
+
+    @cached_property
+    def surface(self) -> Surface:
+        return self.at.level.everywhere.surface(self.g)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        return self.at.level.everywhere.inside(self.g)

@@ -1,0 +1,183 @@
+"""A pressure of the user's own, put in piece by piece, against its exact solution."""
+
+import json
+
+import numpy as np
+import pytest
+from support import command, computed
+
+from galinx import template
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.run.methods import own_pressure
+from galinx.solvers.contact import from_edge
+from galinx.solvers.fem.linear_loads import LinearLoads
+from galinx.solvers.solids import Isotropic
+
+TRIANGLE = [[-1, 0], [0.3, -2], [1, 0]]
+SPIKE = [[-1, -1], [0.301, -1], [0.302, -50], [0.303, -1], [1, -1]]
+HUMP = [[-1, -1], [0, -1], [0.05, -4], [0.1, -1], [1, -1]]
+#: The first is at a knot of the surface grid and of the hump; the last far away.
+POINTS = [[0.0, -1e-9], [0.3, -0.2], [0.302, -1e-3], [-1.0, -1e-7], [18.8, -1.8]]
+ONE = {
+    "solve.mode": "traction", "motion.c": 0.0, "motion.strokes": ["forward"], "motion.X_over_L": 0.8,
+    "friction.mu_c": 0.5, "friction.sigma0_over_load": 25000.0,
+    "output.quantities": ["sif", "surface", "interior"], "output.points": POINTS,
+}  # fmt: skip
+
+
+def put_in(pressure, changes=None):
+    return computed("traction", ONE | {"solve.pressure": pressure} | (changes or {}))
+
+
+def errors(data):
+    """Of forces; of σ_XX over its size or its largest away from the ends; inside, over the largest."""
+    force = data["states/fem/normal_force"] / data["states/closed_form/normal_force"] - 1.0
+    found, exact = (data[f"surface/{method}/sigma_XX"] for method in ("fem", "closed_form"))
+    away = from_edge(data["surface/X_over_a"]) >= 1e-2
+    size = np.maximum(np.abs(exact), np.abs(exact[:, away]).max(axis=1, keepdims=True))
+    inside = [0.0]
+    if "interior/fem/sigma_XX" in data:
+        in_fem, in_exact = (
+            np.array([data[f"interior/{method}/sigma_{ij}"] for ij in ("XX", "YY", "XY")])
+            for method in ("fem", "closed_form")
+        )
+        inside = np.abs(in_fem - in_exact).max(axis=(0, 2)) / np.abs(in_exact).max(axis=(0, 2))
+    return np.abs(force).max(), (np.abs(found - exact) / size).max(), np.max(inside)
+
+
+def within_tolerance_and_estimate(result, tolerance):
+    data = result.data
+    force, in_plane, inside = errors(data)
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    assert force <= 1e-12
+    assert in_plane <= data["states/fem/estimate_sigma_XX"].max() <= tolerance
+    if "interior/fem/sigma_XX" in data:
+        assert inside <= data["states/fem/estimate_inside"].max() <= tolerance
+
+
+@pytest.mark.parametrize("pressure", [TRIANGLE, SPIKE, HUMP], ids=["triangle", "spike", "hump"])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_every_tolerance_is_kept(pressure, tolerance):
+    result = put_in(pressure, {"solve.tolerance": tolerance})
+    within_tolerance_and_estimate(result, tolerance)
+    exact = 55.3e3 * np.trapz(*np.array(pressure).T[::-1]) / 2.0
+    np.testing.assert_allclose(result.data["states/fem/normal_force"], exact, rtol=1e-12)
+    np.testing.assert_allclose(
+        result.data["states/fem/tangential_force"], exact * result.data["states/g"], rtol=1e-12
+    )
+
+
+def random_scene(rng):
+    knots = rng.uniform(-0.99, 0.99, rng.integers(0, 30))
+    knots[::2] = np.round(knots[::2] / 0.04) * 0.04  # where the surface is looked at
+    knots = np.concatenate([knots, knots[:1] + 10.0 ** rng.uniform(-6.0, -1.0, min(len(knots), 1))])
+    knots = np.unique(np.clip(knots, -0.99, 0.99))
+    knots = np.concatenate([[-1.0], knots[np.diff(knots, prepend=-1.0) >= 1e-6], [1.0]])
+    values = -(10.0 ** rng.uniform(-1.0, 2.0, len(knots)))
+    values[[0, -1]] *= rng.integers(0, 2, 2)
+    values[rng.integers(len(knots))] = -1.0
+    solid = Isotropic(193e9, rng.uniform(-0.9, 0.5), 7860.0, rng.choice(["strain", "stress"]))
+    points = np.column_stack([rng.choice(knots, 5), -(10.0 ** rng.uniform(-12.0, 0.5, 5))])
+    changes = {
+        "solve.pressure": np.column_stack([knots, values]).tolist(),
+        "solve.tolerance": float(10.0 ** rng.uniform(-6.0, -3.0)),
+        "solid.nu": float(solid.ν), "solid.plane": str(solid.plane),
+        "motion.c": float(rng.uniform(0.0, 0.98) * solid.limit()),
+        "friction.mu_c": float(rng.uniform(0.0, 1.2)), "friction.sigma0_over_load": 1e7,
+        "motion.strokes": [str(rng.choice(["forward", "backward"]))],
+    }  # fmt: skip
+    if solid.nearly_incompressible:
+        return changes | {"output.quantities": ["sif", "surface"], "output.points": None}
+    return changes | {"output.points": points.tolist()}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_pressures_keep_their_tolerance(seed):
+    changes = random_scene(np.random.default_rng(seed))
+    result = computed("traction", ONE | changes)
+    within_tolerance_and_estimate(result, changes["solve.tolerance"])
+
+
+def test_at_one_half_there_is_a_surface():
+    changes = {"solid.nu": 0.5, "output.quantities": ["sif", "surface"], "output.points": None}
+    within_tolerance_and_estimate(put_in(HUMP, changes), 1e-6)
+
+
+def test_the_graded_mesh():
+    within_tolerance_and_estimate(put_in(HUMP, {"solve.mesh": "graded", "solve.tolerance": 1e-3}), 1e-3)
+
+
+def test_without_the_exact_solution_the_estimate_is_the_judge():
+    result = put_in(HUMP, {"solve.methods": ["fem"], "solve.tolerance": 1e-4})
+    assert result.verdict == "PASS"
+    assert len(json.loads(result.attributes["verdict_reasons"])) == 2
+    assert "states/closed_form/normal_force" not in result.data
+
+
+def test_what_is_wrong_fails(monkeypatch, tmp_path):
+    true = LinearLoads.gradients
+    monkeypatch.setattr(LinearLoads, "gradients", lambda self, points: 1.01 * true(self, points))
+    result = put_in(HUMP, {"solve.tolerance": 1e-3})
+    assert result.verdict == "FAIL"
+    assert errors(result.data)[1] == pytest.approx(0.01, rel=0.1)
+    result.save(tmp_path / "a.h5")
+    assert command("check", tmp_path / "a.h5").returncode == 0
+
+
+def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
+    solved, true = [], own_pressure.PiecesLevel.__init__
+
+    def counted(self, work, task, space):
+        solved.append(space.degree)
+        true(self, work, task, space)
+
+    monkeypatch.setattr(own_pressure.PiecesLevel, "__init__", counted)
+    result = put_in(HUMP, {"solve.tolerance": 1e-4, "motion.c": 0.91})
+    assert solved == list(range(solved[0], solved[0] + len(solved))) and len(solved) > 3
+    assert result.data["run/fem/degree"] == [solved[-1]]
+    assert result.data["run/fem/factorisations"] == [len(solved)]
+
+
+def test_the_exact_solution_needs_no_finite_elements():
+    result = put_in(TRIANGLE, {"solve.methods": ["closed_form"], "motion.c": 0.9})
+    assert np.isfinite(result.data["surface/closed_form/sigma_XX"]).all()
+    assert np.isfinite(result.data["interior/closed_form/sigma_XX"]).all()
+    np.testing.assert_allclose(result.data["states/closed_form/normal_force"], -55.3e3, rtol=1e-14)
+    assert not any("K_I" in path for path in result.data)
+
+
+@pytest.mark.parametrize("pressure", [HUMP, "closed_form"], ids=["own", "closed form"])
+def test_forces_alone_can_be_asked_for(pressure):
+    changes = {"output.quantities": ["sif"], "output.points": None, "solve.tolerance": 1e-3}
+    assert put_in(pressure, changes).verdict == "PASS"
+
+
+def test_many_points_are_judged_by_some():
+    """Errors are measured on 400 of them, stresses told at all."""
+    rng = np.random.default_rng(0)
+    points = np.column_stack([rng.uniform(-3.0, 3.0, 500), -(10.0 ** rng.uniform(-9.0, 0.5, 500))])
+    result = put_in(HUMP, {"output.points": points.tolist(), "solve.tolerance": 1e-4})
+    assert result.data["interior/fem/sigma_XX"].shape == (1, 500)
+    within_tolerance_and_estimate(result, 1e-4)
+
+
+def test_nothing_of_a_punch_is_said():
+    result = put_in(HUMP, {"solve.tolerance": 1e-3})
+    punch = {"states/alpha", "states/beta", "states/fem/slope_under_punch", "states/closed_form/K_I"}
+    assert not punch & set(result.data)
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"solve.mesh": "box"}, 'solve.mesh: found "box".*expected "confocal" or "graded"'),
+        ({"solve.mesh": "uniform"}, 'solve.mesh: found "uniform".*expected "confocal" or "graded"'),
+        ({"solve.mesh": "graded", "solid.nu": 0.5}, "ν = 0.5.*expected .confocal. or ν <= 0.49"),
+        ({"solve.pressure": [[-1, -1], [0, -1], [1e-10, -2], [1, 0]]}, "differ by 1e-10, expected at"),
+        ({"solve.pressure": [[-1, 0], [0.5, 0], [1, 0]]}, "found no pressure but 0"),
+    ],
+)
+def test_what_cannot_be_put_in_is_said(changes, message):
+    with pytest.raises(BadInput, match=message):
+        make_plan(template("traction", ONE | {"solve.pressure": HUMP} | changes))

@@ -1,0 +1,137 @@
+"""Pressures made of linear pieces on one mesh, against their exact solution."""
+
+import numpy as np
+import pytest
+from support import space_on
+
+from galinx.meshes import MESHES, Wanted
+from galinx.solvers import rays
+from galinx.solvers.errors import MeshError
+from galinx.solvers.fem import pieces
+from galinx.solvers.fem.linear_loads import LinearLoads
+from galinx.solvers.fem.pieces import Pieces
+from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.solids.isotropic import MovingFrame
+
+FRAME = MovingFrame(2.0, 0.6)
+#: A narrow piece beside wide ones, a knot where nothing kinks, a jump at one end.
+KNOTS = np.array([-1.0, -0.3, 0.2, 0.2 + 1e-5, 0.7, 1.0])
+VALUES = np.array([-1.0, -2.0, -1.0, -4.0, -2.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def loads():
+    """The mesh of a tolerance of 1e-6, at a degree to which measured errors raise it there."""
+    refinement = MESHES["confocal"].refinement(Wanted(1e-6, rays.NEAR, 1e7))
+    return LinearLoads(space_on("confocal", refinement, 10), FRAME)
+
+
+@pytest.fixture(scope="module")
+def pressure():
+    return LinearPressure(KNOTS, VALUES)
+
+
+def strain(loads, X):
+    """μ u,X of the pressure on the surface, of σ_YY and of σ_XY equal to it, (2, n)."""
+    points = np.column_stack([X, np.zeros(len(X))])
+    return Pieces(KNOTS, VALUES).gradients(loads, points)[:, 0, 0].T
+
+
+def exact_strain(pressure, X):
+    return np.array([FRAME.q * pressure(X), FRAME.m * pressure.hilbert(X)])
+
+
+def test_one_linear_load_is_that_of_its_exact_solution(loads):
+    """The fourth field's strain is the Hilbert transform's, to where it is infinite and far away."""
+    single = LinearPressure(np.array([-1.0, 1.0]), np.array([0.0, 1.0]))
+    near = np.geomspace(1e-6, 0.5, 30)
+    X = np.concatenate([-1.0 + near, 1.0 - near, 1.0 + near, [3.0, 1e3, 1e6]])
+    found = loads.gradients(np.column_stack([X, np.zeros(len(X))]))[:, 0, 0, 3]
+    np.testing.assert_allclose(found, FRAME.m * single.hilbert(X), rtol=1e-6, atol=2e-7)
+    np.testing.assert_allclose(loads.resultants, 1.0, rtol=1e-14)
+
+
+def test_next_to_an_end_a_field_has_its_digits(loads):
+    """1e-8 of the half-width from the end, where displacements alone would leave five digits."""
+    x = 1e-8 * 2.0 ** np.arange(8)
+    u_X = loads.gradients(np.column_stack([1.0 - x, np.zeros(8)]))[:, 0, 0, 3]
+    single = LinearPressure(np.array([-1.0, 1.0]), np.array([0.0, 1.0])).hilbert(1.0 - x)
+    np.testing.assert_allclose(u_X, FRAME.m * single, atol=2e-7)
+
+
+def test_the_pieces_are_the_pressure(loads, pressure):
+    X = np.concatenate([np.linspace(-0.99, 0.99, 67), 1.0 + np.geomspace(1e-6, 4.0, 12)])
+    found, exact = strain(loads, X), exact_strain(pressure, X)
+    np.testing.assert_allclose(found, exact, atol=1e-6)
+    assert Pieces(KNOTS, VALUES).resultant(loads) == pytest.approx(pressure.resultant, rel=1e-14)
+
+
+@pytest.mark.parametrize("away", [0.0, 1e-300, 1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-7])
+def test_at_knots_infinite_stresses_cancel(loads, pressure, away):
+    X = KNOTS[1:-1] + away
+    found, exact = strain(loads, X), exact_strain(pressure, X)
+    np.testing.assert_allclose(found, exact, atol=2e-6)
+
+
+@pytest.mark.parametrize("depth", [1e-14, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_below_knots_and_ends_too(loads, pressure, depth):
+    points = np.column_stack([KNOTS, np.full(len(KNOTS), -depth)])
+    basis = Pieces(KNOTS, VALUES).gradients(loads, points)
+    found = FRAME.stresses(basis[..., 0] - 0.66 * basis[..., 1])
+    exact = FRAME.inside(pressure, -0.66, *points.T)
+    np.testing.assert_allclose(found, exact, atol=5e-6)
+
+
+def test_many_pieces_are_looked_at_some_at_a_time(loads, pressure, monkeypatch):
+    X = np.linspace(-0.9, 1.9, 7)
+    whole = strain(loads, X)
+    monkeypatch.setattr(pieces, "_AT_ONCE", 10)
+    np.testing.assert_allclose(strain(loads, X), whole, atol=1e-13)
+
+
+def test_pieces_without_load_are_no_work(loads):
+    looked = []
+
+    class Counted:
+        def gradients(self, points):
+            looked.append(len(points))
+            return loads.gradients(points)
+
+    half = Pieces(np.array([-1.0, 0.0, 1.0]), np.array([-1.0, 0.0, 0.0]))
+    half.gradients(Counted(), np.array([[0.4, 0.0]]))
+    assert looked == [1]
+
+
+@pytest.mark.parametrize(
+    "knots", [[-1, 0, 1e-6, 1], [-1, -1 + 1e-6, 1], [-1, 0.2, 1 - 1e-9, 1], [-1, 0, 1e-4, 2e-4, 0.3, 1]]
+)
+def test_widths_of_neighbours_are_alike(knots):
+    found = Pieces(np.array(knots, dtype=float), np.arange(len(knots), dtype=float))
+    widths = np.diff(found.knots)
+    assert (widths > 0.0).all() and set(map(float, knots)) <= set(found.knots.tolist())
+    assert np.max(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])) <= 8.0 + 1e-6
+    np.testing.assert_allclose(found.values, np.interp(found.knots, knots, np.arange(len(knots))))
+
+
+def test_rays_continue_what_is_known_of_knots():
+    """Exactly for sums of 1, x, x log x, and of log x where the pressure jumps."""
+    knots, near, jumps = np.array([-1.0, 0.3, 1.0]), np.full(3, 1e-6), np.array([True, False, False])
+    points = np.array([[0.3, 0.0], [0.3, -1e-9], [0.3 + 1e-7, -1e-7], [-1.0, -1e-20], [0.5, 0.0]])
+    found = rays.rays(points, knots, near, jumps)
+
+    def known(origin, offset):
+        x = np.hypot(*offset)
+        direction = np.arctan2(-offset[1], offset[0])
+        regular = 2.0 + (3.0 + np.cos(direction)) * x + 5.0 * x * np.log(max(x, 1e-300))
+        return regular + 7.0 * np.log(max(x, 1e-300)) * (origin == -1.0)
+
+    values = np.array([known(*place) for place in zip(found.origins, found.offsets)])
+    assert np.hypot(*found.offsets.T)[found.owner < 4].min() >= 0.99e-6
+    origins = [0.3, 0.3, 0.3, -1.0]
+    wanted = [known(o, (X - o, Y)) for o, (X, Y) in zip(origins, points)]
+    np.testing.assert_allclose(found.continued(values)[:4], wanted, rtol=1e-9)
+
+
+def test_a_point_beyond_the_mesh_is_told(loads):
+    with pytest.raises(MeshError, match="lies outside the mesh"):
+        loads.gradients(np.array([[1e16, 0.0]]))

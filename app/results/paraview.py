@@ -139,7 +139,7 @@ def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _Sta
     task = next(task for task in plan.tasks if task.response.c == c)
     assert plan.fem
     if degree is None:
-        # Given tractions are solved one degree above the rule, as in a run.
+        # Given tractions are solved one degree above the rule: no measured error corrects it here.
         degree = plan.fem.degrees[task.number] + (scene.solve.mode == "traction")
     exact = "closed_form" in scene.solve.methods
     return _State(plan, task, float(states.g[number]), degree, exact)

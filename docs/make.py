@@ -79,9 +79,12 @@ c = 0.3                          # over the shear wave speed
   number, then units with `*`, `/` and whole powers `^` between them, as in `"7.86 g/mm^3"` and
   `"25000 1/m"`. A unit of another dimension is an error; degrees, counts and bits are no numbers, and
   `"5 %"` is 0.05.
-- `c` or `speed`, and the parameters of the friction law, may be lists. All their combinations are
-  computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
+- `c` or `speed`, and the parameters of the friction law, may be lists or ranges. All their combinations
+  are computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
   from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.
+- A range stands where a list may: `c = {from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9. Both ends
+  belong to it and may carry units. `spacing = "log"` makes ratios equal instead of differences: `mu_c =
+  {from = 0.01, to = 1, number = 3, spacing = "log"}` is 0.01, 0.1, 1.
 - `kind`, `profile` and `model` name a solid, a punch and a friction law, each with keys of its own.
   [Extend galinx](howto_extend.md) adds others.
 - A key that the program does not know is an error, with the nearest known key in the message.
@@ -330,7 +333,7 @@ def _value(kind: Any) -> str:
     text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
     unit = getattr(kind, "unit", None)
     if unit is not None:
-        several = " or a list" if type(kind).__name__ == "Numbers" else ""
+        several = ", a list or a range" if type(kind).__name__ == "Numbers" else ""
         return f"number [{unit or 'dimensionless'}]{several}"
     return text[0].lower() + text[1:] if text[:2] != "`{" else text
 

@@ -26,8 +26,8 @@ from galinx.postprocess.target import Folder, Target
 @click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
 @options.talk
 def run(
-    scene: Path, output: Path | None, changes: tuple[str, ...], overwrite: bool, resume: bool,
-    progress: Progress, quiet: bool,
+    scene: Path, output: Path | None, changes: tuple[str, ...], unset: tuple[str, ...],
+    overwrite: bool, resume: bool, progress: Progress, quiet: bool,
 ) -> int:  # fmt: skip
     """Compute SCENE and archive the results.
 
@@ -37,7 +37,7 @@ def run(
     from galinx.app.run.flow import compute
 
     path = output or Path(scene.stem + ".h5")
-    checked = _read(scene, changes)
+    checked = _read(scene, changes, unset)
     if not ranks.is_root() and not make_plan(checked).fem:
         return errors.GOOD  # nothing to share
     target = Target(path, None, overwrite, options.inputs(scene))
@@ -60,17 +60,17 @@ def run(
     return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
 
 
-def _read(path: Path, changes: tuple[str, ...]) -> Any:
+def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
     """The scene with its changes, whose reader only those who change something pay for."""
     from galinx.app.scene.read import read
 
     if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
         raise BadInput(f"only one of several ranks could read {path}; expected a file")
-    if not changes:
+    if not (changes or unset):
         return read(path)
     from galinx.app.scene.changes import from_words
 
-    return read(path, from_words(changes))
+    return read(path, from_words(changes, unset))
 
 
 def _archived(scene: Any, target: Target, journal: Any, progress: Progress) -> str:
@@ -109,7 +109,7 @@ def _kept(journal: Any) -> str:
 @click.command()
 @options.scene
 @options.changes
-def plan(scene: Path, changes: tuple[str, ...]) -> int:
+def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     """Show what a run of SCENE would do, and what it would skip; nothing is computed.
 
     Example: ./run.sh plan scenes/tables4_5.toml
@@ -117,7 +117,7 @@ def plan(scene: Path, changes: tuple[str, ...]) -> int:
     from galinx.app.plan.plan import make_plan
     from galinx.app.plan.words import expense, lines
 
-    checked = _read(scene, changes)
+    checked = _read(scene, changes, unset)
     planned = make_plan(checked)
     if ranks.is_root():
         for text in lines(checked, planned):

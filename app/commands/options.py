@@ -28,10 +28,18 @@ FILE = _File(path_type=Path)
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)
-changes = click.option(
-    "--set", "changes", multiple=True, metavar="KEY=VALUE",
-    help="Another value, as in --set friction.mu_c=0.5; may be repeated.",
-)  # fmt: skip
+
+
+def changes(command: Any) -> Any:
+    """``--set`` and ``--unset``."""
+    with_unset = click.option(
+        "--unset", multiple=True, metavar="KEY",
+        help="Take a key of the scene away, as in --unset motion.c; may be repeated.",
+    )(command)  # fmt: skip
+    return click.option(
+        "--set", "changes", multiple=True, metavar="KEY=VALUE",
+        help="Another value, as in --set friction.mu_c=0.5; may be repeated.",
+    )(with_unset)  # fmt: skip
 
 
 overwrite = click.option(

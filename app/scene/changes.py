@@ -1,6 +1,6 @@
 """Changes of a scene's text, made where the value stands; comments and layout stay."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import tomlkit
@@ -8,7 +8,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
 
 from galinx.app.errors import BadInput
-from galinx.app.scene.excerpt import excerpt, short
+from galinx.app.scene.excerpt import excerpt, nearest, short
 
 _CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
 
@@ -16,15 +16,19 @@ _CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
 _LONGEST = 10_000
 
 
-def from_words(words: Iterable[str]) -> dict[str, Any]:
+def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any]:
     """Changes as the command line gives them: ``section.key=value``, the value as in TOML.
 
     What is no TOML value is a text: ``solid.E=70 GPa`` needs no quotes.
 
+    Args:
+        words: of ``--set``.
+        unset: keys to be taken away.
+
     Raises:
-        BadInput: a word without key or value, or not UTF-8.
+        BadInput: a word without key or value, or not UTF-8; a key that is both set and taken away.
     """
-    changes = {}
+    changes: dict[str, Any] = {}
     for word in words:
         try:
             word.encode()
@@ -39,7 +43,10 @@ def from_words(words: Iterable[str]) -> dict[str, Any]:
             changes[key.strip()] = tomlkit.value(value.strip())
         except (TOMLKitError, ValueError, RecursionError):
             changes[key.strip()] = value.strip()
-    return changes
+    for key in unset:
+        if key in changes:
+            raise BadInput(f"--set and --unset {short(key)} exclude each other; keep one")
+    return changes | dict.fromkeys(unset)
 
 
 def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
@@ -47,24 +54,34 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
     Args:
         text: TOML.
-        changes: new values by ``"section.key"``, or ``"title"``; None takes a key away, and
-            ``"solid.material"`` takes away the constants that are not among the changes.
+        changes: new values by ``"section.key"``, or ``"title"``; None takes a key of the scene away,
+            and ``"solid.material"`` the constants that are not among the changes.
         name: stands in messages.
 
     Raises:
-        BadInput: the text is not TOML, or a key is not of that form.
+        BadInput: the text is not TOML, a key is not of that form, or one to be taken away is not there.
     """
     try:
         tree = tomlkit.parse(text)
+        known = [*_keys(tree)]
         if "solid.material" in changes:  # another solid: constants of the old one would override it
-            changes = dict.fromkeys(_CONSTANTS) | dict(changes)
+            old = (path for path in _CONSTANTS if path in known)
+            changes = dict.fromkeys(old) | dict(changes)
         for path, value in changes.items():
+            if value is None and path not in known:
+                raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, known)}")
             _change(tree, path, value)
         return tomlkit.dumps(tree)
     except (TOMLKitError, ValueError, TypeError) as error:
         raise BadInput(f"{name} cannot be changed: {error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
+
+
+def _keys(tree: Mapping[str, Any]) -> Iterator[str]:
+    """Keys of a scene as changes name them."""
+    for name, value in tree.items():
+        yield from (f"{name}.{key}" for key in value) if isinstance(value, dict) else [name]
 
 
 def _change(tree: Any, path: str, value: Any) -> None:
@@ -78,13 +95,16 @@ def _change(tree: Any, path: str, value: Any) -> None:
         if not isinstance(tree, dict):
             raise ValueError(f"found {excerpt(section)} without keys, expected a section")
     if value is None:
-        tree.pop(key, None)
+        del tree[key]
     else:
         tree[key] = _item(value)
 
 
 def _item(value: Any) -> Any:
     """A value for tomlkit, whose time to make a list, unlike that to read one, grows with its square."""
+    if isinstance(value, dict) and not isinstance(value, Item):  # a range; stays in its line
+        (table := tomlkit.inline_table()).update(value)
+        return table
     if isinstance(value, Item) or not isinstance(value, (list, tuple)):
         return value
     items = [tomlkit.item(_item(entry)) for entry in value]

@@ -1,6 +1,7 @@
 """What a scene says, short enough for a message."""
 
 import reprlib
+from difflib import get_close_matches
 from math import log10
 
 #: Bits of a whole number up to which its digits are shown; Python itself refuses 4300 digits.
@@ -34,3 +35,9 @@ def listed(texts: list[str], most: int = 8) -> str:
 def short(text: str, most: int = 80) -> str:
     """A text, cut where it is long."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+def nearest(key: str, valid: list[str]) -> str:
+    """What may have been meant, for the end of a message."""
+    close = get_close_matches(key, valid, 1, 0.5)
+    return f"; did you mean {close[0]}?" if close else f"; valid: {', '.join(valid)}"

@@ -1,14 +1,14 @@
 """Keys of a scene's sections, and what makes a section of them."""
 
 import dataclasses
-import difflib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from galinx.app.console.program import program
-from galinx.app.scene.excerpt import excerpt, short
-from galinx.app.scene.values import Choice, Kind, Number, Numbers
+from galinx.app.scene.excerpt import excerpt, nearest, short
+from galinx.app.scene.numbers import Numbers
+from galinx.app.scene.values import Choice, Kind, Number
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
 
@@ -160,9 +160,3 @@ class ModelSection(Section):
         model = self._models[values.pop(self._chosen)]
         own = {key: values.pop(key) for key in parameters(model)}
         return self.build(model, own, **values)
-
-
-def nearest(key: str, valid: list[str]) -> str:
-    """What may have been meant, for the end of a message."""
-    close = difflib.get_close_matches(key, valid, 1, 0.5)
-    return f"; did you mean {close[0]}?" if close else f"; valid: {', '.join(valid)}"

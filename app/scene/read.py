@@ -7,8 +7,7 @@ from typing import Any
 
 from galinx import files
 from galinx.app.errors import BadInput
-from galinx.app.scene.excerpt import excerpt, short
-from galinx.app.scene.keys import nearest
+from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sections import SECTIONS

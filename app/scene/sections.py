@@ -5,13 +5,13 @@ from typing import Any
 from galinx.app.run.methods import METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.numbers import Numbers
 from galinx.app.scene.scene import Friction, Motion, Output, Punch, Solve
 from galinx.app.scene.values import (
     Choice,
     Choices,
     Map,
     Number,
-    Numbers,
     Points,
     Pressure,
     Whole,

@@ -73,25 +73,6 @@ class Whole:
         return {"type": "integer"} | _limits(self.bounds)
 
 
-@dataclass(frozen=True)
-class Numbers:
-    """One number or a list of them."""
-
-    unit: str = ""
-    bounds: Range = _NO_BOUNDS
-
-    def __call__(self, value: Any) -> tuple[float, ...]:
-        one = Number(self.unit, self.bounds)
-        found = tuple(one(entry) for entry in (value if isinstance(value, list) else [value]))
-        if not found:
-            raise ValueError("found an empty list, expected at least one number")
-        return found
-
-    def schema(self) -> dict[str, Any]:
-        one = Number(self.unit, self.bounds).schema()
-        return {"anyOf": [*one["anyOf"], {"type": "array", "items": one, "minItems": 1}]}
-
-
 class Text:
     """A text."""
 

@@ -84,3 +84,34 @@ def test_what_is_long_deep_or_a_table_is_refused_with_a_short_message(word, mess
     with pytest.raises(BadInput, match=message) as caught:
         read(SCENE, {"title": ""} | from_words([word]))
     assert len(str(caught.value)) < 600
+
+
+def test_a_range_of_python_stays_in_its_line():
+    text = changed("[motion]\nc = 0.1  # slow\n", {"motion.c": {"from": 0, "to": "0.9", "number": 3}})
+    assert text == '[motion]\nc = {from = 0, to = "0.9", number = 3}  # slow\n'
+
+
+def test_keys_are_taken_away():
+    changes = from_words(["motion.speed={from = '1 mm/s', to = 1, number = 3}"], ["motion.c", "title"])
+    scene = read(SCENE, changes)
+    assert scene.motion.c is None and scene.motion.speed == (0.001, 0.5005, 1.0) and scene.title == ""
+
+
+@pytest.mark.parametrize(
+    "key, message",
+    [
+        ("motion.cc", "found no key 'motion.cc' to take away; did you mean motion.c?"),
+        ("motion.speed", "found no key 'motion.speed' to take away"),
+        ("titel", "did you mean title"),
+        ("motion", "did you mean motion.c"),
+        ("\udcff", "valid: title, "),
+    ],
+)
+def test_only_what_is_there_is_taken_away(key, message):
+    with pytest.raises(BadInput, match=message.replace("?", r"\?")):
+        read(SCENE, from_words([], [key]))
+
+
+def test_a_key_is_set_or_taken_away():
+    with pytest.raises(BadInput, match=r"--set and --unset motion\.c exclude each other"):
+        from_words(["motion.c=0.1"], ["motion.c"])

@@ -33,6 +33,9 @@ VALUES = [
     "\x00", "a\nb=1", "1\n[x]\ny=2", "'''a\nb'''", '"', "'", "#", "1 #c", "=", "\\", '"\\x',
     "a" * 100_000, "[" + "1," * 5000 + "]", "1 Pa*9**9**9", "30 deg", "5 %", "193 GPa", "0.5", "[0.1]",
     "stress", "closed_form", '["closed_form"]', '["forward", {a=1}]', "1.5 mm/s", "1_000", "{a",
+    "{from=0, to=0.9, number=5}", "{from=1e-300, to=1e300, number=1000, spacing='log'}",
+    "{from=0, to=0, number=1}", "{from={}, to=[], number=nan}",
+    "{from=1, to=2, number=" + "9" * 400 + "}",
 ]  # fmt: skip
 
 

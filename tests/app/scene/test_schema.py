@@ -29,11 +29,15 @@ def test_every_scene_of_the_project_follows_the_schema():
         {"sloid": {}},
         {"solve": {"mesh": "round"}},
         {"friction": {"mu_c": True}},
+        {"motion": {"c": {"from": 0, "to": 0.9}}},
+        {"motion": {"c": {"from": 0, "to": 0.9, "number": 1}}},
+        {"motion": {"c": {"from": 0, "to": 0.9, "number": 3, "step": 1}}},
     ],
 )
 def test_faults_are_against_the_schema(scene):
     whole = tomllib.loads((HOME / "scenes" / "tables4_5.toml").read_text(encoding="utf-8"))
     validator = jsonschema.Draft7Validator(schema())
-    assert validator.is_valid(whole)
+    ranges = whole | {"motion": {"c": {"from": 0, "to": "0.9", "number": 3, "spacing": "linear"}}}
+    assert validator.is_valid(whole) and validator.is_valid(ranges)
     changed = {name: whole.get(name, {}) | keys for name, keys in scene.items()}
     assert not validator.is_valid(whole | changed)

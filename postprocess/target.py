@@ -50,6 +50,7 @@ FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK)
 PAGE = _kind("a report of galinx", rb'<!doctype html>.{,500}<meta name="generator" content="galinx')
 PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
 PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
+TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),")
 TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
 
@@ -90,18 +91,23 @@ class Target:
         if self._earlier:
             self._check_replaceable()
 
-    def write(self, data: bytes) -> None:
+    def write(self, data: bytes | Iterable[bytes]) -> None:
         """Write the file, whole or not at all.
+
+        Args:
+            data: all of it, or pieces, of which the next is asked for when one is written.
 
         Raises:
             UnwritableArchive: the file system refused, or something has appeared there.
         """
+        needed = len(data) if isinstance(data, bytes) else 0
         try:
             with files.NewFile(self.place) as new:
-                new.temporary.write_bytes(data)
-                self.publish(new, len(data))
+                with new.temporary.open("wb") as file:
+                    file.writelines([data] if isinstance(data, bytes) else data)
+                self.publish(new, needed)
         except OSError as error:
-            raise refused(self.path, error, len(data)) from error
+            raise refused(self.path, error, needed) from error
 
     def publish(self, new: files.NewFile, needed: int = 0) -> None:
         """Give a finished file its name.

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -55,14 +55,18 @@ class Archive:
         """
         return {name: self._large(name) if large(name) else self.data[name] for name in self.names}
 
-    def rows(self, rows: slice) -> dict[str, Any]:
+    def rows(self, rows: slice, names: Iterable[str] | None = None) -> dict[str, Any]:
         """Datasets of some states by path, and positions that all states share.
+
+        Args:
+            rows: numbers of the states.
+            names: of the datasets; all of states if not given.
 
         Raises:
             UnreadableArchive: a large one does not fit the schema.
         """
         found, known = {}, table()
-        for name in filter(of_states, self.names):
+        for name in filter(of_states, self.names) if names is None else names:
             if large(name):
                 found[name] = self._large(name, rows)
             else:

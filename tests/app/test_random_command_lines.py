@@ -29,7 +29,7 @@ GOOD = {
     "run": (["quick.toml"], [["-q"], ["-v"], ["--set", "friction.mu_c=0.5"], ["--set", "title=x"]]),
     "plan": (
         ["quick.toml", "tables.toml"],
-        [["--set", "motion.c=[0.1, 0.2]"], ["--set", "solid.nu=0.3"]],
+        [["--set", "motion.c={from = 0.1, to = 0.2, number = 3}"], ["--unset", "title"]],
     ),
     "show": (["quick.h5"], [["--json"]]),
     "check": (["quick.h5"], []),
@@ -37,6 +37,7 @@ GOOD = {
     "init": (["table1", "own_material"], []),
     "materials": ([], []),
     "schema": ([], []),
+    "csv": (["quick.h5"], [["--states"], ["--si"]]),
     "plot": (None, []),
     "fields": (None, []),
     "paper": (None, []),
@@ -51,7 +52,7 @@ BAD_OPTIONS = [
     ["--nonsense"], ["-z"], ["--set"], ["--set", "x"], ["--set", "=1"], ["--set", "friction.mu_cc=1"],
     ["--set", "motion.c=" + "[" * 3000], ["--set", "solid.E=1 Pa*9**9**9"], ["-o"], ["--state", "x"],
     ["--extent", "x"], ["-q", "-v"], ["--overwrite=1"], ["-n"], ["--json=1"], ["extra", "more"],
-    ["--set", "motion.c=30 deg"],
+    ["--set", "motion.c=30 deg"], ["--unset"], ["--unset", "motion.cc"], ["--surface"], ["--si=1"],
 ]  # fmt: skip
 #: For what is to be written.
 BAD_PLACES = [["-o", "folder"], ["-o", "no/such/folder/x"]]

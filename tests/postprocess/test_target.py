@@ -10,11 +10,12 @@ from support import at_once, full_disk
 from galinx import compute, load, template
 from galinx.app.console.progress import Progress
 from galinx.app.console.sheets import new_console, print_sheet
+from galinx.app.results.csv import pieces
 from galinx.app.results.paraview import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
 from galinx.postprocess.tables import Sheet
-from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PDF, PNG, TABLES, Folder, Target
+from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PDF, PNG, TABLE, TABLES, Folder, Target
 
 FOREIGN = b"precious"
 
@@ -31,10 +32,13 @@ def made(tmp_path_factory):
     vtkhdf.write(folder / "a.hdf", [square], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
         print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))
+    with (folder / "a.csv").open("w") as file:
+        file.writelines(pieces(folder / "a.h5"))
     with Progress(log=folder / "a.log") as progress:
         progress.note("scene: a.toml")
     paths = {ARCHIVE: folder / "a.h5", PAGE: folder / "a.html", PDF: pdf, PNG: png}
-    return paths | {FIELDS: folder / "a.hdf", TABLES: folder / "tables.txt", LOG: folder / "a.log"}
+    paths |= {TABLE: folder / "a.csv", TABLES: folder / "tables.txt"}
+    return paths | {FIELDS: folder / "a.hdf", LOG: folder / "a.log"}
 
 
 def test_each_kind_knows_its_own_files_and_no_other(made, tmp_path):
@@ -175,6 +179,24 @@ def test_a_full_disk_is_said_and_leaves_what_was_there(tmp_path):
         target.write(2000 * b"x")
     assert "a: File too large; it needs 2 kB; " in str(caught.value) and "B are free" in str(caught.value)
     assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
+
+
+def test_a_file_of_pieces_is_written_whole_or_not_at_all(tmp_path):
+    (tmp_path / "a").write_bytes(FOREIGN)
+    target = Target(tmp_path / "a", overwrite=True)
+
+    def failing():
+        yield b"one"
+        assert (tmp_path / "a").read_bytes() == FOREIGN
+        raise ValueError
+
+    with pytest.raises(ValueError):
+        target.write(failing())
+    with full_disk(100), pytest.raises(UnwritableArchive, match="a: File too large; .* are free"):
+        target.write(b"x" for _ in range(100_000))
+    assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
+    target.write(iter([b"one", b"two"]))
+    assert (tmp_path / "a").read_bytes() == b"onetwo" and os.listdir(tmp_path) == ["a"]
 
 
 def test_what_is_protected_is_kept(tmp_path, monkeypatch):

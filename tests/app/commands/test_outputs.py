@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 from support import HOME, SCENE, clean_environment, command
 
-from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PNG, Kind
+from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PNG, TABLE, Kind
 
 FOREIGN = b"precious"
 #: Each command with TARGET for what it is told to write to, and the kind of file that this is.
@@ -29,6 +29,7 @@ COMMANDS = {
     "log": (["run", "scene.toml", "-o", "other.h5", "--log", "TARGET"], LOG),
     "report": (["report", "in.h5", "-o", "TARGET"], PAGE),
     "fields": (["fields", "in.h5", "-o", "TARGET"], FIELDS),
+    "csv": (["csv", "in.h5", "-o", "TARGET"], TABLE),
     "plot": (["plot", "in.h5", "-o", "TARGET"], None),
     "figure": (["plot", "in.h5", "-o", "."], PNG),
 }
@@ -82,9 +83,21 @@ def made(archive, tmp_path_factory):
     assert command("init", "table1", "-o", "scene.toml", cwd=folder).returncode == 0
     done = command("run", "scene.toml", "-o", "a.h5", "--log", "a.log", cwd=folder)
     assert done.returncode == 0, done.stderr
-    for arguments in (("report", "a.h5"), ("plot", "a.h5"), ("fields", "in.h5", "-o", "a.hdf")):
+    for arguments in (
+        ("report", "a.h5"),
+        ("plot", "a.h5"),
+        ("fields", "in.h5", "-o", "a.hdf"),
+        ("csv", "a.h5", "-o", "a.csv"),
+    ):
         assert command(*arguments, cwd=folder).returncode == 0
-    own = {ARCHIVE: "a.h5", LOG: "a.log", PAGE: "a.html", PNG: "a_friction.png", FIELDS: "a.hdf"}
+    own = {
+        ARCHIVE: "a.h5",
+        LOG: "a.log",
+        PAGE: "a.html",
+        PNG: "a_friction.png",
+        FIELDS: "a.hdf",
+        TABLE: "a.csv",
+    }
     return folder, {kind: folder / name for kind, name in own.items()}
 
 

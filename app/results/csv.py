@@ -1,0 +1,102 @@
+"""Archives as comma-separated values: one tidy table, read and written some rows at a time."""
+
+import csv
+from collections.abc import Iterable, Iterator
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from galinx.app.errors import BadInput
+from galinx.app.results.si import Scaled, in_si
+from galinx.app.scene import read as scenes
+from galinx.postprocess.hdf5 import reader
+from galinx.postprocess.named import parameters
+from galinx.postprocess.quantities import Quantity, of_states, runs, table
+from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
+from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+
+#: Where states have values, and the word of output.quantities that asks for them, by table.
+TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}
+
+#: Rows held at once.
+_TOGETHER = 20_000
+
+
+def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]:
+    """A table as text, piece by piece, its heads with units first; NaN is an empty cell.
+
+    Args:
+        path: of an archive.
+        which: of ``TABLES``: a row a state, or a row for each point of each state.
+        si: stresses in Pa, positions in m and speeds in m/s.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
+        BadInput: it holds no such table.
+    """
+    where, word = TABLES[which]
+    with reader.opened(path) as archive:
+        rows = _rows(archive, where)
+        if where and not any(where in row.over for row in rows):
+            raise BadInput(
+                f"{path} holds no stresses for --{which}; a scene asks for them by "
+                f'output.quantities = ["{word}"]'
+            )
+        columns = _columns(archive, rows, si)
+        yield _text([["state", *(column.head for column in columns)]])
+        for numbers, data in _blocks(archive, rows, where):
+            cells = (_scaled(data[row.path], column.factor) for row, column in zip(rows, columns))
+            yield _text(zip(numbers, *cells))
+
+
+def _rows(archive: reader.Archive, where: str) -> list[Quantity]:
+    """What tells states apart, then positions, then all that has one value at each of them."""
+    first = parameters(archive.data)
+    there = [row for path, row in table().items() if path in archive.names and of_states(path)]
+    shapes = [(where,), (STATE, where)] if where else [(STATE,)]
+    others = (row for shape in shapes for row in there if row.over == shape and row.path not in first)
+    return [*first.values(), *others]
+
+
+def _columns(archive: reader.Archive, rows: list[Quantity], si: bool) -> list[Scaled]:
+    names = (row.path.partition("/")[2].replace("/", "_") for row in rows)
+    if not si:
+        return [Scaled(name, row.unit, 1.0) for name, row in zip(names, rows)]
+    scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
+    return [in_si(row, name, scene) for name, row in zip(names, rows)]
+
+
+def _blocks(
+    archive: reader.Archive, rows: list[Quantity], where: str
+) -> Iterator[tuple[list[int], dict[str, Any]]]:
+    """Numbers of states, and columns by path, of some rows of the table at a time."""
+    states = len(archive.data[SPEED.path])
+    points = next((len(archive.data[row.path]) for row in rows if row.over == (where,)), 1)
+    together = max(1, _TOGETHER // max(1, points))
+    for start in range(0, states, together):
+        some = slice(start, min(start + together, states))
+        data = archive.rows(some, [row.path for row in rows])
+        for first in range(0, points, _TOGETHER):
+            at = slice(first, min(first + _TOGETHER, points))
+            shape = some.stop - some.start, at.stop - at.start
+            columns = {
+                row.path: data[row.path][..., at] if where in row.over else data[row.path][:, None]
+                for row in rows
+            }
+            numbers = np.repeat(np.arange(some.start, some.stop), shape[1]).tolist()
+            yield numbers, {path: np.broadcast_to(one, shape).ravel() for path, one in columns.items()}
+
+
+def _scaled(values: Any, factor: float) -> list[Any]:
+    """Cells of a column; text stays."""
+    scaled = values if factor == 1.0 else factor * values
+    return ["" if value != value else value for value in scaled.tolist()]
+
+
+def _text(lines: Iterable[Iterable[Any]]) -> str:
+    text = StringIO()
+    csv.writer(text, lineterminator="\n").writerows(lines)  # which gives floats all their digits
+    return text.getvalue()

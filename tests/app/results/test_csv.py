@@ -1,0 +1,129 @@
+"""Archives as tables of comma-separated values."""
+
+import csv
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from support import command, computed
+
+from galinx.app.errors import BadInput
+from galinx.app.results import csv as tables
+from galinx.postprocess.hdf5 import reader
+
+MAP = {"X": [-2, 2, 5], "Y": [-2, -0.1, 4]}
+INSIDE = {
+    "solve.methods": ["closed_form"], "output.quantities": ["sif", "surface", "interior"],
+    "output.map": MAP, "motion.c": {"from": 0.0, "to": 0.6, "number": 3},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result():
+    return computed("tables4_5", INSIDE)
+
+
+@pytest.fixture(scope="module")
+def path(result, tmp_path_factory):
+    path = tmp_path_factory.mktemp("csv") / "a.h5"
+    result.save(path)
+    return path
+
+
+def read(path, *of):
+    """Columns by head, as texts."""
+    head, *rows = csv.reader("".join(tables.pieces(path, *of)).splitlines())
+    assert len(set(head)) == len(head)
+    return dict(zip(head, zip(*rows)))
+
+
+def numbers(column):
+    return np.array([float(cell or "nan") for cell in column])
+
+
+def test_a_row_a_state_has_what_tells_it_apart_first_and_all_digits(path, result):
+    found, data = read(path), result.data
+    heads = [
+        "state",
+        "c [1]",
+        "mu_c [1]",
+        "sigma0_over_load [1/m]",
+        "delta [1]",
+        "motion",
+        "X_over_L [1]",
+    ]
+    assert [*found][:8] == [*heads, "f [1]"]
+    assert found["state"] == tuple(map(str, range(len(data["states/f"]))))
+    assert found["motion"] == tuple(data["states/motion"])
+    for name in (name for name in data if name.startswith("states/") and name != "states/motion"):
+        (head,) = (head for head in found if head.startswith(f"{name[7:].replace('/', '_')} ["))
+        assert (numbers(found[head]) == data[name]).all(), name
+
+
+def test_a_row_for_each_state_and_point(path, result):
+    found, data = read(path, "surface"), result.data
+    stress, X = data["surface/closed_form/sigma_YY"], data["surface/X_over_a"]
+    assert stress.shape == (len(data["states/c"]), len(X))
+    assert np.array_equal(numbers(found["closed_form_sigma_YY [N/(2a)]"]), stress.ravel(), equal_nan=True)
+    assert "" in found["closed_form_sigma_YY [N/(2a)]"] and "nan" not in {*sum(found.values(), ())}
+    assert (numbers(found["X_over_a [1]"]) == np.tile(X, len(stress))).all()
+    assert (numbers(found["c [1]"]) == np.repeat(data["states/c"], len(X))).all()
+    assert (numbers(found["state"]) == np.repeat(np.arange(len(stress)), len(X))).all()
+
+
+def test_in_si(path, result):
+    data, scene = result.data, result.scene
+    a = scene.punch.profile.half_width
+    found = read(path, "inside", True)
+    assert [*found][7:] == [
+        "X [m]",
+        "Y [m]",
+        *(f"closed_form_sigma_{ij} [Pa]" for ij in ("XX", "YY", "XY")),
+    ]
+    stress = data["interior/closed_form/sigma_XY"] * scene.punch.load / (2 * a)
+    assert numbers(found["closed_form_sigma_XY [Pa]"]) == pytest.approx(stress.ravel(), rel=1e-14)
+    assert numbers(found["Y [m]"])[:20] == pytest.approx(a * data["interior/Y_over_a"], rel=1e-14)
+    assert set(numbers(found["speed [m/s]"])) == set(scene.solid.c_s * np.array([0.0, 0.3, 0.6]))
+    assert found["sigma0_over_load [1/m]"] == read(path, "inside")["sigma0_over_load [1/m]"]
+
+
+@pytest.mark.parametrize("which", ["states", "surface", "inside"])
+@pytest.mark.parametrize("together", [1, 7, 45, 10**6])
+def test_few_rows_are_read_and_written_at_once(path, which, together, monkeypatch):
+    whole = "".join(tables.pieces(path, which))
+    asked, rows = [], reader.Archive.rows
+
+    def recorded(self, some, names):
+        asked.append((some, {name.split("/")[0] for name in names}))
+        return rows(self, some, names)
+
+    monkeypatch.setattr(reader.Archive, "rows", recorded)
+    monkeypatch.setattr(tables, "_TOGETHER", together)
+    head, *pieces = tables.pieces(path, which)
+    assert head.count("\n") == 1 and all(1 <= piece.count("\n") <= together for piece in pieces)
+    assert head + "".join(pieces) == whole
+    assert all(one.stop == other.start for (one, _), (other, _) in pairwise(asked))
+    others = {"surface", "interior"} - {{"inside": "interior"}.get(which, which)}
+    assert not any(sections & others for _, sections in asked)
+
+
+def test_what_an_archive_does_not_hold_is_said(tmp_path):
+    few = {"solve.methods": ["closed_form"], "output.quantities": ["sif"]}
+    computed("tables4_5", few).save(tmp_path / "a.h5")
+    with pytest.raises(BadInput, match=r'--inside; a scene asks for them .* = \["interior"\]'):
+        "".join(tables.pieces(tmp_path / "a.h5", "inside"))
+
+
+def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
+    printed, output = command("csv", path, "--surface"), tmp_path / "a.csv"
+    assert printed.returncode == 0 and printed.stdout == "".join(tables.pieces(path, "surface"))
+    for _ in range(2):  # its own is made again
+        assert command("csv", path, "--surface", "-o", output).returncode == 0
+    assert output.read_text(encoding="utf-8") == printed.stdout
+    assert command("csv", path, "--si", "-o", output).returncode == 0
+    assert command("csv", path, "-o", output).returncode == 0
+    output.write_text("state,mine\n", encoding="utf-8")
+    refused = command("csv", path, "-o", output)
+    assert refused.returncode == 2 and "is not a table of galinx" in refused.stderr
+    both = command("csv", path, "--surface", "--inside")
+    assert both.returncode == 2 and "--surface and --inside exclude each other" in both.stderr

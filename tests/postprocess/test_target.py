@@ -192,7 +192,7 @@ def test_a_file_of_pieces_is_written_whole_or_not_at_all(tmp_path):
 
     with pytest.raises(ValueError):
         target.write(failing())
-    with full_disk(100), pytest.raises(UnwritableArchive, match="a: File too large; .* are free"):
+    with full_disk(100), pytest.raises(UnwritableArchive, match=r"a: File too large; .* are free"):
         target.write(b"x" for _ in range(100_000))
     assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
     target.write(iter([b"one", b"two"]))

@@ -41,14 +41,14 @@ GRADED = MeshKind(
     place=image,
     fan=True,
     innermost=1.0 / 150.0,
-    beside=8.0,
+    beside=6.0,
     gentle=1.0,
     smallest=1e-5,
 )
 
 BOX = MeshKind(
     "the block of the study, with walls at 100 a", Physical(), ratio=0.5, column=0.7, place=box, fan=True,
-    beside=8.0, gentle=1.0, smallest=1e-5, walls=BOX_DEPTH,
+    beside=6.0, gentle=1.0, smallest=1e-5, walls=BOX_DEPTH,
 )  # fmt: skip
 
 MESHES.register("graded", GRADED)

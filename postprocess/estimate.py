@@ -31,6 +31,9 @@ class Rate:
     least: float = 0.0
 
 
+#: Differences of less than so many times what rounding is seen to do are rounding.
+_NOISE = 10.0
+
 #: Ratio of successive differences below which those of derivatives are not believed: what one cell does
 #: at the places that are looked at is not what the next one does.
 _ERRATIC = 0.1
@@ -42,7 +45,7 @@ def of_degrees(order: int) -> Rate:
     Args:
         order: 2 for resultants and moments, 1 for derivatives.
     """
-    return Rate(0.16, 0.16) if order == 2 else Rate(0.33, 0.33, _ERRATIC)
+    return Rate(0.16, 0.16) if order == 2 else Rate(0.45, 0.45, _ERRATIC)
 
 
 def of_cuts(degree: int, order: int) -> Rate:
@@ -57,7 +60,11 @@ def of_cuts(degree: int, order: int) -> Rate:
 
 
 def remaining(
-    first: NDArray, second: NDArray, sample: tuple[NDArray, NDArray], rate: Rate
+    first: NDArray,
+    second: NDArray,
+    sample: tuple[NDArray, NDArray],
+    rate: Rate,
+    rounding: float = 0.0,
 ) -> NDArray[np.float64]:
     """What is left of the errors after two successive differences, by a geometric series.
 
@@ -69,6 +76,7 @@ def remaining(
         first, second: successive differences of each state, (states,).
         sample: the same of states that stand for all of them.
         rate: that is counted on.
+        rounding: of which a few times are no difference that could be summed.
 
     Returns:
         Errors of the last level, (states,).
@@ -79,4 +87,5 @@ def remaining(
     own = second / np.maximum(first, TYPICAL * largest)
     ρ = np.maximum(common, own)
     ρ = np.minimum(np.where(ρ > rate.believed, ρ, rate.usual), SLOWEST)
-    return SAFETY * second * ρ / (1.0 - ρ)
+    left = np.where(second > _NOISE * rounding, ρ / (1.0 - ρ), np.minimum(ρ / (1.0 - ρ), 1.0))
+    return SAFETY * second * left

@@ -83,7 +83,7 @@ class MeasuredError:
     def _errors(self, levels: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(levels[-1], g)
         return {
-            word: remaining(*pair, self._sample[word], self._rate(word))
+            word: remaining(*pair, self._sample[word], self._rate(word), self._rounding[word])
             + unseen[word]
             + _ROUNDING * self._rounding[word]
             for word, pair in _changes(levels).items()
@@ -101,7 +101,7 @@ class MeasuredError:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
         plan, margin = self._ladder.work.plan, self._ladder.task.response.margin
         kind, wanted = plan.kind, plan.wanted
-        far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted)
+        far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted, self._ladder.degree)
         # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
         of_edges = 2.4 * np.abs(g) + 1.3 * far
         found = {}
@@ -109,7 +109,7 @@ class MeasuredError:
             if gauge.word == INTENSITIES:
                 found[gauge.word] = innermost + far * of_edges
             else:
-                of_places = 0.4 + 3.0 / gauge.scale.min(axis=1)
+                of_places = 0.6 + 4.0 / gauge.scale.min(axis=1)
                 found[gauge.word] = innermost + kind.unseen_beside(wanted) + far * (of_edges + of_places)
         return found
 

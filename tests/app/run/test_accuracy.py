@@ -153,7 +153,8 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     """At 0.9995 c_R residuals are up to 1e-7 of the forces, which says nothing of K_I."""
     c = 0.9995 * Isotropic(1.0, ν, 1.0).limit()
     changes = {"solid.nu": ν, "motion.c": c, "friction.mu_c": 0.5, "motion.strokes": ["forward"]}
-    result = computed("tables4_5", changes)
+    result = computed("tables4_5", changes | {"output.quantities": ["sif"]})
     true, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
     assert result.verdict == "PASS" and (true <= estimate).all()
-    assert disagreement(result)["sigma_XX"] <= 1e-6
+    found = disagreement(computed("tables4_5", changes | {"solve.tolerance": 1e-5}))
+    assert found["sigma_XX"] <= found["estimate of sigma_XX"] <= 1e-5

@@ -3,6 +3,7 @@
 import io
 import json
 import logging
+import os
 import re
 import sys
 
@@ -83,6 +84,11 @@ def test_messages_are_plain(arguments, monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene.toml").write_text("[solid]\n'a\x9b\u202e' = '\u2066'\n", encoding="utf-8")
     monkeypatch.setattr(sys, "argv", ["galinx", *arguments])
+
+    def leave(status):
+        raise SystemExit(status)
+
+    monkeypatch.setattr(os, "_exit", leave)
     with pytest.raises(SystemExit) as ended:
         run_from_shell()
     out, err = capsys.readouterr()

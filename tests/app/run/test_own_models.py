@@ -46,7 +46,7 @@ def test_finite_elements_and_collocation_agree_on_a_profile(c, monkeypatch):
     left, right = (data[f"states/closed_form/K_I_{side}"] for side in ("left", "right"))
     assert (left - right).max() > 4e-3, "the higher edge carries less"
     assert "states/closed_form/K_I" not in data and "states/fem/slope_under_punch" not in data
-    assert result.comparisons["σ_YY pointwise for 1 - |X/a| >= 1e-4, relative"] <= 1e-5
+    assert result.comparisons["σ_YY pointwise, relative"] <= 1e-5
     assert result.comparisons["σ_XX for |1 - |X/a|| >= 1e-2, over its largest value there"] <= 1e-4
 
 

@@ -103,7 +103,7 @@ class MeasuredError:
         kind, wanted = plan.kind, plan.wanted
         far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted, self._ladder.degree)
         # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
-        of_edges = 2.4 * np.abs(g) + 1.3 * far
+        of_edges = 2.8 * np.abs(g) + 1.8 * far
         found = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:

@@ -156,5 +156,4 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     result = computed("tables4_5", changes | {"output.quantities": ["sif"]})
     true, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
     assert result.verdict == "PASS" and (true <= estimate).all()
-    found = disagreement(computed("tables4_5", changes | {"solve.tolerance": 1e-5}))
-    assert found["sigma_XX"] <= found["estimate of sigma_XX"] <= 1e-5
+    assert disagreement(computed("tables4_5", changes))["sigma_XX"] <= 2e-6

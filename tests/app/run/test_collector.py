@@ -62,9 +62,15 @@ def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypat
     """Interrupted after the first part, then gone on with."""
     monkeypatch.setattr(collector, "_PATIENCE", 1e9)
     scene, target = template("tables4_5", MANY), tmp_path / "a.h5"
-    with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
-        journal.stop()
-        compute(scene, Memory(), None, journal)
+
+    def once(self, part, keep=Journal.keep):
+        keep(self, part)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(Journal, "keep", once)
+        with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
+            compute(scene, Memory(), None, journal)
     solved, states = [], collector.Collector.take
     monkeypatch.setattr(
         collector.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)

@@ -175,7 +175,7 @@ RULES: Registry[Rule] = Registry(
             (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure, tolerances=1.0,
         ),
         "sigma_XX": Rule(
-            "σ_XX pointwise, over the larger of itself and the largest",
+            "σ_XX pointwise, over itself or the largest",
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
         ),
         "estimate of sigma_XX": Rule(
@@ -183,7 +183,7 @@ RULES: Registry[Rule] = Registry(
             tolerances=1.0, own_pressure=True,
         ),
         "stresses inside": Rule(
-            "stresses inside, over the larger of themselves and the largest",
+            "stresses inside, over themselves or the largest",
             (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM], at.INSIDE_X, at.INSIDE_Y),
             _inside, tolerances=1.0, own_pressure=True,
         ),

@@ -16,6 +16,10 @@ _CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
 _LONGEST = 10_000
 
 
+#: The value of a key that is to be taken away, and has to be there.
+UNSET = object()
+
+
 def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any]:
     """Changes as the command line gives them: ``section.key=value``, the value as in TOML.
 
@@ -46,7 +50,7 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
     for key in unset:
         if key in changes:
             raise BadInput(f"--set and --unset {short(key)} exclude each other; keep one")
-    return changes | dict.fromkeys(unset)
+    return changes | dict.fromkeys(unset, UNSET)
 
 
 def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
@@ -54,8 +58,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
     Args:
         text: TOML.
-        changes: new values by ``"section.key"``, or ``"title"``; None takes a key of the scene away,
-            and ``"solid.material"`` the constants that are not among the changes.
+        changes: new values by ``"section.key"``, or ``"title"``; None takes a key away if it is there,
+            ``UNSET`` one that has to be, and ``"solid.material"`` the constants not among the changes.
         name: stands in messages.
 
     Raises:
@@ -68,9 +72,9 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
             old = (path for path in _CONSTANTS if path in known)
             changes = dict.fromkeys(old) | dict(changes)
         for path, value in changes.items():
-            if value is None and path not in known:
+            if value is UNSET and path not in known:
                 raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, known)}")
-            _change(tree, path, value)
+            _change(tree, path, None if value is UNSET else value)
         return tomlkit.dumps(tree)
     except (TOMLKitError, ValueError, TypeError) as error:
         raise BadInput(f"{name} cannot be changed: {error}") from None

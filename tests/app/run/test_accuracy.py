@@ -148,6 +148,9 @@ def test_a_pressure_that_pulls_fails():
     assert told in result.attributes["verdict_reasons"]
 
 
+_IN_PLANE = ("X_over_a", "fem/sigma_XX", "closed_form/sigma_XX")
+
+
 @pytest.mark.parametrize("ν", [-0.9, 0.45, 0.48, 0.5])
 def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     """At 0.9995 c_R residuals are up to 1e-7 of the forces, which says nothing of K_I."""
@@ -156,4 +159,7 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     result = computed("tables4_5", changes | {"output.quantities": ["sif"]})
     true, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
     assert result.verdict == "PASS" and (true <= estimate).all()
-    assert disagreement(computed("tables4_5", changes))["sigma_XX"] <= 2e-6
+    data = computed("tables4_5", changes).data
+    X, found, exact = (data[f"surface/{name}"] for name in _IN_PLANE)
+    off = np.abs(1.0 - np.abs(X)) >= 1e-2
+    assert np.abs(found - exact)[:, off].max() <= 1e-6 * np.abs(exact)[:, off].max()

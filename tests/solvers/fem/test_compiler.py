@@ -165,7 +165,7 @@ def test_nobody_waits_for_what_a_killed_run_left(cache):
 def test_no_compiler(cache, monkeypatch):
     tools = cache / "bin"
     tools.mkdir()
-    for name in ("bash", "env", "dirname", "sed", "grep", "dpkg-query", "id", "cat", "readlink"):
+    for name in ("bash", "env", "nproc", "dirname", "sed", "grep", "dpkg-query", "id", "cat", "readlink"):
         for folder in ("/bin", "/usr/bin"):
             if os.path.exists(f"{folder}/{name}") and not (tools / name).exists():
                 (tools / name).symlink_to(f"{folder}/{name}")

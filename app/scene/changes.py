@@ -74,7 +74,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         for path, value in changes.items():
             if value is UNSET and path not in known:
                 raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, known)}")
-            _change(tree, path, None if value is UNSET else value)
+            if value is not None or path in known:
+                _change(tree, path, None if value is UNSET else value)
         return tomlkit.dumps(tree)
     except (TOMLKitError, ValueError, TypeError) as error:
         raise BadInput(f"{name} cannot be changed: {error}") from None

@@ -99,7 +99,8 @@ class MeshKind:
         """Refinement that reaches what is wanted with :meth:`degree`."""
         ratio, sectors = self.ratio, self.sectors
         if wanted.nearest is not None and self._of_cells(wanted) < self.gentle:
-            ratio, sectors = ratio**_GENTLER, sectors + 1
+            # An even number puts a vertex into the corners of walls.
+            ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.

@@ -75,7 +75,8 @@ def _of_plan(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     given = {"title": scene.title, "load": scene.punch.load, "rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if attributes[name] != value:
-            yield f"{name} says {attributes[name]!r}, its scene gives {value!r}"
+            found = np.asarray(attributes[name]).item()  # as Python writes it
+            yield f"{name} says {found!r}, its scene gives {value!r}"
     for name, positions in plan.positions.items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"

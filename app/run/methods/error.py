@@ -1,19 +1,43 @@
 """The error of finite elements, measured on solutions of lower degree, and the degree it asks for."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.plan.task import Task
+from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.estimate import Rate, of_cuts, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.solvers.fem.space import Space
 
 #: What rounding does, over what of it breaks the mirror image.
 _ROUNDING = 2.0
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
+
+
+@contextmanager
+def climbed(
+    work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
+) -> Iterator[tuple[Ladder, "MeasuredError"]]:
+    """A ladder whose degree was raised until the measured error is within tolerance; it is freed at last.
+
+    Args:
+        work, task, solved: of the :class:`Ladder`.
+        g: the speed's values of σ_XY/σ_YY, sorted.
+    """
+    ladder = Ladder(work, task, solved)
+    try:
+        yield ladder, climb(ladder, g)
+    finally:
+        ladder.destroy()
 
 
 def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.solvers.fem.space import Space
@@ -24,12 +24,8 @@ from galinx.solvers.solution import Surface
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    ladder = Ladder(work, task, lambda space, g: LoadsAtDegree(work, task, space, g))
-    try:
-        error = climb(ladder, g)
+    with climbed(work, task, g, lambda space, g: LoadsAtDegree(work, task, space, g)) as (ladder, error):
         yield LoadsAtSpeed(ladder, error)
-    finally:
-        ladder.destroy()
 
 
 @contextmanager

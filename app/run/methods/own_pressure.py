@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.ladder import Ladder
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
@@ -26,12 +26,8 @@ from galinx.solvers.solution import Surface
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressureAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    ladder = Ladder(work, task, lambda space, _: PiecesLevel(work, task, space))
-    try:
-        error = climb(ladder, g)
+    with climbed(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (ladder, error):
         yield OwnPressureAtSpeed(ladder, error)
-    finally:
-        ladder.destroy()
 
 
 @contextmanager

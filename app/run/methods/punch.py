@@ -13,7 +13,7 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climb
+from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.postprocess.pressure import JacobiPressure, contact_recovery, from_moments
@@ -30,12 +30,8 @@ NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    ladder = Ladder(work, task, lambda space, g: PunchLevel(work, task, space, g))
-    try:
-        error = climb(ladder, g)
+    with climbed(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
         yield PunchesAtSpeed(ladder, error)
-    finally:
-        ladder.destroy()
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from mpi4py import MPI
 from support import space_on
 
 from galinx import template
+from galinx.app.results import paraview
 from galinx.app.results.paraview import state_field, write_field
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.punch import SlidingPunch
@@ -44,8 +45,11 @@ def by_place(points, quads, data):
     return [values[quads].mean(axis=1)[order] for values in (points, *data)]
 
 
-def test_rank_0_writes_what_all_ranks_have(tmp_path):
+def test_rank_0_writes_what_all_ranks_have(tmp_path, monkeypatch):
     path, scene = tmp_path / "state.hdf", template("tables4_5")
+    # One solution for both: what rounding does next to an edge differs from run to run on two ranks.
+    found = paraview._sampled(paraview._state(scene, 0, 2.0, 5), 2.0)
+    monkeypatch.setattr(paraview, "_sampled", lambda *_: found)
     write_field(scene, 0, path, extent=2.0, degree=5)
     whole = state_field(scene, 0, extent=2.0, degree=5)
     assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)
@@ -62,4 +66,4 @@ def test_rank_0_writes_what_all_ranks_have(tmp_path):
             root["Points"][:, :2], quads, [root[f"PointData/{name}"][:] for name in whole.data]
         )
     for a, b in zip(by_place(whole.points, whole.quads, whole.data.values()), written):
-        np.testing.assert_allclose(b, a, rtol=1e-6, atol=1e-8 * np.nanmax(np.abs(a)))
+        np.testing.assert_allclose(b, a, rtol=1e-12, atol=1e-12 * np.nanmax(np.abs(a)))

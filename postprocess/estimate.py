@@ -1,5 +1,6 @@
-"""Error of a finite element result, measured on results of lower degree, no exact solution used."""
+"""Error of a finite element result, measured on results of other degrees, no exact solution used."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,21 +49,10 @@ def of_degrees(order: int) -> Rate:
     return Rate(0.16, 0.16) if order == 2 else Rate(0.45, 0.45, _ERRATIC)
 
 
-def of_cuts(degree: int, order: int) -> Rate:
-    """Where cells are halved: 2 to the power -(order · degree), and a few times that to be counted on.
-
-    Args:
-        degree: polynomial degree.
-        order: 2 for resultants and moments, 1 for derivatives.
-    """
-    halved = 2.0 ** (-order * degree)
-    return Rate(3.5 * halved, min(16.0 * halved, 0.25))
-
-
 def remaining(
     first: NDArray,
     second: NDArray,
-    sample: tuple[NDArray, NDArray],
+    sample: Sequence[NDArray],
     rate: Rate,
     rounding: float = 0.0,
 ) -> NDArray[np.float64]:
@@ -89,3 +79,8 @@ def remaining(
     ρ = np.minimum(np.where(ρ > rate.believed, ρ, rate.usual), SLOWEST)
     left = np.where(second > _NOISE * rounding, ρ / (1.0 - ρ), np.minimum(ρ / (1.0 - ρ), 1.0))
     return SAFETY * second * left
+
+
+def before(difference: NDArray, rate: Rate) -> NDArray[np.float64]:
+    """The errors of a level from its differences from the next one, (states,), with ``SAFETY``."""
+    return SAFETY * difference / (1.0 - rate.usual)

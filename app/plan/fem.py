@@ -20,6 +20,9 @@ from galinx.solvers.solution import Places
 #: Distance over a from a punch edge that no mesh resolves: rounding of positions.
 _NEAREST = 1e-12
 
+#: Cuts from which half of them, at one degree more, are no worse than all of them.
+_MANY = 8
+
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
 
@@ -67,7 +70,7 @@ class FemPlan:
     @property
     def size(self) -> int:
         """Unknowns of the largest system, about the same without building the mesh."""
-        return _size(self.refinement, self.cuts * max(self.degrees))
+        return _size(self.refinement, _largest(max(self.degrees), self.cuts, self.fixed))
 
     @property
     def memory(self) -> float:
@@ -101,7 +104,7 @@ def plan_fem(
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
     )
-    size = _size(refinement, solve.cuts * max(degrees))
+    size = _size(refinement, _largest(max(degrees), solve.cuts, solve.degree is not None))
     shared = shares_speeds(size, len(responses))
     solver = solve.solver
     if mixed or solver == "auto":
@@ -146,6 +149,18 @@ def _check_degree_and_solver(scene: Scene) -> None:
             f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
             "with an unknown pressure the matrix is indefinite"
         )
+
+
+def levels(degree: int, cuts: int, fixed: bool) -> list[tuple[int, int]]:
+    """Degrees and cuts to solve with, the one that is wanted at last; the others measure its error."""
+    if fixed:
+        return [(degree + 1, cuts // 2 if cuts >= _MANY else cuts), (degree, cuts)]
+    return [(degree - 2, cuts), (degree - 1, cuts), (degree, cuts)]
+
+
+def _largest(degree: int, cuts: int, fixed: bool) -> int:
+    """Degree times cuts of the largest of these."""
+    return max(p * k for p, k in levels(degree, cuts, fixed))
 
 
 def _size(refinement: Refinement, p: int) -> int:

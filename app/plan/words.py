@@ -2,7 +2,7 @@
 
 from galinx.app import ranks
 from galinx.app.plan import cost
-from galinx.app.plan.fem import FemPlan, unknowns
+from galinx.app.plan.fem import FemPlan, levels, unknowns
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
@@ -32,7 +32,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     cells = len(pattern.cells) * fem.cuts**2
     result = [f"mesh: {scene.solve.mesh}, {cells} quadrilaterals, shared by all speeds"]
     pressure = " and those of a pressure" * scene.solid.nearly_incompressible
-    lower = "half and a quarter of the cuts" if fem.fixed else "lower degree"
+    others = "one of a higher degree measures" if fem.fixed else "two of lower degree measure"
     solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"
     speeds: dict[int, list[str]] = {}
     for task, degree in zip(plan.tasks, fem.degrees):
@@ -40,7 +40,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     result += [
         f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
         f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; at each speed {solver} serves all "
-        f"states, two of {lower} measure its error"
+        f"states, {others} its error"
         for degree, some in speeds.items()
     ]
     if ranks.size() > 1:
@@ -59,18 +59,15 @@ def expense(plan: Plan) -> str:
         memory = cost.bytes_without_fem(plan.states, plan.chunk * plan.numbers)
         return f"about {seconds:.2g} s and {memory / 1e9:.1g} GB"
     mesh = fem.pattern
-    if fem.fixed:
-        levels = [(p, fem.cuts // k) for p in fem.degrees for k in (4, 2, 1)]
-    else:
-        levels = [(p, 1) for degree in fem.degrees for p in range(degree - 2, degree + 1)]
+    solved = [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
     direct = fem.solver == "direct"
     seconds = sum(
-        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct) for p, k in levels
+        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct) for p, k in solved
     )
     speeds, states = seconds / ranks.size(), cost.STATE * plan.states
     highest = max(fem.degrees)
     together = 1 if fem.shared_speeds else ranks.size()
-    most = unknowns(mesh, fem.cuts * highest) / together
+    most = unknowns(mesh, max(p * k for p, k in solved)) / together
     memory = cost.bytes_of(most, highest, direct, CHUNK_NUMBERS)
     parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
     total = cost.START + speeds + states

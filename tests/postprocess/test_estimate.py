@@ -27,6 +27,8 @@ def test_a_faster_fall_than_is_believed_counts_as_the_usual_one():
         np.testing.assert_allclose(left, estimate.SAFETY * second * counted / (1.0 - counted))
 
 
-def test_halved_cells_gain_by_their_degree():
-    assert estimate.of_cuts(4, 2).usual == 3.5 * 2.0**-8
-    assert estimate.of_cuts(4, 1).usual == 3.5 * 2.0**-4
+def test_a_level_is_off_by_what_the_better_one_changed_and_what_is_left_of_that():
+    """With errors that fall by the usual ratio, twice the error itself."""
+    error = np.array([0.3, 0.1])
+    found = estimate.before(error - 0.16 * error, estimate.of_degrees(2))
+    np.testing.assert_allclose(found, estimate.SAFETY * error)

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import levels
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import Rate, of_cuts, of_degrees, remaining
+from galinx.postprocess.estimate import before, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
@@ -47,12 +49,9 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
         ladder: without a level.
         g: the speed's values of σ_XY/σ_YY, sorted.
     """
-    plan, top = ladder.work.plan, ladder.degree
-    for step in (2, 1, 0):
-        if plan.fixed:
-            ladder.add(g, top, plan.cuts >> step)
-        else:
-            ladder.add(g, top - step)
+    plan = ladder.work.plan
+    for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
+        ladder.add(g, degree, cuts)
     probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
     error = MeasuredError(ladder, probes)
     changes = dict(error.changes)
@@ -65,10 +64,10 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
 
 
 class MeasuredError:
-    """How far the last of three levels is off, by what changed from level to level.
+    """How far the last level is off, by what changed from level to level.
 
     Args:
-        ladder: with three levels.
+        ladder: with three levels of rising degree; or with a better one than the last, of a fixed degree.
         probes: values of σ_XY/σ_YY that stand for all of the speed.
 
     Attributes:
@@ -78,19 +77,19 @@ class MeasuredError:
 
     def __init__(self, ladder: Ladder, probes: NDArray) -> None:
         self._ladder = ladder
-        levels = self._measured(probes)
-        self._sample = _changes(levels)
+        found = self._measured(probes)
+        self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
-                found = (float(pair[i].max()) for pair in self._sample.values())
-                self.changes[degree] = max(found, default=0.0)
-        tolerance, unseen = ladder.work.plan.tolerance, self._unseen(levels[-1], probes)
+                pairs = (float(pair[i].max()) for pair in self._sample.values())
+                self.changes[degree] = max(pairs, default=0.0)
+        tolerance, unseen = ladder.work.plan.tolerance, self._unseen(found[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         self.excessive = any(
             bool((error > np.maximum(tolerance, 1.1 * unseen[name])).any())
-            for name, error in self._errors(levels, probes).items()
+            for name, error in self._errors(found, probes).items()
         )
 
     def record(self) -> dict[str, list[float]]:
@@ -104,42 +103,45 @@ class MeasuredError:
         """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
         return self._errors(self._measured(g), g)
 
-    def _errors(self, levels: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
-        unseen = self._unseen(levels[-1], g)
+    def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
+        unseen = self._unseen(found[-1], g)
         return {
-            word: remaining(*pair, self._sample[word], self._rate(word), self._rounding[word])
-            + unseen[word]
-            + _ROUNDING * self._rounding[word]
-            for word, pair in _changes(levels).items()
+            word: self._left(word, changes) + unseen[word] + _ROUNDING * self._rounding[word]
+            for word, changes in _changes(found).items()
         }
 
-    def _rate(self, word: str) -> Rate:
-        ladder = self._ladder
-        order = 2 if word == INTENSITIES else 1
-        return of_cuts(ladder.degree, order) if ladder.work.plan.fixed else of_degrees(order)
+    def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
+        """Estimated relative errors that the levels show, (states,)."""
+        rate = of_degrees(2 if word == INTENSITIES else 1)
+        if self._ladder.work.plan.fixed:
+            return before(changes[0], rate)
+        return remaining(*changes, self._sample[word], rate, self._rounding[word])
 
     def _measured(self, g: NDArray) -> list[list[Gauge]]:
         return [level.measured(g) for level in self._ladder.levels]
 
     def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
-        plan, margin = self._ladder.work.plan, self._ladder.task.response.margin
-        kind, wanted = plan.kind, plan.wanted
+        plan, response = self._ladder.work.plan, self._ladder.task.response
+        kind, wanted, margin = plan.kind, plan.wanted, response.margin
         far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted, self._ladder.degree)
-        # Measured at far boundaries of 100 a and 300 a; see docs/verification.md.
-        of_edges = 2.8 * np.abs(g) + 1.8 * far
+        # Measured at far boundaries of 100 a and 1e4 a; see docs/verification.md. n times the margin is
+        # about the surface's compliance at rest, 1/2 to 10 for the solids that were tried.
+        compliance = 2.0 + 0.55 * float(np.log(4.0 * response.n * margin))
+        of_edges = compliance * np.abs(g) + 1.8 * far
         found = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:
                 found[gauge.word] = innermost + far * of_edges
             else:
-                of_places = 0.6 + 4.0 / gauge.scale.min(axis=1)
+                of_places = compliance * (0.3 + 1.9 / gauge.scale.min(axis=1)) / margin ** (1.0 / 6.0)
                 found[gauge.word] = innermost + kind.unseen_beside(wanted) + far * (of_edges + of_places)
         return found
 
 
-def _changes(levels: list[list[Gauge]]) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Largest changes of each state from the first level to the second, and to the last."""
+def _changes(levels: list[list[Gauge]]) -> dict[str, list[NDArray[np.float64]]]:
+    """Largest changes of each state, (states,), from each level to the next, by word."""
     return {
-        fine.word: (middle.change(coarse), fine.change(middle)) for coarse, middle, fine in zip(*levels)
+        gauges[0].word: [late.change(early) for early, late in pairwise(gauges)]
+        for gauges in zip(*levels)
     }

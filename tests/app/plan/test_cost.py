@@ -67,7 +67,7 @@ def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     plan = make_plan(scene)
     assert plan.fem.solver == "multigrid" and not plan.warnings
     assert any(
-        "conjugate gradients" in line and "half and a quarter" in line for line in lines(scene, plan)
+        "conjugate gradients" in line and "one of a higher degree" in line for line in lines(scene, plan)
     )
 
 

@@ -19,11 +19,12 @@ def test_the_error_falls_at_twice_the_rate_of_the_energy_norm():
     assert np.all(coarse / fine > 0.8 * 2**4)
 
 
-@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 4), (4, 4)])
+@pytest.mark.parametrize("degree, cuts", [(2, 16), (3, 4), (4, 4), (3, 1), (2, 9)])
 def test_the_estimate_covers_the_true_error(degree, cuts):
     data = cut(degree, cuts, 0.9)
-    assert np.all(data["states/fem/true_error"] <= data["states/fem/estimate"])
-    assert list(data["run/fem/factorisations"]) == [3]
+    ratio = data["states/fem/estimate"] / data["states/fem/true_error"]
+    assert np.all((1.0 <= ratio) & (ratio <= 100.0))
+    assert list(data["run/fem/factorisations"]) == [2]
     assert "run/fem/change_by_degree" not in data
 
 

@@ -30,8 +30,8 @@ def unavailable(error: ImportError) -> str:
     """What to do where a library is missing, or is there and cannot be loaded."""
     if isinstance(error, ModuleNotFoundError):
         return (
-            f"{error.name} is not installed for {sys.executable}; "
-            "./run.sh in galinx's folder installs what is missing, or see its docs/install.md"
+            f"{error.name} is not installed for {sys.executable}; in galinx's folder ./run.sh installs "
+            "what is missing on Debian, pip install '.[fem]' elsewhere; see docs/install.md there"
         )
     return f"a library cannot be loaded: {error}"
 

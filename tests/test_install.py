@@ -110,3 +110,40 @@ def test_the_command_is_declared(names_and_site):
     _, site = names_and_site
     told = next(Path(site).glob("*.dist-info/entry_points.txt")).read_text(encoding="utf-8")
     assert "galinx = galinx.__main__:main" in told
+
+
+def test_a_container_gets_what_the_command_needs(tmp_path):
+    """The files that .dockerignore lets through, run as the Dockerfile does."""
+    taken = [
+        line[1:] for line in (HOME / ".dockerignore").read_text().splitlines() if line.startswith("!")
+    ]
+    for name in taken:
+        copy = shutil.copytree if (HOME / name).is_dir() else shutil.copy
+        copy(HOME / name, tmp_path / name, **({"symlinks": True} if copy is shutil.copytree else {}))
+    words = [
+        line.split(maxsplit=1)
+        for line in (HOME / "Dockerfile").read_text().splitlines()
+        if line[:1] > "@"
+    ]
+    told = {word: rest for word, rest in words}
+    assert [word for word, _ in words] == ["FROM", "COPY", "RUN", "ENV", "WORKDIR", "ENTRYPOINT", "CMD"]
+    home = told["COPY"].split()[1]
+    for line in (
+        told["RUN"].split(" && ")[0],
+        f"PATH={home}/bin:$PATH galinx run {home}/scenes/table1.toml",
+    ):
+        line = line.replace(home, str(tmp_path))
+        done = subprocess.run(["bash", "-c", line], cwd=tmp_path, env=clean_environment(), timeout=60)
+        assert done.returncode == 0
+
+
+@pytest.mark.skipif(
+    not shutil.which("docker") or subprocess.run(["docker", "info"], capture_output=True).returncode != 0,
+    reason="no docker",
+)
+def test_a_container_is_built():
+    subprocess.run(["docker", "build", "-t", "galinx", str(HOME)], check=True)
+    told = subprocess.run(
+        ["docker", "run", "--rm", "galinx", "--version"], capture_output=True, text=True
+    )
+    assert told.stdout.startswith("galinx")

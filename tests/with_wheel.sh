@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The tests that meet dolfinx, with that of PyPI (0.11, MPICH of its own), in a virtual environment.
+# The tests that meet dolfinx, with that of PyPI (0.11, MPICH of its own), in a virtual environment, that
+# is made and first used as docs/install.md says: without finite elements, then with them.
 #   tests/with_wheel.sh [FOLDER]       default: a folder in the user's cache
 # Says that it is skipped, and ends well, where no Python of 3.12 or newer is found.
 set -euo pipefail
@@ -23,8 +24,17 @@ if ! cmp --silent "$home/pyproject.toml" "$folder/made_for.toml"; then
     echo "skipped: the wheel of dolfinx needs Python 3.12 or newer, none was found"
     exit 0
   fi
-  "$found" -m venv "$folder"
-  "$folder/bin/pip" install --quiet "dolfinx-solver-real==0.11.*" mpi4py gmsh "$home[test,docs]"
+  "$found" -m venv --clear "$folder"
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  cd "$work"
+  "$folder/bin/pip" install --quiet "$home"
+  "$folder/bin/galinx" init tables4_5
+  "$folder/bin/galinx" run tables4_5.toml --set 'solve.methods = ["closed_form"]'
+  "$folder/bin/pip" install --quiet "$home[fem]"
+  "$folder/bin/galinx" paper
+  cd "$home"
+  "$folder/bin/pip" install --quiet "$home[test,docs]"
   "$folder/bin/pip" uninstall --quiet --yes galinx
   cp "$home/pyproject.toml" "$folder/made_for.toml"
 fi

@@ -115,7 +115,8 @@ class MeasuredError:
         rate = of_degrees(2 if word == INTENSITIES else 1)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
-        return remaining(*changes, self._sample[word], rate, self._rounding[word])
+        first, second = changes
+        return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
     def _measured(self, g: NDArray) -> list[list[Gauge]]:
         return [level.measured(g) for level in self._ladder.levels]

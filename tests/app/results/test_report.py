@@ -1,13 +1,18 @@
 """Pages that are made of results."""
 
+import html
+import json
 import re
 import shutil
 import subprocess
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 
 from galinx import compute, template
+from galinx.app.results.tabulated import states_table
+from galinx.postprocess.page.symbols import markup
 
 CHROMIUM = shutil.which("chromium")
 
@@ -29,7 +34,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag, attributes):
         values = dict(attributes)
-        self.loaded += [values[key] for key in ("src", "href") if key in values]
+        self.loaded += [values[key] for key in ("src", "href") if values.get(key, "#")[0] != "#"]
         self._cell = tag == "td"
 
     def handle_data(self, text):
@@ -43,7 +48,7 @@ def test_a_report_needs_nothing_else(page):
     assert len(text) < 5e6
     found = Page(text)
     assert found.loaded and all(address.startswith("data:") for address in found.loaded)
-    assert "@import" not in text and "url(" not in text
+    assert "@import" not in text and "url(" not in text.replace("url(#inside)", "")
     assert len([source for source in found.loaded if source.startswith("data:image")]) == 5
     for expected in ("FM1", "0.3161", "PASS", "dolfinx", "title = &#34;Tables 4 and 5&#34;"):
         assert expected in text
@@ -64,17 +69,83 @@ def test_text_of_a_scene_cannot_break_the_page(tmp_path):
     assert "<script>alert" not in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
+def data_of(page, name):
+    text = page.read_text(encoding="utf-8")
+    return json.loads(re.search(f'id="{name}-data">(.*?)</script>', text, re.DOTALL)[1])
+
+
+def test_a_report_has_every_state_and_its_curves(page, map_run):
+    table, curves = data_of(page, "states"), data_of(page, "curves")
+    heads = [column["csv"] for column in table["columns"]]
+    found = dict(zip(heads, zip(*table["rows"])))
+    np.testing.assert_allclose(found["f"], map_run.data["states/f"], rtol=1e-11)
+    np.testing.assert_allclose(found["fem_v0 [m]"], map_run.data["states/fem/v0"], rtol=1e-11)
+    assert list(found["motion"]) == list(map_run.data["states/motion"])
+    fem = curves["methods"].index("finite elements")
+    drawn = np.array(curves["values"][fem][curves["quantities"].index("σ_XX")])
+    order = np.argsort(map_run.data["surface/X_over_a"])
+    np.testing.assert_allclose(drawn, map_run.data["surface/fem/sigma_XX"][:, order], rtol=1e-4)
+    assert (np.diff(curves["X"]) >= 0).all()
+
+
+def test_a_report_begins_with_results_in_units(page, map_run):
+    text = page.read_text(encoding="utf-8")
+    X, stress = map_run.data["surface/X_over_a"], map_run.data["surface/fem/sigma_XX"]
+    largest = stress[:, np.abs(np.abs(X) - 1.0) >= 0.01].max() * 55.3e3 / 2e-3 / 1e6
+    assert f"{largest:.1f} MPa" in text
+    assert text.index("Results</h2>") < text.index("Accuracy</h2>") < text.index("States</h2>")
+
+
+def test_many_states_are_counted_where_not_all_are_shown(map_run):
+    many = {path: np.repeat(values, 5000, axis=0) for path, values in map_run.data.items()
+            if path.startswith("states/")}  # fmt: skip
+    table = states_table(many)
+    count = len(many["states/f"])
+    assert len(table["data"]["rows"]) < count and f"{count} states" in table["note"]
+
+
+@pytest.mark.parametrize(
+    "text, shown",
+    [
+        ("K_I at X", "<i>K</i><sub>I</sub> at X"), (r"$\mu_C$", "<i>μ</i><sub>C</sub>"),
+        ("4.8e-07 m", "4.8&#8239;×&#8239;10<sup>−7</sup> m"), ("<b>", "&lt;b&gt;"),
+        (r"$\sigma_0 l/N$", "<i>σ</i><sub>0</sub> l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
+        (r"c = $4.786 \times 10^{-7}$", "c = 4.786&#8239;×&#8239;10<sup>−7</sup>"), ("0x1e-7", "0x1e-7"),
+    ],
+)  # fmt: skip
+def test_symbols_are_typeset(text, shown):
+    assert markup(text) == shown
+
+
+#: Of a page in a browser: pictures that are not decoded, pictures, does all fit the width; rows of the
+#: table at first, and of a search; the last f on top after sorting twice; curves, and what is read there.
+PROBE = """<script>addEventListener('load', () => requestAnimationFrame(() => {
+  const rows = () => document.querySelectorAll('#table tbody tr');
+  const search = document.getElementById('search'), found = [rows().length];
+  search.value = 'BM1 c=0.6'; search.dispatchEvent(new Event('input')); found.push(rows().length);
+  search.value = ''; search.dispatchEvent(new Event('input'));
+  const head = [...document.querySelectorAll('th button')].find(b => b.textContent === 'f');
+  head.click(); head.click();
+  found.push([...rows()[0].cells][[...head.closest('tr').cells].indexOf(head.closest('th'))].textContent);
+  const svg = document.querySelector('#curves svg'), box = svg.getBoundingClientRect();
+  svg.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + 58 + (box.width - 70) / 2 }));
+  document.querySelector('figure img').click();
+  const [pictures, curves] = ['figure img', '#curves path'].map(q => document.querySelectorAll(q).length);
+  document.title = JSON.stringify([
+    [...document.images].filter(i => i.src && !i.naturalWidth).length, pictures,
+    document.documentElement.scrollWidth <= innerWidth, ...found, curves,
+    document.querySelector('#curves output').textContent.split(';')[0],
+    document.getElementById('large').open]);
+}))</script></body>"""
+
+
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1200])
-def test_a_browser_shows_the_report(page, tmp_path, width):
-    """Every picture is decoded, nothing is wider than the window, and the console stays empty."""
+def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
+    """Pictures are decoded, nothing is wider than the window, what moves does; an empty console."""
     probe = tmp_path / "probe.html"
-    script = (
-        "<script>addEventListener('load', () => document.title = JSON.stringify("
-        "[[...document.images].filter(i => !i.naturalWidth).length, document.images.length,"
-        " document.documentElement.scrollWidth <= innerWidth]))</script></body>"
-    )
-    probe.write_text(page.read_text(encoding="utf-8").replace("</body>", script), encoding="utf-8")
+    text = page.read_text(encoding="utf-8").replace("</body>", PROBE)
+    probe.write_text(text, encoding="utf-8")
     done = subprocess.run(
         [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", f"--window-size={width},900",
          f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr", "--dump-dom",
@@ -82,4 +153,9 @@ def test_a_browser_shows_the_report(page, tmp_path, width):
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert "CONSOLE" not in done.stderr, done.stderr
-    assert "<title>[0,5,true]</title>" in done.stdout, re.findall("<title>.*</title>", done.stdout)
+    told = json.loads(html.unescape(re.findall("<title>(.*)</title>", done.stdout)[0]))
+    f = map_run.data["states/f"]
+    at = (map_run.data["states/c"] == 0.6) & (map_run.data["states/motion"] == "BM1")
+    assert told == [
+        0, 5, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
+    ]  # fmt: skip

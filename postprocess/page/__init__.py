@@ -5,6 +5,8 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from galinx.postprocess.page.symbols import markup
+
 
 def render(content: dict[str, Any]) -> str:
     """The report page ``page.html`` filled with its content.
@@ -15,4 +17,5 @@ def render(content: dict[str, Any]) -> str:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
     )
+    environment.filters["typeset"] = markup
     return environment.get_template("page.html").render(content)

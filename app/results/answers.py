@@ -1,0 +1,128 @@
+"""What an archive says of a contact, in a few lines with units: the results that a report begins with."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.ticker import EngFormatter
+from numpy.typing import NDArray
+
+from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities import runs, states, stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.postprocess.scale import NEAR
+from galinx.solvers.contact import from_edge
+from galinx.solvers.solution import Body
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A result in words.
+
+    Attributes:
+        name: what it is.
+        value: with its unit.
+        where: state and place.
+    """
+
+    name: str
+    value: str
+    where: str = ""
+
+
+def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
+    """The results that an archive has, finite elements first where there are both methods."""
+    return [*_of_states(data), *_of_surface(data, scene)]
+
+
+def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
+    f = data[states.FRICTION.path]
+    yield Answer("Friction coefficient f, positive in forward motion", *_span(f, "", "{:+.4f}"))
+    intensities = [
+        data[row.path] for row in (*_either(data, states.K_I_LEFT), *_either(data, states.K_I_RIGHT))
+    ]
+    if intensities:
+        both = np.array(intensities)
+        smallest, largest = both.min(axis=0), both.max(axis=0)
+        low, high = int(smallest.argmin()), int(largest.argmax())
+        yield Answer(
+            "Stress intensity factor K_I at the edges, dimensionless",
+            *_words(smallest[low], largest[high], low, high, "", "{:.4f}"),
+        )
+    if states.INDENTATION.path in data:
+        name = "Indentation v_0 relative to the far boundary"
+        yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
+
+
+def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    if stresses.SURFACE_X.path not in data:
+        return
+    stress, X = (
+        Body(scene.solid, scene.punch.profile, scene.punch.load).stress,
+        data[stresses.SURFACE_X.path],
+    )
+    for row in _either(data, stresses.PRESSURE):
+        middle = int(np.abs(X).argmin())
+        pressure = -stress * data[row.path][:, middle]
+        yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
+    away = from_edge(X) >= NEAR
+    for row in _either(data, stresses.IN_PLANE):
+        σ, places = stress * data[row.path][:, away], X[away]
+        beyond = f"further than {NEAR:g} a from the edges"
+        for name, at in (("tension", σ.argmax()), ("compression", σ.argmin())):
+            state, point = np.unravel_index(int(at), σ.shape)
+            if (σ[state, point] > 0.0) == (name == "tension"):
+                yield Answer(
+                    f"Largest in-plane {name} σ_XX on the surface, {beyond}",
+                    _engineering(abs(float(σ[state, point])), "Pa"),
+                    f"state {state}, X/a = {places[point]:.4g}",
+                )
+
+
+def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
+    """One of both methods."""
+    return [rows[method] for method in (FEM, CLOSED_FORM) if rows[method].path in data][:1]
+
+
+def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
+    """Smallest and largest of the states, and which these are."""
+    if not np.isfinite(values).any():
+        return "none", ""
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    return _words(float(values[low]), float(values[high]), low, high, unit, form)
+
+
+def _words(least: float, most: float, low: int, high: int, unit: str, form: str) -> tuple[str, str]:
+    told = [form.format(value) if form else _engineering(value, unit) for value in (least, most)]
+    if told[0] == told[1]:
+        return told[0], ""
+    return " to ".join(told), f"states {low} and {high}"
+
+
+def _engineering(value: float, unit: str) -> str:
+    """With four digits and a prefix: 113.8 GPa."""
+    exponent = 0 if value == 0.0 else int(np.floor(np.log10(abs(value)) / 3.0)) * 3
+    digits = 3 - int(np.floor(np.log10(max(abs(value), 1e-300) / 10.0**exponent)))
+    return EngFormatter(unit=unit, places=max(digits, 0))(value).replace("-", "−")
+
+
+def summary(data: dict[str, Any], scene: Scene) -> str:
+    """What was computed, in two sentences with units."""
+    count, c = len(data[states.FRICTION.path]), np.unique(data[states.SPEED.path])
+    solid, c_s = scene.solid, scene.solid.c_s
+    moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
+    speed = " to ".join(f"{v * c_s:.4g}" for v in sorted({c[0], c[-1]}))
+    text = (
+        f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
+        f"{_engineering(scene.punch.load, 'N/m')}, that slides at {speed} m/s, c = {moving} of the shear "
+        f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
+    )
+    record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]
+    if all(path in data for path in record):
+        cells, degree, unknowns = (int(data[path].max()) for path in record)
+        text += (
+            f" Finite elements: {scene.solve.mesh} mesh, {cells} cells of degree up to {degree}, "
+            f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
+        )
+    return text

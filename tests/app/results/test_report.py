@@ -133,7 +133,7 @@ PROBE = """<script>addEventListener('load', () => requestAnimationFrame(() => {
   const [pictures, curves] = ['figure img', '#curves path'].map(q => document.querySelectorAll(q).length);
   document.title = JSON.stringify([
     [...document.images].filter(i => i.src && !i.naturalWidth).length, pictures,
-    document.documentElement.scrollWidth <= innerWidth, ...found, curves,
+    innerWidth, document.documentElement.scrollWidth <= innerWidth, ...found, curves,
     document.querySelector('#curves output').textContent.split(';')[0],
     document.getElementById('large').open]);
 }))</script></body>"""
@@ -144,18 +144,21 @@ PROBE = """<script>addEventListener('load', () => requestAnimationFrame(() => {
 def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
     """Pictures are decoded, nothing is wider than the window, what moves does; an empty console."""
     probe = tmp_path / "probe.html"
-    text = page.read_text(encoding="utf-8").replace("</body>", PROBE)
-    probe.write_text(text, encoding="utf-8")
+    text = html.escape(page.read_text(encoding="utf-8").replace("</body>", PROBE))
+    # In a frame: no window of this browser is narrower than 500 px.
+    frame = f'<iframe style="width: {width}px; height: 900px; border: 0" srcdoc="{text}"></iframe>'
+    told = "<script>onload = () => setTimeout(() => document.title = frames[0].document.title, 2e3)</script>"
+    probe.write_text(f"<!doctype html><title></title>{frame}{told}", encoding="utf-8")
     done = subprocess.run(
-        [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", f"--window-size={width},900",
+        [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1300,900",
          f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr", "--dump-dom",
          "--virtual-time-budget=5000", probe.as_uri()],
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert "CONSOLE" not in done.stderr, done.stderr
-    told = json.loads(html.unescape(re.findall("<title>(.*)</title>", done.stdout)[0]))
+    told = json.loads(html.unescape(re.findall("<title>(.*?)</title>", done.stdout)[0]))
     f = map_run.data["states/f"]
     at = (map_run.data["states/c"] == 0.6) & (map_run.data["states/motion"] == "BM1")
     assert told == [
-        0, 5, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
+        0, 5, width, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
     ]  # fmt: skip

@@ -48,11 +48,14 @@ def computed(name="tables4_5", changes=None):
     return galinx.compute(galinx.template(name, changes))
 
 
-def command(*arguments, cwd=HOME):
-    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text."""
+def command(*arguments, cwd=HOME, **variables):
+    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text.
+
+    ``variables`` are added to the environment.
+    """
     return subprocess.run(
         [str(HOME / "run.sh"), *map(str, arguments)],
-        cwd=cwd, env=clean_environment(), capture_output=True, text=True, timeout=300,
+        cwd=cwd, env=clean_environment() | variables, capture_output=True, text=True, timeout=300,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
 

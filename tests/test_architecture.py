@@ -13,7 +13,7 @@ ONE_PLACE = {
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "solvers/fem/adapter.py"},
     "matplotlib": {"postprocess/figures/", "app/results/drawings.py"},
-    "jinja2": {"postprocess/page.py"},
+    "jinja2": {"postprocess/page/"},
     "xarray": {"postprocess/named.py", "app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},
     "pint": {"app/scene/units.py"},

@@ -2,9 +2,11 @@
 
 import json
 import sys
+import textwrap
 from typing import Any
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -29,18 +31,31 @@ def new_console(file: Any = None, colours: bool = False) -> Console:
 
 
 def print_sheet(console: Console, sheet: Sheet) -> None:
-    """Print a table, labels to the left and numbers to the right."""
-    table = Table(
-        title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="", header_style="bold",
-        pad_edge=False, padding=(0, 1, 0, 0),
-    )  # fmt: skip
-    for i, column in enumerate(sheet.columns):
-        table.add_column(column, justify="left" if i == 0 else "right", no_wrap=True)
-    for row in sheet.rows:
-        table.add_row(*row)
-    console.print(table)
+    """Print a table, labels to the left and numbers to the right, in parts where it is too wide."""
+    for number, columns in enumerate(_parts(sheet, console.width)):
+        table = Table(
+            title=None if number else sheet.title, box=box.SIMPLE_HEAD, title_justify="left",
+            title_style="", header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
+        )  # fmt: skip
+        for i in columns:
+            table.add_column(sheet.columns[i], justify="right" if i else "left", no_wrap=True)
+        for row in sheet.rows:
+            table.add_row(*(row[i] for i in columns))
+        console.print(table)
     for note in sheet.notes:
-        console.print(note)
+        text = textwrap.fill(plain(note), console.width, subsequent_indent="  ", break_on_hyphens=False)
+        console.print(text)
+
+
+def _parts(sheet: Sheet, width: int) -> list[list[int]]:
+    """Columns that stand side by side, the first of all in every part."""
+    wide = [max(map(cell_len, column)) + 2 for column in zip(sheet.columns, *sheet.rows)]
+    parts = [[0]]
+    for i in range(1, len(wide)):
+        if len(parts[-1]) > 1 and sum(wide[k] for k in parts[-1]) + wide[i] > width:
+            parts.append([0])
+        parts[-1].append(i)
+    return parts
 
 
 def print_verdict(console: Console, attributes: dict[str, Any]) -> None:

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import floor, log10
 from typing import Any
 
 import numpy as np
-from matplotlib.ticker import EngFormatter
 from numpy.typing import NDArray
 
 from galinx.app.scene.scene import Scene
@@ -14,6 +14,9 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.scale import NEAR
 from galinx.solvers.contact import from_edge
 from galinx.solvers.solution import Body
+
+#: Of units, and where the one stands that means nothing.
+_PREFIXES, _MIDDLE = "pnµm kMGT", 4
 
 
 @dataclass(frozen=True)
@@ -102,9 +105,12 @@ def _words(least: float, most: float, low: int, high: int, unit: str, form: str)
 
 def _engineering(value: float, unit: str) -> str:
     """With four digits and a prefix: 113.8 GPa."""
-    exponent = 0 if value == 0.0 else int(np.floor(np.log10(abs(value)) / 3.0)) * 3
-    digits = 3 - int(np.floor(np.log10(max(abs(value), 1e-300) / 10.0**exponent)))
-    return EngFormatter(unit=unit, places=max(digits, 0))(value).replace("-", "−")
+    if value == 0.0:
+        return f"0 {unit}"
+    size = floor(log10(abs(float(f"{value:.3e}"))))
+    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
+    told = f"{value / 1000.0**thousands:.{max(3 + 3 * thousands - size, 0)}f}"
+    return f"{told} {_PREFIXES[thousands + _MIDDLE].strip()}{unit}".replace("-", "−")
 
 
 def summary(data: dict[str, Any], scene: Scene) -> str:

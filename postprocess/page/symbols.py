@@ -8,6 +8,7 @@ from markupsafe import Markup, escape
 #: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
 _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
 _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _TEX = re.compile(r"\$([^$]*)\$")
 
 
@@ -37,7 +38,7 @@ def _untexed(formula: str) -> str:
     told = re.sub(r"\\math\w+\{([^{}]*)\}", r"\1", formula)
     told = re.sub(r"\\times\s*10\^\{?(-?\d+)\}?", r"e+\1", told).replace(" e+", "e+").replace("e+-", "e-")
     told = re.sub(r"\\([A-Za-z]+)", _greek, told.replace(r"\,", " ").replace(r"\_", "_"))
-    return re.sub(r"[{}]", "", told)
+    return re.sub(r"_(\d)", lambda found: found[1].translate(_LOWERED), re.sub(r"[{}]", "", told))
 
 
 def _greek(word: re.Match[str]) -> str:

@@ -25,6 +25,19 @@ def test_show_fits_a_terminal(archive):
     assert max(map(len, shown.stdout.splitlines())) <= 80
 
 
+@pytest.mark.parametrize("columns", [40, 60, 200])
+def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
+    """Nothing is cut: every column is there once, those that states are called by in every part."""
+    shown = command("show", archive, COLUMNS=str(columns)).stdout
+    table = shown.partition("the same in all")[0]
+    assert max(map(len, table.splitlines())) <= columns and "…" not in shown
+    heads = [line.split() for line in shown.splitlines() if line.startswith(" state")]
+    assert (len(heads) > 1) == (columns < 80)
+    told = [word for head in heads for word in head if word not in ("state", "(m)")]
+    assert told == ["c", "X/L", "f", "K_I", "error", "estimate", "v₀", "α", "β"]
+    assert shown.count(" 11 FM2 ") == len(heads) and "μ_C = 0.7" in shown
+
+
 def test_plot(archive, tmp_path):
     done = command("plot", archive, "-o", tmp_path)
     assert done.returncode == 0, done.stderr

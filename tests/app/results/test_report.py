@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from galinx import compute, template
+from galinx.app.results import answers
 from galinx.app.results.tabulated import states_table
 from galinx.postprocess.page.symbols import markup
 
@@ -109,7 +110,7 @@ def test_many_states_are_counted_where_not_all_are_shown(map_run):
     [
         ("K_I at X", "<i>K</i><sub>I</sub> at X"), (r"$\mu_C$", "<i>μ</i><sub>C</sub>"),
         ("4.8e-07 m", "4.8&#8239;×&#8239;10<sup>−7</sup> m"), ("<b>", "&lt;b&gt;"),
-        (r"$\sigma_0 l/N$", "<i>σ</i><sub>0</sub> l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
+        (r"$\sigma_0 l/N$", "σ₀ l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
         (r"c = $4.786 \times 10^{-7}$", "c = 4.786&#8239;×&#8239;10<sup>−7</sup>"), ("0x1e-7", "0x1e-7"),
     ],
 )  # fmt: skip
@@ -162,3 +163,14 @@ def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
     assert told == [
         0, 5, width, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "value, shown",
+    [
+        (1.138e11, "113.8 GPa"), (-2.5e-7, "−250.0 nPa"), (0.0, "0 Pa"), (999.96, "1.000 kPa"),
+        (1.0, "1.000 Pa"), (7e15, "7000 TPa"), (3e-14, "0.03000 pPa"),
+    ],
+)  # fmt: skip
+def test_numbers_have_prefixes(value, shown):
+    assert answers._engineering(value, "Pa") == shown

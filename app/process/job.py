@@ -160,14 +160,14 @@ class Job:
     def _judged(self) -> int:
         root = next((rank for rank in self._ranks if rank.is_root), None)
         told = root.told if root else {}
-        failed = next((rank for rank in self._ranks if rank.has_failed), None)
-        if root and root.has_failed:  # it has said why
-            return told["status"]
+        failed = [rank.told for rank in self._ranks if rank.has_failed]
         if "status" not in told:
             stop.erase_bar()
         if failed:
-            stop.complain(plain(failed.told["words"]))
-            return failed.told["status"]
+            first = told if told in failed else failed[0]
+            if first["words"]:  # a reader that went away wants none
+                stop.complain(plain(first["words"]))
+            return first["status"]
         if "status" in told:
             return told["status"]
         if self._ranks or self._cause:

@@ -54,7 +54,7 @@ def interrupted() -> None:
 
 
 def end(status: int, words: str = "") -> None:
-    """This rank ends with a status; ``words`` say why, should rank 0 not have said it."""
+    """This rank ends with a status; ``words`` say why, which the job prints."""
     _tell(status=status, words=words)
 
 

@@ -46,6 +46,20 @@ def test_closed_streams_are_the_null_device(tmp_path, count):
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
 
 
+@on_ranks
+@pytest.mark.parametrize("words", [PLAN, ("materials",), ("plan", "--help")])
+def test_what_cannot_be_written_is_named(tmp_path, count, words):
+    done = galinx(tmp_path, *count, *words, shell='"$@" >/dev/full')
+    is_refused(done, 3, "cannot write the output: No space left on device; make room")
+
+
+def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
+    is_refused(galinx(tmp_path, *RUN, shell='"$@" >/dev/full'), 3, "cannot write the output")
+    assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
+    done = galinx(tmp_path, "show", "x.h5", shell='"$@" | head -c 5')
+    assert (done.stdout, done.stderr) == (b"Table", b"")
+
+
 @pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])
 def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
     done = galinx(tmp_path, *count, "materials", PYTHONIOENCODING=encoding)

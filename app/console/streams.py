@@ -20,7 +20,7 @@ def plain(text: str) -> str:
 
 
 class Output(io.FileIO):
-    """The output below Python's buffers: where it cannot be written, the message says that it is meant."""
+    """The output below Python's buffers: where it cannot be written, the message names it."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number, "w", closefd=False)

@@ -20,12 +20,12 @@ _line: socket.socket | None = None
 def join() -> None:
     """Join the job, if there is one, and take its streams for one's own: its output on rank 0 only."""
     global _line
-    path = os.environ.pop(VARIABLE, None)
-    if path is None:
+    name = os.environ.pop(VARIABLE, None)
+    if name is None:
         return
     line = socket.socket(socket.AF_UNIX)
     try:
-        line.connect(path)
+        line.connect(address(name))
     except OSError:  # a job of another time
         return
     _line = line
@@ -36,6 +36,11 @@ def join() -> None:
         streams[0] = os.open(os.devnull, os.O_WRONLY)
     for number, stream in zip((1, 2), streams):
         os.dup2(stream, number)
+
+
+def address(name: str) -> str:
+    """Where a job of that name listens: in Linux's own space of names, so that no file is left."""
+    return f"\0{name}"
 
 
 def is_there() -> bool:

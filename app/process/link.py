@@ -1,7 +1,7 @@
 """A rank's line to the job that started it, see :mod:`galinx.app.process.job`.
 
-What mpirun says, and the status that it makes of its ranks', differs between MPIs. So ranks have the
-output and error streams of the job itself, and tell it how they end.
+What MPIs and their mpirun say, and the status that it makes of its ranks', differs between them. So
+ranks have the output and error streams of the job itself, and tell it how they end.
 """
 
 import json
@@ -34,6 +34,8 @@ def join() -> None:
     _, streams, *_ = socket.recv_fds(line, 1, 2)
     if not ranks.is_root():
         streams[0] = os.open(os.devnull, os.O_WRONLY)
+    # Open MPI's own words stay with mpirun's: of a rank that was killed the others' libraries tell, too.
+    os.environ["OPAL_OUTPUT_STDERR_FD"] = str(os.dup(2))
     for number, stream in zip((1, 2), streams):
         os.dup2(stream, number)
 

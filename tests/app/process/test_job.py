@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 
-from support import clean_environment
+from support import SCENE, clean_environment, command
 
 from galinx.app import errors
 
@@ -50,3 +50,33 @@ def test_a_job_that_is_killed_leaves_nothing_behind(tmp_path):
         env=clean_environment() | {"TMPDIR": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == -signal.SIGKILL and [*tmp_path.iterdir()] == [mpirun]
+
+
+#: Rank 1 is killed when rank 0 is about to read a message from its memory.
+KILLED = """
+import os, signal
+from contextlib import suppress
+from pathlib import Path
+import numpy as np
+from mpi4py import MPI
+
+comm, data, status = MPI.COMM_WORLD, np.zeros(10**6), MPI.Status()
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
+if comm.rank:
+    comm.Isend(data, 0, os.getpid())
+    os.kill(os.getpid(), signal.SIGKILL)
+comm.Probe(1, status=status)
+with suppress(OSError):  # until it is dead, or gone
+    while ") Z " not in Path(f"/proc/{status.tag}/stat").read_text():
+        pass
+comm.Irecv(data, 1)
+signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
+"""
+
+
+def test_what_mpi_says_of_a_killed_rank_is_not_shown(tmp_path):
+    (tmp_path / "killed.py").write_text(KILLED, encoding="utf-8")
+    done = command("-n", 2, "-x", tmp_path / "killed.py", "plan", SCENE)
+    assert done.returncode == errors.FAILURE and done.stderr == (
+        "error: rank 1 or its mpirun was killed (did the machine lack memory?); nothing was written\n"
+    )

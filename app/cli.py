@@ -74,10 +74,8 @@ def _run() -> None:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _stop(message, errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
-        link.end(_CUT_OFF)
+        stop.finish(_CUT_OFF)
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
-    except stop.Asked:
-        stop.end(stop.NOTHING)
     except ImportError as error:
         _stop(errors.unavailable(error))
     except _FAILURES as error:
@@ -85,8 +83,7 @@ def _run() -> None:
     except Exception as error:
         traceback.print_exc()
         _stop(f"internal failure on rank {ranks.rank()}: {error}")
-    stop.too_late()
-    link.end(status)
+    stop.finish(status)
     sys.exit(status)
 
 

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 from dataclasses import asdict, dataclass, field, fields
+from io import BytesIO
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -18,6 +19,8 @@ import matplotlib
 import numpy as np
 
 import galinx
+from galinx.postprocess.errors import Occupied, UnwritableArchive
+from galinx.postprocess.target import Folder, Target
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -173,8 +176,8 @@ def table(figures: list[Figures]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def draw(figures: list[Figures], path: Path) -> None:
-    """Error against time."""
+def draw(figures: list[Figures]) -> bytes:
+    """Error against time, a picture."""
     figure, axis = plt.subplots(figsize=(5.5, 4.0))
     groups = {
         "confocal, c <= 0.6": "tolerance",
@@ -191,14 +194,28 @@ def draw(figures: list[Figures], path: Path) -> None:
     axis.grid(alpha=0.3, which="both")
     axis.legend()
     figure.tight_layout()
-    figure.savefig(path, dpi=160)
+    data = BytesIO()
+    figure.savefig(data, format="png", dpi=160)
+    return data.getvalue()
+
+
+def archived(figures: list[Figures]) -> bytes:
+    """The figures as an HDF5 file."""
+    rows, data = [asdict(f) for f in figures], BytesIO()
+    units = {"wall": "s", "cpu": "s", "memory": "MB"}
+    with h5py.File(data, "w") as file:
+        for name in rows[0]:
+            file[name] = [row[name] for row in rows]
+            file[name].attrs["units"] = units.get(name, "1")
+    return data.getvalue()
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", dest="folder", type=Path, default=Path("benchmark"))
-    folder = parser.parse_args().folder
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = Folder(parser.parse_args().folder).path
+    names = "table.md", "error_against_time.png", "benchmark.h5"
+    targets = [Target(folder / name, overwrite=True) for name in names]  # before the work of hours
     figures = []
     with tempfile.TemporaryDirectory() as work:
         for i, case in enumerate(CASES):
@@ -207,16 +224,13 @@ def main() -> None:
         print("one state, start apart", file=sys.stderr, flush=True)
         figures += without_start()
         text = table(figures) + "\n" + steps(Path(work))
-    (folder / "table.md").write_text(text, encoding="utf-8")
-    draw(figures, folder / "error_against_time.png")
-    rows = [asdict(f) for f in figures]
-    units = {"wall": "s", "cpu": "s", "memory": "MB"}
-    with h5py.File(folder / "benchmark.h5", "w") as file:
-        for name in rows[0]:
-            file[name] = [row[name] for row in rows]
-            file[name].attrs["units"] = units.get(name, "1")
+    for target, content in zip(targets, (text.encode(), draw(figures), archived(figures))):
+        target.write(content)
     print(text, end="")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (Occupied, UnwritableArchive) as error:
+        sys.exit(f"error: {error}")

@@ -362,6 +362,8 @@ def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
 
 
 if __name__ == "__main__":
+    from galinx import files
+
     for path, text in pages().items():
-        path.write_text(text, encoding="utf-8")
+        files.write(path, text.encode())
         print(f"written: {path.relative_to(HOME)}")

@@ -11,15 +11,16 @@ from galinx.app.process.begin import begin, refuse
 
 
 def main() -> None:
-    """Run the command line; a library that is missing is said, whichever it is."""
+    """Run the command line; a library that is missing is said, whichever it is, and so is a signal."""
     try:
         begin()
         from galinx.app.cli import run_from_shell
+
+        run_from_shell()
     except ImportError as error:
         refuse(errors.unavailable(error))
     except stop.Asked:
         stop.end(stop.NOTHING)
-    run_from_shell()
 
 
 if __name__ == "__main__":

@@ -2,8 +2,10 @@
 
 import errno
 import os
+import re
 import secrets
 import stat
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -11,6 +13,8 @@ from pathlib import Path
 _OPEN = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
 #: What file systems without hard links answer to a request for one.
 _NO_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS}
+#: Hidden names, and seconds after which what bears one is a ruin.
+_TEMPORARY, _DAY = re.compile(r"\.\d+-[0-9a-f]{8}\.partial"), 86400.0
 
 #: Hidden names of files in the making.
 _unfinished: set[Path] = set()
@@ -48,7 +52,7 @@ class NewFile:
         _unfinished.discard(self.temporary)
 
     def publish(self, replace: bool) -> None:
-        """Bring the file to the disk, then give it its name, at once.
+        """Bring the file to the disk, then give it its name, at once; what killed ones left there goes.
 
         Args:
             replace: a file of that name; its permissions are kept.
@@ -67,6 +71,7 @@ class NewFile:
             self._link()
         with suppress(OSError):  # some file systems cannot synchronise folders
             synchronise(self.path.parent)
+        _sweep(self.path.parent)
 
     def _link(self) -> None:
         """Take a name that is free: a rename would replace what appeared a moment ago."""
@@ -89,6 +94,15 @@ def write(path: Path, data: bytes, replace: bool = True) -> None:
     with NewFile(path) as new:
         new.temporary.write_bytes(data)
         new.publish(replace)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove files in the making whose process was killed: nobody has touched them for a day."""
+    with suppress(OSError):
+        for path in folder.glob(".*.partial"):
+            old = time.time() - path.lstat().st_mtime > _DAY
+            if old and _TEMPORARY.fullmatch(path.name):
+                path.unlink()
 
 
 def give_up() -> None:

@@ -1,11 +1,13 @@
-"""Arrays in a file that is as it was written, or as good as none: it begins with a digest of the rest.
+"""Arrays in a file that is as it was written, or as good as none: it ends with a digest of the rest.
 
-After the digest come the length of a text, the text, which is JSON, and the arrays. The checksums of
+Before the digest come the length of a text, the text, which is JSON, and the arrays. The checksums of
 NumPy's own files leave names and sizes out, and cost more.
 """
 
 import hashlib
 import json
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,11 @@ from numpy.typing import NDArray
 
 from galinx import files
 
-_DIGEST, _LENGTH = hashlib.sha256().digest_size, 8
+_SIZE, _LENGTH = hashlib.sha256().digest_size, 8
 
 
-def packed(told: Any, arrays: dict[str, NDArray]) -> list[Any]:
-    """A file's content, in pieces that are to follow each other.
+def packed(told: Any, arrays: dict[str, NDArray]) -> Iterator[Any]:
+    """A file's content, in pieces that are to follow each other; while they are written they are summed.
 
     Args:
         told: what is said of the arrays, for JSON.
@@ -28,10 +30,17 @@ def packed(told: Any, arrays: dict[str, NDArray]) -> list[Any]:
     listed = [(name, values.dtype.str, values.shape) for name, values in whole.items()]
     text = json.dumps([told, listed]).encode()
     pieces: list[Any] = [len(text).to_bytes(_LENGTH), text, *(values.data for values in whole.values())]
+    with ThreadPoolExecutor(1) as beside:
+        digest = beside.submit(_digest, pieces)
+        yield from pieces
+        yield digest.result()
+
+
+def _digest(pieces: list[Any]) -> bytes:
     digest = hashlib.sha256()
     for piece in pieces:
         digest.update(piece)
-    return [digest.digest(), *pieces]
+    return digest.digest()
 
 
 def read(path: Path) -> tuple[Any, dict[str, NDArray]] | None:
@@ -41,11 +50,10 @@ def read(path: Path) -> tuple[Any, dict[str, NDArray]] | None:
     """
     try:
         data = files.read(path)
-        if hashlib.sha256(memoryview(data)[_DIGEST:]).digest() != data[:_DIGEST]:
+        if _digest([memoryview(data)[:-_SIZE]]) != data[-_SIZE:]:
             return None
-        start = _DIGEST + _LENGTH
-        end = start + int.from_bytes(data[_DIGEST:start])
-        told, listed = json.loads(data[start:end])
+        end = _LENGTH + int.from_bytes(data[:_LENGTH])
+        told, listed = json.loads(data[_LENGTH:end])
         arrays = {}
         for name, kind, shape in listed:
             arrays[name] = np.ndarray(shape, kind, data, end).copy()

@@ -10,7 +10,7 @@ from galinx import files, sealed
 from galinx.meshes.rings import QuadMesh
 
 #: Part of every key; raised when what is kept, or how it is made, changes.
-_FORMAT = 2
+_FORMAT = 3
 
 
 def _key(pattern: QuadMesh) -> str:

@@ -174,7 +174,7 @@ def _name(rows: slice) -> str:
     return f"{rows.start:010d}-{rows.stop:010d}{_SUFFIX}"
 
 
-def _packed(part: Part, key: str) -> list[Any]:
+def _packed(part: Part, key: str) -> Iterator[Any]:
     told = {
         "key": key,
         "rows": [part.rows.start, part.rows.stop],

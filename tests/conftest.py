@@ -5,6 +5,7 @@ itself: its place does, and the fixtures that it asks for.
 """
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -56,6 +57,17 @@ def _fast_tests_keep_their_word(request, monkeypatch):
         monkeypatch.setattr(space.Space, "__init__", refuse)
     else:
         monkeypatch.setitem(sys.modules, "dolfinx", None)
+
+
+@pytest.fixture
+def stranger():
+    """The beginning of a command that is to be that of a user whom nobody knows."""
+    words = ["setpriv", "--reuid", "4321", "--regid", "4321", "--clear-groups"]
+    if os.getuid() != 0:
+        pytest.skip("needs root, to be another user")
+    if subprocess.run([*words, sys.executable, "-c", ""], capture_output=True).returncode:
+        pytest.skip(f"needs a Python that everybody may start, {sys.executable} is root's")
+    return words
 
 
 @pytest.fixture(scope="session")

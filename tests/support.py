@@ -7,8 +7,10 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
+import pytest
 
 HOME = Path(__file__).parent.parent
 #: The scene of the study's Tables 4 and 5.
@@ -58,6 +60,25 @@ def command(*arguments, cwd=HOME, **variables):
         cwd=cwd, env=clean_environment() | variables, capture_output=True, text=True, timeout=300,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
+
+
+def called(*words):
+    """The status of ``galinx WORDS`` in this process, which is left as it was."""
+    from galinx.app.cli import run_from_shell
+    from galinx.app.process.stop import SIGNALS
+
+    handlers = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        with (
+            patch.object(sys, "argv", ["galinx", *words]),
+            patch.object(os, "_exit", sys.exit),
+            pytest.raises(SystemExit) as ended,
+        ):
+            run_from_shell()
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    return ended.value.code
 
 
 def mpirun(ranks, *arguments):

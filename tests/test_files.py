@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import socket
 import stat
 from pathlib import Path
@@ -67,6 +68,23 @@ def test_a_process_that_ends_where_it_stands_leaves_no_unfinished_file(tmp_path)
             os._exit(0)
     assert os.waitpid(child, 0)[1] == 0
     assert (tmp_path / "a").read_bytes() == b"one" and os.listdir(tmp_path) == ["a"]
+
+
+def test_what_a_killed_process_left_is_removed_when_it_is_old(tmp_path):
+    if not (child := os.fork()):
+        with files.NewFile(tmp_path / "a") as new:
+            (tmp_path / "old").symlink_to(new.temporary.name)
+            os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(child, 0)
+    old = tmp_path / os.readlink(tmp_path / "old")
+    files.write(tmp_path / "a", b"one")
+    assert old.exists()  # it may be somebody's on another machine
+    young, other = tmp_path / ".1-0123abcd.partial", tmp_path / ".mine.partial"
+    young.touch(), other.touch()
+    for path in (old, other):
+        os.utime(path, (0.0, 0.0))
+    files.write(tmp_path / "a", b"two")
+    assert not old.exists() and young.exists() and other.exists()
 
 
 def test_it_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):

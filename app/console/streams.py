@@ -1,5 +1,6 @@
 """The one place where text goes to a terminal: what would command it is shown instead."""
 
+import io
 import re
 import sys
 from collections.abc import Iterator
@@ -16,6 +17,23 @@ _COMMANDS = re.compile(
 def plain(text: str) -> str:
     r"""A text whose control characters are written out, ``\u001b`` for ESC as in JSON."""
     return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+class Output(io.FileIO):
+    """The output below Python's buffers: where it cannot be written, the message names it."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number, "w", closefd=False)
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise OSError(
+                f"cannot write the output: {error.strerror}; make room, or send it elsewhere"
+            ) from None
 
 
 class PlainStream:

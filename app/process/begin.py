@@ -1,5 +1,6 @@
 """What a process does first, before any library is imported that could fail."""
 
+import io
 import os
 import resource
 import sys
@@ -7,6 +8,7 @@ import warnings
 from typing import Any, NoReturn
 
 from galinx.app import errors
+from galinx.app.console.streams import Output
 from galinx.app.process import link, stop
 
 #: Bytes of address space that finite elements need with all libraries; with less some wait for ever.
@@ -42,15 +44,12 @@ def _open_streams() -> None:
 
 def _prepare_streams() -> None:
     """Encodings that lack a character write another; a rank's streams are those of its job by now."""
-    sys.stdout, sys.stderr = _prepared(sys.stdout, 1), _prepared(sys.stderr, 2)
-    sys.stdout.reconfigure(line_buffering=os.isatty(1))
-
-
-def _prepared(stream: Any, number: int) -> Any:
-    if stream is None:  # it was closed
-        return os.fdopen(number, "w", encoding="utf-8", errors="replace", closefd=False)
-    stream.reconfigure(errors="replace")
-    return stream
+    encoding = sys.stdout.encoding if sys.stdout else "utf-8"  # there is none where it was closed
+    below = io.BufferedWriter(Output(1))
+    sys.stdout = io.TextIOWrapper(below, encoding, errors="replace", line_buffering=os.isatty(1))
+    stderr: Any = sys.stderr or os.fdopen(2, "w", encoding="utf-8", closefd=False)
+    stderr.reconfigure(errors="replace")
+    sys.stderr = stderr
 
 
 def _check_machine() -> None:

@@ -10,16 +10,17 @@ without a word was killed. What mpirun itself says counts only where no rank has
 import json
 import os
 import re
+import secrets
 import select
 import shutil
 import signal
 import socket
+import stat
+import struct
 import subprocess
 import sys
 import time
 from contextlib import suppress
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import IO, Any
 
 from galinx.app import errors
@@ -31,6 +32,8 @@ from galinx.app.process.begin import begin, refuse
 _PATIENCE = 5.0
 #: Arguments that name what is open already: ranks have nothing of it.
 _OPEN = re.compile(r"/dev/(stdin)|/(?:dev|proc/self)/fd/(\d+)")
+#: Bytes that are read of what may have no end: more than any scene has.
+_LARGEST = 10**8
 
 
 class _Rank:
@@ -39,9 +42,7 @@ class _Rank:
     def __init__(self, line: socket.socket) -> None:
         self.line, self._rest = line, b""
         self.told: dict[str, Any] = {}
-        # Number of the process, user and group, as the kernel knows them.
-        found = line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
-        self._process = int.from_bytes(found[:4], sys.byteorder)
+        self._process, _ = _peer(line)
         with suppress(OSError):
             socket.send_fds(line, [b"."], [1, 2])
 
@@ -74,16 +75,18 @@ class _Rank:
 class Job:
     """mpirun with its ranks, from start to end.
 
+    Nothing of it is a file: a job that is killed leaves nothing behind.
+
     Args:
-        folder: for the job's own files.
         command: mpirun and its arguments.
     """
 
-    def __init__(self, folder: Path, command: list[str]) -> None:
+    def __init__(self, command: list[str]) -> None:
+        name = f"galinx-{secrets.token_hex(16)}"
         self._server = socket.socket(socket.AF_UNIX)
-        self._server.bind(str(folder / "job"))
+        self._server.bind(link.address(name))
         self._server.listen(1024)
-        self._said = (folder / "mpirun").open("w+b")
+        self._said = os.memfd_create("mpirun")
         self._ranks: list[_Rank] = []
         self._open: list[_Rank] = []
         #: Why the job ends before its work is done.
@@ -92,7 +95,7 @@ class Job:
         self._signals = _signals()
         self._mpirun = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=self._said, stderr=self._said,
-            env=os.environ | {link.VARIABLE: str(folder / "job")},
+            env=os.environ | {link.VARIABLE: name},
             start_new_session=True,  # Ctrl-C is for this process to hand on
         )  # fmt: skip
 
@@ -115,10 +118,16 @@ class Job:
         if self._signals in ready and set(self._signals.read(4096)) & set(stop.SIGNALS):
             self._stop("interrupted")
         if self._server in ready:
-            self._open.append(_Rank(self._server.accept()[0]))
-            self._ranks.append(self._open[-1])
+            self._join(self._server.accept()[0])
         for line in lines.keys() & set(ready):
             self._hear(lines[line])
+
+    def _join(self, line: socket.socket) -> None:
+        if _peer(line)[1] == os.getuid():
+            self._open.append(_Rank(line))
+            self._ranks.append(self._open[-1])
+        else:
+            line.close()
 
     def _hear(self, rank: _Rank) -> None:
         alive = rank.listen()
@@ -160,23 +169,28 @@ class Job:
     def _judged(self) -> int:
         root = next((rank for rank in self._ranks if rank.is_root), None)
         told = root.told if root else {}
-        failed = next((rank for rank in self._ranks if rank.has_failed), None)
-        if root and root.has_failed:  # it has said why
-            return told["status"]
+        failed = [rank.told for rank in self._ranks if rank.has_failed]
         if "status" not in told:
             stop.erase_bar()
         if failed:
-            stop.complain(plain(failed.told["words"]))
-            return failed.told["status"]
+            first = told if told in failed else failed[0]
+            if first["words"]:  # a reader that went away wants none
+                stop.complain(plain(first["words"]))
+            return first["status"]
         if "status" in told:
             return told["status"]
         if self._ranks or self._cause:
             stop.complain(f"{self._cause or 'mpirun was killed'}; {told.get('left', stop.NOTHING)}")
         else:
-            self._said.seek(0)
-            sys.stderr.write(self._said.read().decode(errors="replace"))
+            sys.stderr.write(os.pread(self._said, _LARGEST, 0).decode(errors="replace"))
             stop.complain("mpirun could not start the ranks; its own words are above")
         return errors.FAILURE
+
+
+def _peer(line: socket.socket) -> tuple[int, int]:
+    """Process and user at the other end, as the kernel knows them."""
+    process, user, _ = struct.unpack("iII", line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))
+    return process, user
 
 
 def _signals() -> IO[bytes]:
@@ -189,16 +203,17 @@ def _signals() -> IO[bytes]:
     return open(reader, "rb", buffering=0)
 
 
-def _copied(argument: str, folder: Path) -> str:
-    """An argument, for which what is open already is copied: every rank reads all of it."""
+def _shared(argument: str) -> str:
+    """An argument, for which what is open already has a name: every rank reads all of it."""
     found = _OPEN.fullmatch(argument)
     number = int(found[2] or 0) if found else 1
     if number not in (1, 2):
         with suppress(OSError), open(number, "rb", closefd=False) as source:
-            copy = folder / argument.rpartition("/")[2]
-            with copy.open("wb") as target:
-                shutil.copyfileobj(source, target)
-            return str(copy)
+            if not stat.S_ISREG(os.fstat(number).st_mode):  # which can be read once only
+                number = os.memfd_create(argument)
+                with open(number, "wb", closefd=False) as copy:
+                    copy.write(source.read(_LARGEST))
+            return f"/proc/{os.getpid()}/fd/{number}"
     return argument
 
 
@@ -209,11 +224,8 @@ def main() -> None:
     try:
         begin()
         mpirun, count, python, *arguments = sys.argv[1:]
-        with TemporaryDirectory(prefix="galinx-") as name:
-            folder = Path(name)
-            given = [_copied(argument, folder) for argument in arguments]
-            galinx = [python, "-P", "-m", "galinx", *given]
-            status = Job(folder, [*tied, mpirun, "-n", count, *galinx]).run()
+        galinx = [python, "-P", "-m", "galinx", *map(_shared, arguments)]
+        status = Job([*tied, mpirun, "-n", count, *galinx]).run()
     except stop.Asked:
         stop.end(stop.NOTHING)
     except OSError as error:

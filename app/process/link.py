@@ -1,7 +1,7 @@
 """A rank's line to the job that started it, see :mod:`galinx.app.process.job`.
 
-What mpirun says, and the status that it makes of its ranks', differs between MPIs. So ranks have the
-output and error streams of the job itself, and tell it how they end.
+What MPIs and their mpirun say, and the status that it makes of its ranks', differs between them. So
+ranks have the output and error streams of the job itself, and tell it how they end.
 """
 
 import json
@@ -20,12 +20,12 @@ _line: socket.socket | None = None
 def join() -> None:
     """Join the job, if there is one, and take its streams for one's own: its output on rank 0 only."""
     global _line
-    path = os.environ.pop(VARIABLE, None)
-    if path is None:
+    name = os.environ.pop(VARIABLE, None)
+    if name is None:
         return
     line = socket.socket(socket.AF_UNIX)
     try:
-        line.connect(path)
+        line.connect(address(name))
     except OSError:  # a job of another time
         return
     _line = line
@@ -34,8 +34,15 @@ def join() -> None:
     _, streams, *_ = socket.recv_fds(line, 1, 2)
     if not ranks.is_root():
         streams[0] = os.open(os.devnull, os.O_WRONLY)
+    # Open MPI's own words stay with mpirun's: of a rank that was killed the others' libraries tell, too.
+    os.environ["OPAL_OUTPUT_STDERR_FD"] = str(os.dup(2))
     for number, stream in zip((1, 2), streams):
         os.dup2(stream, number)
+
+
+def address(name: str) -> str:
+    """Where a job of that name listens: in Linux's own space of names, so that no file is left."""
+    return f"\0{name}"
 
 
 def is_there() -> bool:
@@ -54,7 +61,7 @@ def interrupted() -> None:
 
 
 def end(status: int, words: str = "") -> None:
-    """This rank ends with a status; ``words`` say why, should rank 0 not have said it."""
+    """This rank ends with a status; ``words`` say why, which the job prints."""
     _tell(status=status, words=words)
 
 

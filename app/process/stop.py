@@ -81,14 +81,19 @@ def erase_bar() -> None:
         os.write(2, b"\r\x1b[2K\x1b[?25h")
 
 
+def finish(status: int, message: str = "") -> None:
+    """Have this said of a process that is about to end: a job ends its ranks when one has failed."""
+    too_late()
+    link.end(status, message)
+
+
 def fail(status: int, message: str) -> None:
     """Say once why the process is about to end, on whichever rank of all that it is about to."""
-    rank, _ = ranks.from_environment()
-    if rank > 0 and not link.is_there():
-        time.sleep(_FIRST)
-    if rank == 0 or not link.is_there():
+    finish(status, message)
+    if not link.is_there():
+        if ranks.from_environment()[0] > 0:
+            time.sleep(_FIRST)
         complain(message)
-    link.end(status, message)
 
 
 def complain(message: str) -> None:

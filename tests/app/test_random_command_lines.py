@@ -5,13 +5,11 @@ GALINX_THOROUGH=1 tries as many as a release does.
 
 import os
 import random
-import signal
-import sys
 
 import pytest
-from support import SCENE, at_most
+from support import SCENE, at_most, called
 
-from galinx.app.cli import cli, run_from_shell
+from galinx.app.cli import cli
 
 LINES = 1000 if os.environ.get("GALINX_THOROUGH") else 100
 
@@ -77,22 +75,12 @@ def place(tmp_path_factory):
 def said(place, monkeypatch, capsys):
     """Calls the command line there; its status and what it says."""
     monkeypatch.chdir(place)
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
-
-    def leave(status):
-        raise SystemExit(status)
-
-    monkeypatch.setattr(os, "_exit", leave)
 
     def call(words):
-        monkeypatch.setattr(sys, "argv", ["galinx", *words])
-        with at_most(), pytest.raises(SystemExit) as ended:
-            run_from_shell()
-        return (ended.value.code, *capsys.readouterr())
+        with at_most():
+            return (called(*words), *capsys.readouterr())
 
-    yield call
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
+    return call
 
 
 def line(choose):

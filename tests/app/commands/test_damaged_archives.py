@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from support import command
+from tampering import archived, numbers, opened, texts
 
 from galinx.app.cli import cli
 from galinx.app.errors import BadInput
@@ -28,9 +29,7 @@ COMMANDS = (("check",), ("report",), ("plot",), ("show",), ("show", "--json"), (
 @pytest.fixture(scope="module")
 def content(map_run, tmp_path_factory):
     """The bytes of an archive that has every figure."""
-    path = tmp_path_factory.mktemp("whole") / "a.h5"
-    map_run.save(path)
-    return path.read_bytes()
+    return archived(map_run, tmp_path_factory.mktemp("whole"))
 
 
 @pytest.fixture
@@ -73,14 +72,7 @@ def test_the_status_of_a_damaged_archive(content, path):
 
 def again(file, name, data):
     """Another dataset in the place of one."""
-    told = dict(file[name].attrs)
-    del file[name]
-    if data.dtype.kind in "OU":
-        made = file.create_dataset(name, data=data.astype(object), dtype=h5py.string_dtype())
-    else:
-        chunks = data.shape if data.size and data.shape else None
-        made = file.create_dataset(name, data=data, chunks=chunks, fletcher32=bool(chunks))
-    made.attrs.update(told)
+    (texts if data.dtype.kind in "OU" else numbers)(name, data)(file)
 
 
 def other_type(file, name, choose):
@@ -170,10 +162,9 @@ def test_tampered_archives(content, path, capsys):
     choose = random.Random(2)
     for i in range(TAMPERED):
         path.write_bytes(content)
-        with h5py.File(path, "r+") as file:
+        sealed = i % 5 > 0
+        with opened(path, sealed) as file:
             done = tampered(file, choose)
-        if sealed := i % 5 > 0:
-            seal.put(path)
         stresses = sealed and done.startswith("other_value") and large(done.split()[-1])
         which = COMMANDS[:3] if stresses else COMMANDS
         try:
@@ -189,7 +180,7 @@ def older(map_run, path, monkeypatch):
     monkeypatch.setattr(seal, "put", lambda *_: None)
     monkeypatch.setattr(archive, "VERSION", 1)
     map_run.save(path)
-    with h5py.File(path, "r+") as file:
+    with opened(path, sealed=False) as file:
         del file.attrs["datasets"]
     path.write_bytes(path.read_bytes()[seal.ROOM :])
     return path
@@ -199,7 +190,7 @@ def test_an_archive_of_the_first_layout_is_read(older, map_run):
     data, attributes = reader.read(older)
     assert attributes["schema_version"] == 1 and data.keys() == map_run.data.keys()
     assert cli.main(["check", str(older)], standalone_mode=False) == 0
-    with h5py.File(older, "r+") as file:
+    with opened(older, sealed=False) as file:
         file.attrs["schema_version"] = 2
     with pytest.raises(UnreadableArchive, match="its digest: missing"):
         reader.read(older)

@@ -46,6 +46,20 @@ def test_closed_streams_are_the_null_device(tmp_path, count):
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
 
 
+@on_ranks
+@pytest.mark.parametrize("words", [PLAN, ("materials",), ("plan", "--help")])
+def test_what_cannot_be_written_is_named(tmp_path, count, words):
+    done = galinx(tmp_path, *count, *words, shell='"$@" >/dev/full')
+    is_refused(done, 3, "cannot write the output: No space left on device; make room")
+
+
+def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
+    is_refused(galinx(tmp_path, *RUN, shell='"$@" >/dev/full'), 3, "cannot write the output")
+    assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
+    done = galinx(tmp_path, "show", "x.h5", shell='"$@" | head -c 5')
+    assert (done.stdout, done.stderr) == (b"Table", b"")
+
+
 @pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])
 def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
     done = galinx(tmp_path, *count, "materials", PYTHONIOENCODING=encoding)
@@ -58,6 +72,11 @@ def test_every_rank_reads_a_scene_that_is_no_file(tmp_path, shell):
     done = galinx(tmp_path, "-n", "2", "plan", shell=shell, text=SCENE.read_bytes())
     assert done.returncode == 0 and not done.stderr
     assert b"ranks: 2" in done.stdout and done.stdout.count(b"cost ") == 1
+
+
+def test_ranks_are_not_given_what_has_no_end(tmp_path):
+    done = galinx(tmp_path, "-n", "2", "plan", shell='"$@" /dev/stdin </dev/zero')
+    is_refused(done, 2, "is larger than 50 MB")
 
 
 def test_a_scene_that_one_rank_alone_could_read_is_refused(tmp_path, monkeypatch):
@@ -111,10 +130,8 @@ def test_warnings_of_libraries_are_no_errors(tmp_path):
 
 
 @on_ranks
-@pytest.mark.skipif(os.getuid() != 0, reason="needs root, to be a user that nobody knows")
-def test_without_a_home_one_is_asked_for(count):
-    shell = 'setpriv --reuid 4321 --regid 4321 --clear-groups "$@"'
-    done = galinx("/", *count, *PLAN, shell=shell, without=("HOME",))
+def test_without_a_home_one_is_asked_for(count, stranger):
+    done = galinx("/", *count, *PLAN, shell=f'{" ".join(stranger)} "$@"', without=("HOME",))
     is_refused(done, 3, "user 4321 has no entry in passwd", "set HOME")
 
 

@@ -3,9 +3,9 @@
 import hashlib
 import json
 
-import h5py
 import numpy as np
 import pytest
+from tampering import attribute, opened, value
 
 from galinx.app.results import check
 from galinx.postprocess.errors import UnreadableArchive
@@ -26,23 +26,9 @@ def test_states_may_be_looked_at_a_few_at_a_time(whole, monkeypatch):
     assert check.faults(whole) == []
 
 
-def change(name, value, at=0):
-    def apply(file):
-        file[name][at] = value
-
-    return apply
-
-
 def times(name, factor):
     def apply(file):
         file[name][...] *= factor
-
-    return apply
-
-
-def attribute(name, value):
-    def apply(file):
-        file.attrs[name] = value
 
     return apply
 
@@ -79,17 +65,17 @@ def lost(file):
         (times("states/f", 0.0), "states/f holds something else than its scene gives"),
         (times("states/g", -1.0), "states/g holds something else"),
         (times("states/mu_c", 1.001), "states/mu_c holds something else"),
-        (change("states/motion", "BM7"), "states/motion holds something else"),
+        (value("states/motion", "BM7"), "states/motion holds something else"),
         (times("loops/f", 1.001), "loops/f holds something else"),
-        (change("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
+        (value("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
         (other_scene, "states/f holds something else"),
         (more_states, "it holds 2 states, its scene has 4"),
         (lost, "states/fem/v0 is missing, its scene asks for it"),
-        (change("states/fem/normal_force", -1.0), "nodal forces against the load"),
-        (change("states/fem/K_I_left", 0.1), "its comparisons say"),
+        (value("states/fem/normal_force", -1.0), "nodal forces against the load"),
+        (value("states/fem/K_I_left", 0.1), "its comparisons say"),
         (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),
         (times("states/fem/true_error", 0.5), "states/fem/true_error is not what"),
-        (change("interior/fem/sigma_XX", 1e3), "its comparisons say"),
+        (value("interior/fem/sigma_XX", 1e3), "its comparisons say"),
         (attribute("verdict", "FAIL"), "verdict says FAIL, its comparisons give PASS"),
         (attribute("verdict", "not judged"), "verdict says not judged"),
         (in_attribute("verdict_reasons", "at most 0.001", "at most 0.003"), "verdict_reasons says"),
@@ -100,7 +86,7 @@ def lost(file):
     ],
 )
 def test_what_does_not_fit_is_said(whole, changed, message):
-    with h5py.File(whole, "r+") as file:
+    with opened(whole, sealed=False) as file:
         changed(file)
     with pytest.raises(UnreadableArchive, match="damaged"):
         check.faults(whole)
@@ -109,9 +95,8 @@ def test_what_does_not_fit_is_said(whole, changed, message):
 
 
 def test_a_number_that_is_not_finite_is_refused(whole):
-    with h5py.File(whole, "r+") as file:
+    with opened(whole) as file:
         file["interior/fem/sigma_XX"][0] = np.inf
-    seal.put(whole)
     with pytest.raises(
         UnreadableArchive, match="interior/fem/sigma_XX: found a number that is not finite"
     ):

@@ -5,6 +5,7 @@ import json
 import h5py
 import numpy as np
 import pytest
+from tampering import archived, attribute, gone, made, numbers, opened, renamed, value
 
 from galinx.postprocess import schema
 from galinx.postprocess.errors import UnreadableArchive
@@ -14,9 +15,7 @@ from galinx.postprocess.hdf5 import reader, seal
 @pytest.fixture(scope="module")
 def whole(exact_run, tmp_path_factory):
     """The bytes of an archive."""
-    path = tmp_path_factory.mktemp("whole") / "a.h5"
-    exact_run.save(path)
-    return path.read_bytes()
+    return archived(exact_run, tmp_path_factory.mktemp("whole"))
 
 
 @pytest.fixture
@@ -29,8 +28,8 @@ def path(whole, tmp_path):
 def test_round_trip(exact_run, path):
     data, attributes = reader.read(path)
     assert data.keys() == exact_run.data.keys()
-    for name, value in exact_run.data.items():
-        np.testing.assert_array_equal(data[name], value)
+    for name, values in exact_run.data.items():
+        np.testing.assert_array_equal(data[name], values)
     assert attributes.items() >= exact_run.attributes.items()
     assert attributes["schema_version"] == schema.VERSION
     assert "surface/closed_form/sigma_XX" not in reader.read(path, stresses=False)[0]
@@ -79,47 +78,6 @@ def test_what_is_no_file_is_said(tmp_path):
     for name in ("missing.h5", "."):
         with pytest.raises(UnreadableArchive, match="is not a file"):
             reader.read(tmp_path / name)
-
-
-def renamed(old, new):
-    return lambda file: file.move(old, new)
-
-
-def made(name, data, **options):
-    """Another dataset in the place of one."""
-
-    def apply(file):
-        told = dict(file[name].attrs)
-        del file[name]
-        file.create_dataset(name, data=data, **options).attrs.update(told)
-
-    return apply
-
-
-def numbers(name, data):
-    data = np.asarray(data)
-    return made(name, data, fletcher32=True, chunks=tuple(max(1, n) for n in data.shape))
-
-
-def value(name, found, at=0):
-    def apply(file):
-        file[name][at] = found
-
-    return apply
-
-
-def attribute(name, found):
-    def apply(file):
-        file.attrs[name] = found
-
-    return apply
-
-
-def gone(name):
-    def apply(file):
-        del (file.attrs if name in file.attrs else file)[name]
-
-    return apply
 
 
 def unit(name, found):
@@ -228,7 +186,7 @@ TAMPERED = {
 @pytest.mark.parametrize("how", TAMPERED)
 def test_what_was_changed_is_named_though_its_digest_was_made_again(path, how):
     change, message = TAMPERED[how]
-    with h5py.File(path, "r+") as file:
+    with opened(path, sealed=False) as file:
         change(file)
     with pytest.raises(UnreadableArchive, match="damaged"):
         reader.read(path)
@@ -238,24 +196,21 @@ def test_what_was_changed_is_named_though_its_digest_was_made_again(path, how):
 
 
 def test_many_faults_are_one_message(path):
-    with h5py.File(path, "r+") as file:
+    with opened(path) as file:
         del file["states"]
-    seal.put(path)
     with pytest.raises(UnreadableArchive, match=r"and \d+ more$") as caught:
         reader.read(path)
     assert len(str(caught.value).splitlines()) == 10
 
 
 def test_an_archive_that_says_itself_what_is_not_finite_is_read(path):
-    with h5py.File(path, "r+") as file:
+    with opened(path) as file:
         file["states/alpha"][0] = np.nan
         told = json.loads(file.attrs["comparisons"])
         told["values that are not finite where they have to be: 1 for some"] = 1.0
         file.attrs["comparisons"] = json.dumps(told)
-    seal.put(path)
     assert np.isnan(reader.read(path)[0]["states/alpha"][0])
-    with h5py.File(path, "r+") as file:
+    with opened(path) as file:
         file["states/f"][0] = np.nan
-    seal.put(path)
     with pytest.raises(UnreadableArchive, match="states/f: found a number that is not finite"):
         reader.read(path)

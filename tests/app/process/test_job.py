@@ -1,0 +1,82 @@
+"""A job of several ranks: who is one of them, and what is left of it."""
+
+import signal
+import subprocess
+import sys
+
+from support import SCENE, clean_environment, command
+
+from galinx.app import errors
+
+#: Starts a job whose mpirun is the command given.
+JOB = "import sys; from galinx.app.process.job import Job; sys.exit(Job(sys.argv[1:]).run())"
+#: A rank that says that all is well.
+RANK = """
+import os, socket
+line = socket.socket(socket.AF_UNIX)
+line.connect("\\0" + os.environ["GALINX_JOB"])
+try:
+    line.sendall(b'{"rank": 0, "status": 0}\\n')
+except OSError:
+    pass
+"""
+
+
+def job(*mpirun):
+    """Status of a job, and what it says."""
+    done = subprocess.run(
+        [sys.executable, "-c", JOB, *mpirun], env=clean_environment(), capture_output=True, text=True,
+        timeout=60,
+    )  # fmt: skip
+    return done.returncode, done.stderr
+
+
+def test_a_rank_tells_how_its_job_ends():
+    assert job(sys.executable, "-c", RANK) == (errors.GOOD, "")
+
+
+def test_another_user_is_no_rank(stranger):
+    status, said = job(*stranger, sys.executable, "-c", RANK)
+    assert status == errors.FAILURE and "mpirun could not start the ranks" in said
+
+
+def test_a_job_that_is_killed_leaves_nothing_behind(tmp_path):
+    mpirun = tmp_path / "mpirun"
+    mpirun.write_text("#!/bin/sh\nkill -KILL $PPID\n", encoding="utf-8")
+    mpirun.chmod(0o700)
+    words = [mpirun, "2", sys.executable, "plan", "/dev/stdin"]
+    done = subprocess.run(
+        [sys.executable, "-m", "galinx.app.process.job", *words], input=b"a scene", timeout=60,
+        env=clean_environment() | {"TMPDIR": str(tmp_path)},
+    )  # fmt: skip
+    assert done.returncode == -signal.SIGKILL and [*tmp_path.iterdir()] == [mpirun]
+
+
+#: Rank 1 is killed when rank 0 is about to read a message from its memory.
+KILLED = """
+import os, signal
+from contextlib import suppress
+from pathlib import Path
+import numpy as np
+from mpi4py import MPI
+
+comm, data, status = MPI.COMM_WORLD, np.zeros(10**6), MPI.Status()
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
+if comm.rank:
+    comm.Isend(data, 0, os.getpid())
+    os.kill(os.getpid(), signal.SIGKILL)
+comm.Probe(1, status=status)
+with suppress(OSError):  # until it is dead, or gone
+    while ") Z " not in Path(f"/proc/{status.tag}/stat").read_text():
+        pass
+comm.Irecv(data, 1)
+signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
+"""
+
+
+def test_what_mpi_says_of_a_killed_rank_is_not_shown(tmp_path):
+    (tmp_path / "killed.py").write_text(KILLED, encoding="utf-8")
+    done = command("-n", 2, "-x", tmp_path / "killed.py", "plan", SCENE)
+    assert done.returncode == errors.FAILURE and done.stderr == (
+        "error: rank 1 or its mpirun was killed (did the machine lack memory?); nothing was written\n"
+    )

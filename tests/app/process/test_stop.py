@@ -1,0 +1,53 @@
+"""A signal that comes while a process ends changes neither its status nor what it says."""
+
+import subprocess
+import sys
+
+import pytest
+from support import SCENE, clean_environment
+
+#: With a signal when a function is entered: a job ends its ranks as soon as one says that it has failed.
+SCRIPT = """
+import os, pkgutil, signal, sys
+module, name = sys.argv[1].rsplit(".", 1)
+owner = pkgutil.resolve_name(f"galinx.app.{module}")
+true = getattr(owner, name)
+
+def hit(*given, **named):
+    setattr(owner, name, true)
+    os.kill(os.getpid(), signal.SIGTERM)
+    return true(*given, **named)
+
+setattr(owner, name, hit)
+sys.argv = ["galinx", *sys.argv[2:]]
+from galinx.__main__ import main
+main()
+"""
+NOT_THERE = "error: cannot read no.toml: No such file or directory\n"
+INTERRUPTED = "error: interrupted; nothing was written\n"
+
+
+def ended(function, *words):
+    """Status and messages of a command that gets a signal when a function of ``app`` is entered."""
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, function, *words],
+        env=clean_environment(), capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("function", ["process.link.end", "process.stop.complain"])
+def test_a_failure_is_said_to_its_end(function):
+    assert ended(function, "plan", "no.toml") == (2, NOT_THERE)
+
+
+def test_what_has_ended_well_has_ended_well():
+    assert ended("process.link.end", "plan", str(SCENE)) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "function", ["process.begin._check_machine", "cli._run", "scene.read.read", "process.stop.too_late"]
+)
+@pytest.mark.parametrize("scene", [str(SCENE), "no.toml"])
+def test_before_that_it_is_interrupted_wherever_it_is(function, scene):
+    assert ended(function, "plan", scene) == (3, INTERRUPTED)

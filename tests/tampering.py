@@ -1,0 +1,72 @@
+"""Archives that are changed on purpose: what may be done to one that is opened for writing."""
+
+from contextlib import contextmanager
+
+import h5py
+import numpy as np
+
+from galinx.postprocess.hdf5 import seal
+
+
+def archived(result, folder):
+    """The bytes of a result's archive."""
+    path = folder / "a.h5"
+    result.save(path)
+    return path.read_bytes()
+
+
+@contextmanager
+def opened(path, sealed=True):
+    """An archive that may be changed in the block; then its digest is made again, if it is to be."""
+    with h5py.File(path, "r+") as file:
+        yield file
+    if sealed:
+        seal.put(path)
+
+
+def value(name, found, at=0):
+    def apply(file):
+        file[name][at] = found
+
+    return apply
+
+
+def attribute(name, found):
+    def apply(file):
+        file.attrs[name] = found
+
+    return apply
+
+
+def gone(name):
+    def apply(file):
+        del (file.attrs if name in file.attrs else file)[name]
+
+    return apply
+
+
+def renamed(old, new):
+    return lambda file: file.move(old, new)
+
+
+def made(name, data, **options):
+    """Another dataset in the place of one."""
+
+    def apply(file):
+        told = dict(file[name].attrs)
+        del file[name]
+        file.create_dataset(name, data=data, **options).attrs.update(told)
+
+    return apply
+
+
+def texts(name, data):
+    """The same, of texts as archives have them."""
+    return made(name, np.asarray(data, object), dtype=h5py.string_dtype())
+
+
+def numbers(name, data):
+    """The same, of numbers as archives have them: with checksums where there can be some."""
+    data = np.asarray(data)
+    chunks = tuple(max(1, n) for n in data.shape) or None
+    return made(name, data, fletcher32=bool(chunks), chunks=chunks)

@@ -26,3 +26,9 @@ def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) ->
 def maximum_shear(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
     """Largest shear stress in the plane, √(¼(σ_XX - σ_YY)² + σ_XY²), in the unit of the stresses."""
     return np.hypot((σ_XX - σ_YY) / 2.0, σ_XY)
+
+
+def principal(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """Principal stresses in the plane, the larger first, (2, ...), in the unit of the stresses."""
+    middle, radius = (σ_XX + σ_YY) / 2.0, maximum_shear(σ_XX, σ_YY, σ_XY)
+    return np.array([middle + radius, middle - radius])

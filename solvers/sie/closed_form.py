@@ -91,6 +91,14 @@ class FlatPunch:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
         return self.response.inside(EdgePotential(self.α, self.β), self.g, np.asarray(X), np.asarray(Y))
 
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.σ_YY(X)
+        return np.where(
+            on, [self.σ_XX(X), σ_YY, self.g * σ_YY], self.inside(X, np.where(on, -1.0, Y))
+        )  # fmt: skip
+
     def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
         """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""
         return (1.0 - r) ** self.α * (1.0 + r) ** self.β

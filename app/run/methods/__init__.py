@@ -26,7 +26,7 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if body.pressure:
         return "the pressure is given" if quantity in _INTENSITIES else ""
-    if quantity and not body.flat and quantity.asked_by == stresses.BELOW:
+    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
         return "known below flat punches only"
     if quantity and not body.flat and quantity is states.K_I_BOTH:
         return "the two ends differ"

@@ -76,6 +76,11 @@ class Body:
         return self.load / (2.0 * self.solid.μ)
 
     @property
+    def strain(self) -> float:
+        """Unit of strains, dimensionless."""
+        return self.stress / self.solid.μ
+
+    @property
     def stress(self) -> float:
         """Unit of stresses [Pa]."""
         return self.load / (2.0 * self.profile.half_width)

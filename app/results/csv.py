@@ -15,7 +15,7 @@ from galinx.postprocess.hdf5 import reader
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
-from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.quantities.states import SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 
 #: Where states have values, and the word of output.quantities that asks for them, by table.
@@ -45,6 +45,8 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
                 f"{path} holds no stresses for --{which}; a scene asks for them by "
                 f'output.quantities = ["{word}"]'
             )
+        if si:  # c becomes the speed
+            rows = [row for row in rows if row is not VELOCITY]
         columns = _columns(archive, rows, si)
         yield _text([["state", *(column.head for column in columns)]])
         for numbers, data in _blocks(archive, rows, where):

@@ -7,6 +7,7 @@ from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
     runs,
     states,
     stresses,
+    validity,
     yielding,
 )
 from galinx.postprocess.quantities.quantity import (

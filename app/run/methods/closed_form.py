@@ -76,6 +76,10 @@ class FlatPunches(Punches):
         """At X = -a and X = a, the same number, (states, 2)."""
         return np.column_stack([self.local.K_I] * 2)
 
+    def strained_within(self, strain: float) -> NDArray[np.float64]:
+        """How far from X = -a and X = a, under the punch, -u,X exceeds a strain, over a, (states, 2)."""
+        return np.column_stack(self.local.strained_within(strain / self.task.body.strain))
+
     @cached_property
     def _over_places(self) -> FlatPunch:
         return FlatPunch(self.task.response, self.g[:, None])

@@ -95,4 +95,9 @@ ESTIMATE_YIELD = Quantity(
     range=_NOT_NEGATIVE,
 )  # fmt: skip
 
+#: By method, those that are lengths.
+OVER_HALF_WIDTH = (
+    VON_MISES_X, VON_MISES_Y, SHEAR_X, SHEAR_Y, REACH_LEFT, REACH_RIGHT, DEPTH,
+)  # fmt: skip
+
 QUANTITIES.add_all(globals())

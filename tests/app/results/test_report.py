@@ -147,7 +147,9 @@ def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
     text = html.escape(page.read_text(encoding="utf-8").replace("</body>", PROBE))
     # In a frame: no window of this browser is narrower than 500 px.
     frame = f'<iframe style="width: {width}px; height: 900px; border: 0" srcdoc="{text}"></iframe>'
-    told = "<script>onload = () => setTimeout(() => document.title = frames[0].document.title, 2e3)</script>"
+    told = (
+        "<script>onload = () => setTimeout(() => document.title = frames[0].document.title, 2e3)</script>"
+    )
     probe.write_text(f"<!doctype html><title></title>{frame}{told}", encoding="utf-8")
     done = subprocess.run(
         [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1300,900",

@@ -192,8 +192,15 @@ def scene_page() -> str:
     for name, section in SECTIONS.items():
         parts += [f"## [{name}]\n", *_section(section)]
     parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
-    rows = [(f"`{n}`", m.about, m.E, f"{m.nu:g}", m.rho, m.source) for n, m in LIBRARY.items()]
-    parts.append(_table(("name", "solid", "E", "ν (dimensionless)", "ρ", "source"), rows))
+    rows = [
+        (
+            f"`{n}`", m.about, m.E, f"{m.nu:g}", m.rho, m.source, m.yield_strength or "–",
+            m.yield_source or "breaks, does not yield",
+        )
+        for n, m in LIBRARY.items()
+    ]  # fmt: skip
+    heads = ("name", "solid", "E", "ν (dimensionless)", "ρ", "source", "yield strength", "its source")
+    parts.append(_table(heads, rows))
     return "\n".join(parts)
 
 

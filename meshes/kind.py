@@ -37,12 +37,14 @@ class Wanted:
             K_I and the pressure's moments are wanted alone.
         farthest: largest coordinate over a of such a place.
         exponent: of the strongest singularity of the pressure, in (-1, -1/2].
+        around: are such places all round the edges?
     """
 
     tolerance: float
     nearest: float | None = None
     farthest: float = 0.0
     exponent: float = -0.5
+    around: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,8 @@ class MeshKind:
         beside: size of the innermost cells over the distance of the nearest place, in the chart and over
             the root of the tolerance.
         gentle: tolerance below which stresses ask for gentler rings and more cells in angle: derivatives
-            converge half as fast as moments of the pressure, and degrees are not high enough.
+            converge half as fast as moments of the pressure, and degrees are not high enough. All round
+            the edges they always do.
         smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
             positions leaves enough digits.
         sectors: cells along each leg of an L.
@@ -98,7 +101,7 @@ class MeshKind:
     def refinement(self, wanted: Wanted) -> Refinement:
         """Refinement that reaches what is wanted with :meth:`degree`."""
         ratio, sectors = self.ratio, self.sectors
-        if wanted.nearest is not None and self._of_cells(wanted) < self.gentle:
+        if wanted.nearest is not None and (wanted.around or self._of_cells(wanted) < self.gentle):
             # An even number puts a vertex into the corners of walls.
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))

@@ -95,6 +95,21 @@ ATTRIBUTES = {
         "a finite number",
         lambda value: _number(value) and isfinite(value),
     ),
+    "material": Attribute("name of the solid in the library, or nothing", "a text", is_text, since=3),
+    "solid": Attribute(
+        "its kind, its parameters and, where the scene gives it, yield_strength, in SI",
+        "a JSON object of numbers and texts",
+        _object(lambda value: is_text(value) or _number(value)),
+        since=3,
+    ),
+    "half_width": Attribute("a, half the width of the contact [m]", "a number", _number, since=3),
+    "c_s": Attribute("wave speed to which c refers [m/s]", "a number", _number, since=3),
+    "speed_limit": Attribute(
+        "highest speed of finite elements, that of a wave along the surface [m/s]",
+        "a number",
+        _number,
+        since=3,
+    ),
     "rules": Attribute("names of the comparisons that were made", _LIST, _list),
     "comparisons": Attribute(
         "the largest over all states by what was compared",
@@ -107,7 +122,9 @@ ATTRIBUTES = {
         _one_of("PASS", "FAIL", "not judged"),
     ),
     "verdict_reasons": Attribute("the comparisons that it rests on", _LIST, _list),
-    "warnings": Attribute("what was told before the run", _LIST, _list),
+    "warnings": Attribute(
+        "what was told before the run, and where its answers do not hold", _LIST, _list
+    ),
     "versions": Attribute("of libraries", "a JSON object of texts", _object(is_text)),
     "machine": Attribute("that it ran on", "a text", is_text),
 }

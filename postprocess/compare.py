@@ -11,6 +11,7 @@ from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
+from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
@@ -117,6 +118,28 @@ def _inside(data: dict[str, Any], _: float) -> float:
     return (np.abs(fem - exact) / scale.of_inside(exact, *places)).max()
 
 
+def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
+    pairs = [(data[row[FEM].path], data[row[CLOSED_FORM].path]) for row in (to.VON_MISES, to.SHEAR)]
+    off = np.abs([fem / exact - 1.0 for fem, exact in pairs])
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: all are infinite
+
+
+def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
+    """As a stress: at a distance d from an edge that is a power of d."""
+    off = []
+    for rows, exponent in ((to.REACH_LEFT, of.BETA), (to.REACH_RIGHT, of.ALPHA)):
+        power = -data[exponent.path]
+        fem, exact = (np.maximum(data[row.path], _NO_REACH) ** power for row in rows.values())
+        off.append(np.abs(fem / exact - 1.0))
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that
+
+
+def _depth(data: dict[str, Any], _: float) -> float | None:
+    fem, exact = (data[row.path] for row in to.DEPTH.values())
+    off = np.abs(fem - exact)
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None
+
+
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -124,6 +147,9 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
 def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
     return lambda data, _: data[row.path].max()
 
+
+#: Distance over a from an edge that is as good as none.
+_NO_REACH = 1e-300
 
 #: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
 _VANISHING = 0.1
@@ -190,6 +216,24 @@ RULES: Registry[Rule] = Registry(
         "estimate inside": Rule(
             "estimated error of stresses inside, relative", (at.ESTIMATE_INSIDE,),
             _largest(at.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
+        ),
+        "largest stresses": Rule(
+            "largest von Mises and shear stress, relative",
+            (*to.VON_MISES.values(), *to.SHEAR.values()), _largest_stresses, tolerances=1.0,
+            own_pressure=True,
+        ),
+        "yielded zone": Rule(
+            "distance from the edges within which yield is passed, as a stress, relative",
+            (*to.REACH_LEFT.values(), *to.REACH_RIGHT.values(), of.ALPHA, of.BETA), _yielded_zone,
+            tolerances=1.0,
+        ),
+        "depth of yield": Rule(
+            "depth of the yielded zone, over a",
+            (*to.DEPTH.values(),), _depth, own_pressure=True,
+        ),
+        "estimate of yield": Rule(
+            "estimated error of stresses in which yield is looked for, relative", (to.ESTIMATE_YIELD,),
+            _largest(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
         ),
         # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
         # and so has about half the digits of the moments that the tolerance speaks of.

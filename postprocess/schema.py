@@ -22,7 +22,7 @@ from galinx.postprocess.quantities.quantity import INSIDE, POINT
 from galinx.solvers.parameters import Range
 
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
-VERSION = SEALED = 2
+VERSION, SEALED = 3, 2
 
 #: What every run writes.
 _ALWAYS = (

@@ -26,3 +26,21 @@ def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) ->
 def maximum_shear(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
     """Largest shear stress in the plane, √(¼(σ_XX - σ_YY)² + σ_XY²), in the unit of the stresses."""
     return np.hypot((σ_XX - σ_YY) / 2.0, σ_XY)
+
+
+def principal(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """Principal stresses in the plane, the larger first, (2, ...), in the unit of the stresses."""
+    middle, radius = (σ_XX + σ_YY) / 2.0, maximum_shear(σ_XX, σ_YY, σ_XY)
+    return np.array([middle + radius, middle - radius])
+
+
+def tension(surface: Any) -> NDArray[np.float64]:
+    """Largest tension under the punch over N/(2a), and where over a; 0 and NaN for none, (2, states).
+
+    Args:
+        surface: :class:`galinx.solvers.solution.Surface`.
+    """
+    places = surface.places
+    under, X = surface.σ_YY[:, places.under], places.X[places.under]
+    size = np.maximum(under.max(axis=1), 0.0)
+    return np.array([size, np.where(size > 0.0, X[under.argmax(axis=1)], np.nan)])

@@ -1,16 +1,16 @@
 """Tables as text."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from galinx.postprocess.named import parameters
 from galinx.postprocess.page.symbols import plain
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, validity, yielding
 from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities.quantity import FEM
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 
 #: States that a table shows at most.
 LIMIT = 24
@@ -33,6 +33,28 @@ class Sheet:
     notes: Sequence[str] = ()
 
 
+class Scaled(NamedTuple):
+    """What a quantity is called where it is told, its unit, and what its numbers are multiplied by."""
+
+    name: str
+    unit: str
+    factor: float
+
+    @property
+    def head(self) -> str:
+        """Of a column."""
+        return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
+
+
+#: How a quantity of some name is told; None where it is not.
+Scaling = Callable[[Quantity, str], Scaled | None]
+
+
+def as_archived(row: Quantity, name: str) -> Scaled:
+    """In its own unit."""
+    return Scaled(name, row.unit, 1.0)
+
+
 #: Columns of the states' table after what tells states apart: (head, quantity, form).
 _EITHER = [("K_I", of.K_I_BOTH, "{:.6f}"), ("error", of.TRUE_ERROR, "{:.1e}")]
 _ALONE = [("K(-a)", of.K_I_LEFT[FEM], "{:.6f}"), ("K(a)", of.K_I_RIGHT[FEM], "{:.6f}")]
@@ -42,7 +64,7 @@ _BOTH = [
 ]  # fmt: skip
 
 
-def states_sheet(data: dict[str, Any], title: str) -> Sheet:
+def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archived) -> Sheet:
     """The first states of an archive: what tells them apart, and the main results."""
     apart = {path: row for path, row in parameters(data).items() if path != of.MOTION.path}
     varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
@@ -51,7 +73,13 @@ def states_sheet(data: dict[str, Any], title: str) -> Sheet:
     for head, row, form in (("f", of.FRICTION, "{:+.4f}"), *results, *_BOTH):
         if row.path in data:
             shown[head] = row, form
-    series = [data[row.path][:LIMIT].tolist() for row, _ in shown.values()]
+    told = [scaling(row, head) or as_archived(row, head) for head, (row, _) in shown.items()]
+    series = [
+        (one.factor * data[row.path][:LIMIT]).tolist() for one, (row, _) in zip(told, shown.values())
+    ]
+    heads = [
+        head if one.unit == row.unit else one.head for one, (head, (row, _)) in zip(told, shown.items())
+    ]
     forms = [form for _, form in shown.values()]
     labels = [f"{n} {motion}" for n, motion in enumerate(data[of.MOTION.path][:LIMIT].tolist())]
     rows = [
@@ -65,14 +93,59 @@ def states_sheet(data: dict[str, Any], title: str) -> Sheet:
     same = [f"{_head(row)} = {data[path][0]:.4g}" for path, row in apart.items() if path not in varied]
     if same:
         notes.append(f"the same in all: {', '.join(same)}")
-    notes.append("dimensionless where no unit stands; c is the speed over the shear wave speed")
+    about = "; c is the speed over the shear wave speed" * (_head(of.SPEED) in heads)
+    notes.append(f"dimensionless where no unit stands{about}")
     if "error" in shown:
         notes.append("K_I: closed form, at both edges; error and estimate: of finite elements, relative")
     if "α" in shown:
         notes.append("α, β: exponents of the pressure at X = a and X = -a")
-    return Sheet(title or "States", ["state", *shown], rows, notes)
+    return Sheet(title or "States", ["state", *heads], rows, notes)
 
 
 def _head(row: Quantity) -> str:
     unit = "" if row.unit == "1" else f" ({row.unit})"
     return plain(f"${row.symbol}$") + unit
+
+
+#: Numbers of states that are lengths over the half-width.
+LENGTHS = (
+    *validity.STRAINED,
+    *(where for _, where in validity.TENSION.values()),
+    *(row for rows in yielding.OVER_HALF_WIDTH for row in rows.values()),
+)
+
+#: What tells where a solid yields and where answers do not hold, by what a table calls it.
+_LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
+    ("largest von Mises stress", yielding.VON_MISES),
+    ("  at X", yielding.VON_MISES_X),
+    ("  at Y", yielding.VON_MISES_Y),
+    ("largest shear stress", yielding.SHEAR),
+    ("  at X", yielding.SHEAR_X),
+    ("  at Y", yielding.SHEAR_Y),
+    ("load at first yield", yielding.FIRST_LOAD),
+    ("yield within, from X = -a", yielding.REACH_LEFT),
+    ("yield within, from X = a", yielding.REACH_RIGHT),
+    ("depth of the yielded zone", yielding.DEPTH),
+    ("wave crossings in a stroke", {"": validity.CROSSINGS}),
+    ("slip turned round, from X = -a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
+    ("slip turned round, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
+    ("strain beyond 5 %, from X = -a", {CLOSED_FORM: validity.STRAIN[0]}),
+    ("strain beyond 5 %, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
+    ("tension under the punch", {method: rows[0] for method, rows in validity.TENSION.items()}),
+    ("  at X", {method: rows[1] for method, rows in validity.TENSION.items()}),
+)
+_METHODS = {CLOSED_FORM: "exact", FEM: "FE", "": ""}
+
+
+def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
+    """Where the solid yields, and where answers do not hold: least and most of all states."""
+    rows = []
+    for label, by_method in _LIMITS:
+        for method, row in by_method.items():
+            told = scaling(row, "")
+            if row.path in data and told and np.nan_to_num(values := data[row.path]).any():
+                ends = (f"{told.factor * end(values):.4g}" for end in (np.nanmin, np.nanmax))
+                unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
+                rows.append([label, _METHODS[method], unit, *ends])
+    notes = ["exact: closed form, FE: finite elements; slip and strain: at the load"]
+    return Sheet("Yield, and where answers hold", ["", "by", "unit", "least", "most"], rows, notes)

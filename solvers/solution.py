@@ -1,6 +1,6 @@
 """What every method gives: friction states at one speed; lengths over a, stresses over N/(2a)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -20,10 +20,12 @@ class Places:
     Attributes:
         X: positions on the surface, (n,).
         points: positions X, Y inside, (m, 2).
+        around: where stresses are looked at for yield, (k, 2).
     """
 
     X: NDArray[np.float64]
     points: NDArray[np.float64]
+    around: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
 
     @cached_property
     def under(self) -> NDArray[np.bool_]:
@@ -40,12 +42,14 @@ class Body:
         profile: the punch.
         load: N per depth [N/m].
         pressure: that is put in; None where it is the punch's.
+        yield_strength: of the solid, uniaxial [Pa]; None where it is not known.
     """
 
     solid: Solid
     profile: Profile
     load: float
     pressure: LinearPressure | None = None
+    yield_strength: float | None = None
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
         """The profile's height over N/(2μ) at X over a."""
@@ -70,6 +74,11 @@ class Body:
     def displacement(self) -> float:
         """Unit of displacements [m]."""
         return self.load / (2.0 * self.solid.μ)
+
+    @property
+    def strain(self) -> float:
+        """Unit of strains, dimensionless."""
+        return self.stress / self.solid.μ
 
     @property
     def stress(self) -> float:

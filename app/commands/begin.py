@@ -54,6 +54,8 @@ def materials() -> int:
             say(f"{name}: {material.about}")
             say(f"  E = {material.E}, ν = {material.nu:g} (dimensionless), ρ = {material.rho}")
             say(f"  {material.source}", 4)
+            if material.yield_strength:
+                say(f"  yield strength {material.yield_strength}: {material.yield_source}", 4)
     return errors.GOOD
 
 

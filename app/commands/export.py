@@ -15,7 +15,7 @@ from galinx.postprocess.target import TABLE, Target
 @click.option("--states", is_flag=True, help="A row a state; this is the default.")
 @click.option("--surface", is_flag=True, help="A row for each state and point on the surface.")
 @click.option("--inside", is_flag=True, help="A row for each state and point inside.")
-@click.option("--si", is_flag=True, help="Stresses in Pa, positions in m, speeds in m/s.")
+@options.si
 @click.option("-o", "output", type=options.FILE, help="File; default: standard output.")
 @options.overwrite
 def csv(archive: Path, si: bool, output: Path | None, overwrite: bool, **tables: bool) -> int:

@@ -9,25 +9,31 @@ import click
 from galinx.app import errors, ranks
 from galinx.app.commands import options
 from galinx.app.console.program import program
-from galinx.app.console.terminal import print_summary
+from galinx.app.console.terminal import print_sheets, print_warnings
 
 
 @click.command()
 @options.archive
 @click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
-def show(archive: Path, as_json: bool) -> int:
-    """Show the states and the verdict of ARCHIVE.
+@options.si
+def show(archive: Path, as_json: bool, si: bool) -> int:
+    """Show the states and the verdict of ARCHIVE, where it yields, and where its answers hold.
 
-    Example: ./run.sh show tables.h5 --json
+    Example: ./run.sh show tables.h5 --si
     """
-    from galinx.postprocess.hdf5.reader import read
+    from galinx.app.results.si import scaling
+    from galinx.postprocess.tables import limits_sheet, states_sheet
 
-    data, attributes = read(archive, stresses=False)
+    result = _loaded(archive, stresses=False)
+    data, attributes = result.data, result.attributes
     if ranks.is_root():
+        scaled = scaling(result.scene if si else None)
         if as_json:
-            print(json.dumps(_as_json(data, attributes), ensure_ascii=False, indent=1))
+            print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
-            print_summary(data, attributes)
+            sheets = states_sheet(data, attributes["title"], scaled), limits_sheet(data, scaled)
+            print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
+            print_warnings(attributes)
     return errors.GOOD
 
 
@@ -111,19 +117,22 @@ def _loaded(archive: Path, stresses: bool = True) -> Any:
     return result
 
 
-def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]:
-    """States as a list of objects nested like the archive's paths; NaN becomes null."""
+def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> dict[str, Any]:
+    """States as a list of objects nested like the archive's paths, and units likewise; NaN is null."""
+    from galinx.postprocess.quantities import declared
     from galinx.postprocess.quantities.states import FRICTION
 
     states: list[dict[str, Any]] = [{} for _ in data[FRICTION.path]]
+    units: dict[str, Any] = {}
     for name, values in data.items():
         section, *path, last = name.split("/")
-        if section != "states":
+        if section != "states" or (told := scaled(declared(name), last)) is None:
             continue
-        for state, value in zip(states, values.tolist()):
+        numbers = values if told.factor == 1.0 else told.factor * values
+        for state, value in zip([units, *states], [told.unit, *numbers.tolist()]):
             for level in path:
                 state = state.setdefault(level, {})
-            state[last] = None if value != value else value
+            state[told.name] = None if value != value else value
     return {
         "title": attributes["title"],
         "version": attributes["version"],
@@ -131,6 +140,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]
         "verdict": attributes["verdict"],
         "verdict_reasons": json.loads(attributes["verdict_reasons"]),
         "warnings": json.loads(attributes["warnings"]),
+        "units": units,
         "states": states,
     }
 

@@ -42,6 +42,8 @@ def changes(command: Any) -> Any:
     )(with_unset)  # fmt: skip
 
 
+si = click.option("--si", is_flag=True, help="Stresses in Pa, lengths in m, speeds in m/s.")
+
 overwrite = click.option(
     "--overwrite", is_flag=True, help="Replace what has that name, whatever kind of file it is."
 )

@@ -38,7 +38,7 @@ def print_sheet(console: Console, sheet: Sheet) -> None:
             title_style="", header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
         )  # fmt: skip
         for i in columns:
-            table.add_column(sheet.columns[i], justify="right" if i else "left", no_wrap=True)
+            table.add_column(sheet.columns[i], justify="right" if i else "left", no_wrap=i > 0)
         for row in sheet.rows:
             table.add_row(*(row[i] for i in columns))
         console.print(table)
@@ -50,6 +50,7 @@ def print_sheet(console: Console, sheet: Sheet) -> None:
 def _parts(sheet: Sheet, width: int) -> list[list[int]]:
     """Columns that stand side by side, the first of all in every part."""
     wide = [max(map(cell_len, column)) + 2 for column in zip(sheet.columns, *sheet.rows)]
+    wide[0] = min(wide[0], max(width // 2, 12))  # labels may take several lines
     parts = [[0]]
     for i in range(1, len(wide)):
         if len(parts[-1]) > 1 and sum(wide[k] for k in parts[-1]) + wide[i] > width:

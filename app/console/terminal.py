@@ -5,6 +5,7 @@ import os
 import shutil
 import sys
 import textwrap
+from collections.abc import Iterable
 from typing import Any
 
 from galinx.app import ranks
@@ -27,12 +28,24 @@ def colours() -> bool:
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
     """States, comparisons and verdict unless quiet; warnings go to the error stream."""
     if not quiet:
-        from galinx.app.console.sheets import new_console, print_sheet, print_verdict
         from galinx.postprocess.tables import states_sheet
 
-        console = new_console(colours=colours())
-        print_sheet(console, states_sheet(data, attributes["title"]))
-        print_verdict(console, attributes)
+        print_sheets([states_sheet(data, attributes["title"])], attributes)
+    print_warnings(attributes)
+
+
+def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
+    """Tables of an archive, comparisons and verdict."""
+    from galinx.app.console.sheets import new_console, print_sheet, print_verdict
+
+    console = new_console(colours=colours())
+    for sheet in sheets:
+        print_sheet(console, sheet)
+    print_verdict(console, attributes)
+
+
+def print_warnings(attributes: dict[str, Any]) -> None:
+    """Warnings of an archive, on the error stream."""
     for text in json.loads(attributes["warnings"]):
         print(f"warning: {text}", file=sys.stderr)
 

@@ -119,12 +119,14 @@ def plan_fem(
 
 def wanted_for(tolerance: float, places: Places, exponent: float) -> Wanted:
     """What a mesh has to be good for where stresses are asked for at some places."""
-    X, Y = np.concatenate([np.column_stack([places.X, 0.0 * places.X]), places.points]).T
+    on_surface = np.column_stack([places.X, 0.0 * places.X])
+    X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
         return Wanted(tolerance, exponent=exponent)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = float(np.hypot(X, Y).max())
-    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent)
+    around = bool(len(places.around))
+    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around)
 
 
 def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:

@@ -119,9 +119,11 @@ def check_places(scene: Scene, places: Places) -> None:
     Raises:
         BadInput: they cannot.
     """
-    if not len(places.points):
+    asked = np.concatenate([places.points, places.around])
+    if not len(asked):
         return
-    far = float(np.abs(places.points).max())
+    key = "output.points" if len(places.points) else "output.quantities"
+    far = float(np.abs(asked).max())
     limit = inner(scene, far)
     if far > limit:
         raise BadInput(
@@ -130,7 +132,7 @@ def check_places(scene: Scene, places: Places) -> None:
         )
     if scene.solid.nearly_incompressible:
         raise BadInput(
-            f"output.points: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
+            f"{key}: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
             'finite elements; use methods = ["closed_form"]'
         )
 

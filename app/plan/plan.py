@@ -21,11 +21,16 @@ from galinx.app.scene.sense import oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, LOCAL
+from galinx.postprocess.yielding.strength import places as yield_places
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
 
 #: What words of output.quantities ask for, where a plan says so.
-_PLACES = {stresses.ON_SURFACE: "stresses on the surface", stresses.BELOW: "stresses inside"}
+_PLACES = {
+    stresses.ON_SURFACE: "stresses on the surface",
+    stresses.BELOW: "stresses inside",
+    stresses.YIELD: "yield",
+}
 
 
 def make_plan(scene: Scene) -> Plan:
@@ -37,9 +42,11 @@ def make_plan(scene: Scene) -> Plan:
     all_speeds, count = speeds(scene), states_a_speed(scene)
     check_states(len(all_speeds) * count)
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
-    body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure)
+    strength = scene.half_plane.yield_strength
+    body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure, strength)
     methods = _methods(scene, body)
-    places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)))
+    around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
+    places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
     fem = None
     if "fem" in methods:
@@ -67,7 +74,8 @@ def _contact(scene: Scene) -> bool:
 def _asked(scene: Scene, places: Places) -> Places:
     """Those places whose stresses are asked for."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
-    return Places(places.X[: len(places.X) * surface], places.points[: len(places.points) * below])
+    X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
+    return Places(X, points, places.around)
 
 
 def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
@@ -121,6 +129,11 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
+    if stresses.YIELD in words and not body.pressure:
+        skipped.append(
+            "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
+            "edges of a punch, and any load makes these yield"
+        )
     return skipped
 
 

@@ -24,7 +24,8 @@ class States:
 
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
-            speed), the law's parameters, f = F/N signed, and g = σ_XY/σ_YY under the punch.
+            speed), the law's parameters, the speed in m/s, how often a wave crosses the contact in a
+            stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
@@ -113,11 +114,21 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         "X_over_L": np.tile(_joined([stroke.X_over_L for stroke in strokes]), len(f)),
         "c": np.repeat(all_speeds, friction.count * per_law),
         **values,
+        "speed": np.repeat(np.multiply(all_speeds, scene.solid.c_s), friction.count * per_law),
+        "wave_crossings": np.repeat(_crossings(scene, all_speeds), friction.count * per_law),
         "f": f.ravel(),
         "g": friction.stress_ratio * f.ravel() + 0.0,
     }
     travel = _joined([stroke.X_over_L for stroke in drawn])
     return States(columns, np.repeat(loop, per_law), travel, np.array(loops))
+
+
+def _crossings(scene: Scene, all_speeds: Sequence[float]) -> NDArray[np.float64]:
+    """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
+    c = np.array(all_speeds)
+    with np.errstate(divide="ignore"):
+        often = scene.friction.pre_sliding / (2.0 * scene.punch.profile.half_width * c)
+    return np.where(c > 0.0, often, np.nan)
 
 
 def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw]]:

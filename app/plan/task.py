@@ -132,8 +132,9 @@ class Plan:
 
     @property
     def numbers(self) -> int:
-        """Numbers of a state that methods give."""
-        return sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
+        """Numbers of a state that methods give, or look at."""
+        looked_at = 3 * len(self.places.around)
+        return looked_at + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
     def chunks(self, task: Task) -> list[slice]:
         """A task's rows, so many at a time."""

@@ -1,7 +1,7 @@
 """Does an archive say what its own scene and numbers say? Asked of one that fits the schema."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from galinx import __version__
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
 from galinx.app.run.judge import Judge
+from galinx.app.run.told import of_scene
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.postprocess import compare
@@ -19,6 +20,7 @@ from galinx.postprocess.hdf5 import reader
 from galinx.postprocess.quantities import column, runs, table
 from galinx.postprocess.quantities.quantity import NEVER, STATE
 from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.schema import VERSION
 
 #: States looked at together.
 _ROWS = 1000
@@ -36,14 +38,15 @@ def faults(path: Path) -> list[str]:
     """
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
-        found = [*_of_states(archive.data, scene)]
+        found = [*_of_states(archive, scene)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
             found += _of_plan(archive, scene)
         return [*found, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
-def _of_states(data: Mapping[str, Any], scene: Scene) -> Iterator[str]:
+def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     """Friction is followed once more."""
+    data, older = archive.data, archive.attributes["schema_version"] < VERSION
     count, found = len(speeds(scene)) * states_a_speed(scene), len(data[SPEED.path])
     if count != found:
         yield f"it holds {found} states, its scene has {count}"
@@ -56,7 +59,8 @@ def _of_states(data: Mapping[str, Any], scene: Scene) -> Iterator[str]:
     }
     for name, values in expected.items():
         if name not in data:
-            yield f"{name} is missing, its scene has it"
+            if not older:  # whose layout has fewer
+                yield f"{name} is missing, its scene has it"
         elif not _same(data[name], values):
             yield f"{name} holds something else than its scene gives"
 
@@ -66,15 +70,16 @@ def _same(found: Any, expected: Any) -> bool:
         return False
     if np.asarray(expected).dtype.kind != "f":
         return bool((found == expected).all())
-    return np.allclose(found, expected, rtol=_SAME, atol=_SAME * np.abs(expected).max())
+    size = np.nanmax(np.abs(expected), initial=0.0)
+    return np.allclose(found, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
 def _of_plan(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     """What the same program would archive of the scene."""
     plan, attributes, data = make_plan(scene), archive.attributes, archive.data
-    given = {"title": scene.title, "load": scene.punch.load, "rules": json.dumps(sorted(plan.rules))}
+    given = of_scene(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
-        if attributes[name] != value:
+        if name in attributes and attributes[name] != value:  # older layouts have fewer
             found = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {found!r}, its scene gives {value!r}"
     for name, positions in plan.positions.items():

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from galinx.app.errors import BadInput
-from galinx.app.results.si import Scaled, in_si
+from galinx.app.results.si import scaling
 from galinx.app.scene import read as scenes
 from galinx.postprocess.hdf5 import reader
 from galinx.postprocess.named import parameters
@@ -17,6 +17,7 @@ from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import SPEED
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.postprocess.tables import Scaled
 
 #: Where states have values, and the word of output.quantities that asks for them, by table.
 TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}
@@ -45,7 +46,7 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
                 f"{path} holds no stresses for --{which}; a scene asks for them by "
                 f'output.quantities = ["{word}"]'
             )
-        columns = _columns(archive, rows, si)
+        rows, columns = _columns(archive, rows, si)
         yield _text([["state", *(column.head for column in columns)]])
         for numbers, data in _blocks(archive, rows, where):
             cells = (_scaled(data[row.path], column.factor) for row, column in zip(rows, columns))
@@ -61,12 +62,15 @@ def _rows(archive: reader.Archive, where: str) -> list[Quantity]:
     return [*first.values(), *others]
 
 
-def _columns(archive: reader.Archive, rows: list[Quantity], si: bool) -> list[Scaled]:
-    names = (row.path.partition("/")[2].replace("/", "_") for row in rows)
-    if not si:
-        return [Scaled(name, row.unit, 1.0) for name, row in zip(names, rows)]
-    scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
-    return [in_si(row, name, scene) for name, row in zip(names, rows)]
+def _columns(
+    archive: reader.Archive, rows: list[Quantity], si: bool
+) -> tuple[list[Quantity], list[Scaled]]:
+    """Those rows that are told, and how."""
+    scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive") if si else None
+    scaled = scaling(scene)
+    found = ((row, scaled(row, row.path.partition("/")[2].replace("/", "_"))) for row in rows)
+    told = [(row, column) for row, column in found if column]
+    return [row for row, _ in told], [column for _, column in told]
 
 
 def _blocks(

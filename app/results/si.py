@@ -1,42 +1,38 @@
 """Quantities of archives in SI: what is over N/(2a), a and the wave speed, in Pa, m and m/s."""
 
-from typing import NamedTuple
-
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import Quantity
-from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.quantities.states import SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
+from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
 from galinx.solvers.solution import Body
 
-_OVER_HALF_WIDTH = {SURFACE_X.path: "X", INSIDE_X.path: "X", INSIDE_Y.path: "Y"}
+_OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
 
 
-class Scaled(NamedTuple):
-    """What a quantity is called in SI, its unit, and what its numbers are multiplied by."""
-
-    name: str
-    unit: str
-    factor: float
-
-    @property
-    def head(self) -> str:
-        """Of a column."""
-        return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
+def scaling(scene: Scene | None) -> Scaling:
+    """How quantities are told: in SI of a scene, or as archived where none is given."""
+    if scene is None:
+        return as_archived
+    return lambda row, name: in_si(row, name, scene)
 
 
-def in_si(row: Quantity, name: str, scene: Scene) -> Scaled:
+def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
     """A quantity in SI; dimensionless ones that are over no length, stress or speed stay.
 
     Args:
         row: in the table of quantities.
         name: what it is called as archived.
         scene: that the archive is of.
+
+    Returns:
+        None for what another quantity becomes.
     """
     body = Body(scene.solid, scene.punch.profile, scene.punch.load)
     if row.unit == "N/(2a)":
         return Scaled(name, "Pa", body.stress)
     if row.path in _OVER_HALF_WIDTH:
-        return Scaled(_OVER_HALF_WIDTH[row.path], "m", body.profile.half_width)
-    if row.path == SPEED.path:
+        return Scaled(name.removesuffix("_over_a"), "m", body.profile.half_width)
+    if row is SPEED:
         return Scaled("speed", "m/s", body.solid.c_s)
-    return Scaled(name, row.unit, 1.0)
+    return None if row is VELOCITY else as_archived(row, name)

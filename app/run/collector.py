@@ -83,6 +83,7 @@ class Collector:
     def _take(self, part: Part) -> None:
         started = perf_counter()
         self._judge.see(part.comparisons)
+        self._judge.validity.see(part.data)
         for name, values in part.data.items():
             self._sink.write(name, part.rows, values)
         if part.record:

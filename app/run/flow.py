@@ -19,6 +19,7 @@ from galinx.app.run.judge import Judge
 from galinx.app.run.methods import METHODS
 from galinx.app.run.sinks import Nowhere, Sink
 from galinx.app.run.solve import Work
+from galinx.app.run.told import of_scene
 from galinx.app.run.versions import libraries, machine
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
@@ -59,6 +60,7 @@ def compute(
         _put_states(sink, scene, plan, states)
     judge = Judge(scene, plan.rules)
     if plan.methods:
+        judge.validity.see({column(name): values for name, values in states.columns.items()})
         collector = Collector(sink, judge, progress, journal, plan)
         for part in _parts(plan, states, collector.earlier(), progress, clock):
             collector.take(part)
@@ -113,11 +115,10 @@ def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
         "versions": json.dumps(libraries()),
         "machine": machine(),
         "scene_sha256": scene.sha256,
-        "title": scene.title,
-        "load": scene.punch.load,
+        **of_scene(scene),
         "rules": json.dumps(sorted(plan.rules)),
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
         "comparisons": json.dumps(judge.worst, ensure_ascii=False),
-        "warnings": json.dumps(plan.warnings, ensure_ascii=False),
+        "warnings": json.dumps([*plan.warnings, *judge.validity.words()], ensure_ascii=False),
     }

@@ -6,6 +6,7 @@ import numpy as np
 
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.compare import RULES, Comparison
+from galinx.postprocess.validity import Validity
 
 #: Speeds that could not be solved of which a verdict says why, at most.
 _FAILURES = 10
@@ -21,11 +22,13 @@ class Judge:
     Attributes:
         worst: largest value by the comparison's text, dimensionless.
         failures: what could not be solved, and why.
+        validity: watches where what was solved does not hold.
     """
 
     def __init__(self, scene: Scene, names: Iterable[str]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
+        self.validity = Validity()
         rules = {name: RULES[name] for name in names}
         limits = {
             name: rule.allowed(scene.solve.tolerance)

@@ -10,7 +10,7 @@ from tomlkit.items import Item
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
 
-_CONSTANTS = ("solid.E", "solid.nu", "solid.rho")
+_CONSTANTS = ("solid.E", "solid.nu", "solid.rho", "solid.yield_strength")
 
 #: Characters of a text that is put in: the time that tomlkit takes grows with their square.
 _LONGEST = 10_000

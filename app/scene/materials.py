@@ -14,6 +14,8 @@ class Material:
         about: what it is.
         E, nu, rho: Young's modulus, Poisson's ratio and density as a scene writes them.
         source: where they are printed.
+        yield_strength, yield_source: uniaxial, as a scene writes it, and where that is printed; "" of
+            what breaks rather than yields.
     """
 
     about: str
@@ -21,11 +23,14 @@ class Material:
     nu: float
     rho: str
     source: str
+    yield_strength: str = ""
+    yield_source: str = ""
 
     @property
     def constants(self) -> dict[str, Any]:
         """What a scene's section [solid] takes over."""
-        return {"E": self.E, "nu": self.nu, "rho": self.rho}
+        strength = {"yield_strength": self.yield_strength} if self.yield_strength else {}
+        return {"E": self.E, "nu": self.nu, "rho": self.rho} | strength
 
 
 #: Solids by the name that scenes use.

@@ -76,7 +76,7 @@ def parse(text: str, name: str = "scene") -> Scene:
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
     if not faults:
-        scene = Scene(title, text, **read)
+        scene = Scene(title, text, half_plane=read.pop("solid"), **read)
         faults = contradictions(scene)
         if not faults:
             return scene

@@ -11,11 +11,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.scene.values import Spread
-from galinx.postprocess.quantities.quantity import OWN_PRESSURE
+from galinx.postprocess.quantities.quantity import OWN_PRESSURE, PUNCH
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.parameters import made
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
+
+
+@dataclass(frozen=True)
+class HalfPlane:
+    """[solid]: an elastic solid, and what else is known of it.
+
+    Attributes:
+        solid: the solid.
+        material: name in the library, None where the scene gives all constants itself.
+        yield_strength: uniaxial [Pa], None where it is not given.
+    """
+
+    solid: Solid
+    material: str | None
+    yield_strength: float | None
 
 
 @dataclass(frozen=True)
@@ -100,7 +115,7 @@ class Solve:
     @property
     def modes(self) -> tuple[str, ...]:
         """Words by which quantities and rules say that they are of this mode."""
-        return ("", self.mode, *(OWN_PRESSURE,) * self.own_pressure)
+        return ("", self.mode, OWN_PRESSURE) if self.own_pressure else ("", PUNCH, self.mode)
 
 
 @dataclass(frozen=True)
@@ -128,17 +143,22 @@ class Scene:
     Attributes:
         title: free text.
         text: the TOML it came from, byte for byte as archived.
-        solid, punch, friction, motion, solve, output: its sections.
+        half_plane, punch, friction, motion, solve, output: its sections.
     """
 
     title: str
     text: str
-    solid: Solid
+    half_plane: HalfPlane
     punch: Punch
     friction: Friction
     motion: Motion
     solve: Solve
     output: Output
+
+    @property
+    def solid(self) -> Solid:
+        """The elastic solid."""
+        return self.half_plane.solid
 
     @property
     def sha256(self) -> str:

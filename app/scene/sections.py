@@ -6,7 +6,7 @@ from galinx.app.run.methods import METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.scene import Friction, Motion, Output, Punch, Solve
+from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve
 from galinx.app.scene.values import (
     Choice,
     Choices,
@@ -28,8 +28,10 @@ from galinx.solvers.solids import SOLIDS, Solid
 _POSITIVE = Range(above=0.0)
 
 
-def _solid(kind: type[Solid], values: dict[str, Any], material: str | None) -> Solid:
-    return made(kind, values)
+def _solid(
+    kind: type[Solid], values: dict[str, Any], material: str | None, yield_strength: float | None
+) -> HalfPlane:
+    return HalfPlane(made(kind, values), material, yield_strength)
 
 
 def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
@@ -38,8 +40,11 @@ def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
 
 _SOLID_KEYS = {
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives E, nu and rho", None,
-        "E, nu or rho written beside it replace the material's",
+        Choice(LIBRARY), "name of a known solid, gives E, nu, rho and, of metals, yield_strength", None,
+        "what is written beside it replaces the material's",
+    ),
+    "yield_strength": Key(
+        Number("Pa", _POSITIVE), "uniaxial yield strength", None, 'for the quantity `"yield"`',
     ),
 }  # fmt: skip
 
@@ -117,7 +122,8 @@ _SOLVE_KEYS = {
 _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
-        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside",
+        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
+        "`yield`: where and at which load the solid yields",
     ),
     "points": Key(
         Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'

@@ -31,6 +31,11 @@ def contradictions(scene: Scene) -> list[str]:
             "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
             "to, number)"
         )
+    if "yield" in asked and scene.half_plane.yield_strength is None:
+        faults.append(
+            'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
+            '"205 MPa", or a material that has one'
+        )
     fixed = solve.degree is not None
     if not fixed and solve.cuts != 1:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")

@@ -3,7 +3,13 @@
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
-from galinx.postprocess.quantities import runs, states, stresses  # noqa: F401 - each adds its own
+from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
+    runs,
+    states,
+    stresses,
+    validity,
+    yielding,
+)
 from galinx.postprocess.quantities.quantity import (
     FRICTION_ALONE,
     INSIDE,

@@ -24,8 +24,9 @@ CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
 #: Where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"
 
-#: The traction mode with a pressure of the user's own, where what is said of it is of no other.
-OWN_PRESSURE = "own pressure"
+#: The traction mode with a pressure of the user's own, where what is said of it is of no other; and all
+#: that is not that: the pressure of a punch with edges.
+OWN_PRESSURE, PUNCH = "own pressure", "punch"
 
 #: Words of a scene's output.quantities that ask for no dataset of their own.
 FRICTION_ALONE, INTENSITIES = "friction", "sif"
@@ -43,7 +44,7 @@ class Quantity:
         of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
             None where the run itself puts it in.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
-        mode: ``"contact"``, ``"traction"`` or ``OWN_PRESSURE`` where only that one gives it.
+        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE`` or ``PUNCH`` where only that one gives it.
         asked_by: word of output.quantities; "" where every solution gives it.
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.

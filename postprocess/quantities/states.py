@@ -36,6 +36,7 @@ SPEED = Quantity(
 )  # fmt: skip
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
 RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
+VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=_NOT_NEGATIVE)
 
 ALPHA = Quantity(
     "states/alpha", "1", "exponent of the pressure at X = a, local analysis", (STATE,),

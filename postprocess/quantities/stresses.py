@@ -1,5 +1,10 @@
 """Stresses on the surface and inside."""
 
+from collections.abc import Callable
+from typing import Any
+
+from numpy.typing import NDArray
+
 from galinx.postprocess.quantities.quantity import (
     BESIDE,
     CLOSED_FORM,
@@ -10,10 +15,11 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
+from galinx.postprocess.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
-ON_SURFACE, BELOW = "surface", "interior"
+ON_SURFACE, BELOW, YIELD = "surface", "interior", "yield"
 
 SURFACE_X = Quantity(
     "surface/X_over_a", "1", "position on the surface over the half-width", (POINT,), asked_by=ON_SURFACE
@@ -94,5 +100,30 @@ STRESSES_INSIDE = {
     )
     for method, source in ((CLOSED_FORM, "from the potentials"), (FEM, "from the displacement"))
 }
+
+
+def _invariant(method: str, name: str, about: str, of: Callable[[NDArray, Any], NDArray]) -> Quantity:
+    return Quantity(
+        f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE),
+        lambda s, body: of(s.inside, body.solid), method, asked_by=BELOW,
+    )  # fmt: skip
+
+
+#: Principal stresses and von Mises by method.
+INVARIANTS_INSIDE = {
+    method: (
+        _invariant(
+            method, "sigma_1", "larger principal stress in the plane", lambda σ, _: principal(*σ)[0]
+        ),
+        _invariant(
+            method, "sigma_2", "smaller principal stress in the plane", lambda σ, _: principal(*σ)[1]
+        ),
+        _invariant(
+            method, "von_mises", "von Mises stress, sigma_ZZ included",
+            lambda σ, solid: von_mises(σ[0], σ[1], σ[2], solid.σ_ZZ(*σ)),
+        ),
+    )
+    for method in (CLOSED_FORM, FEM)
+}  # fmt: skip
 
 QUANTITIES.add_all(globals())

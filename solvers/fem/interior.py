@@ -23,6 +23,34 @@ _SLACK = 1e-9
 _SETTLED = 1e-8
 
 
+#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+Values = Callable[[NDArray[np.int64]], NDArray]
+
+
+class KeptValues:
+    """Values of condensed fields in this rank's cells, found once for each that is asked for.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        fields: displacements over N/(2μ), condensed.
+    """
+
+    def __init__(self, space: Space, response: Response, fields: Sequence[PETSc.Vec]) -> None:
+        self._new = lambda cells: space.cell_values(fields, response, cells)
+        self._kept: dict[int, NDArray] = {}
+
+    def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Collective; see ``Values``."""
+        new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
+        found = self._new(new)
+        self._kept |= dict(zip(new.tolist(), found))
+        u = np.empty((len(cells), *found.shape[1:]))
+        for i, cell in enumerate(cells.tolist()):
+            u[i] = self._kept[cell]
+        return u
+
+
 class InteriorGradients:
     """Displacement gradients along X and Y at given points.
 
@@ -31,25 +59,39 @@ class InteriorGradients:
         response: that the fields are solutions for.
         fields: displacements over N/(2μ), condensed.
         points: positions over a with Y <= 0, (n, 2).
+        values: of the fields in cells, as of :class:`KeptValues`; found anew if not given.
 
     Raises:
         MeshError: a point lies outside the mesh.
     """
 
     def __init__(
-        self, space: Space, response: Response, fields: Sequence[PETSc.Vec], points: NDArray
+        self,
+        space: Space,
+        response: Response,
+        fields: Sequence[PETSc.Vec],
+        points: NDArray,
+        values: Values | None = None,
     ) -> None:
-        self._basis = gradients_at(
-            space, response, points, lambda cells: space.cell_values(fields, response, cells)
-        )
+        values = values or (lambda cells: space.cell_values(fields, response, cells))
+        self._basis = gradients_at(space, response, points, values)
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
         return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
 
+    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
+        """The same where the points are those of the first combination, of the second, and so on.
+
+        Returns:
+            Array (states, n/states, 2, 2).
+        """
+        basis = self._basis[..., : weights.shape[1]].reshape(len(weights), -1, 2, 2, weights.shape[1])
+        return np.einsum("snijf,sf->snij", basis, weights)
+
 
 def gradients_at(
-    space: Space, response: Response, points: NDArray, values: Callable[[NDArray[np.int64]], NDArray]
+    space: Space, response: Response, points: NDArray, values: Values
 ) -> NDArray[np.float64]:
     """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
 
@@ -57,7 +99,7 @@ def gradients_at(
         space: the finite element space.
         response: that the fields are solutions for.
         points: with Y <= 0, (n, 2).
-        values: of the fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+        values: of the fields in cells.
 
     Raises:
         MeshError: a point lies outside the mesh.

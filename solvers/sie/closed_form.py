@@ -14,6 +14,9 @@ from scipy.special import log1p  # NumPy's loses digits for small complex argume
 from galinx.solvers.contact import from_edge, under_punch
 from galinx.solvers.solids.solid import Response
 
+#: Halvings after which the logarithm of a distance has all its digits.
+_HALVINGS = 80
+
 
 @dataclass(frozen=True)
 class FlatPunch:
@@ -87,9 +90,46 @@ class FlatPunch:
         u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.hilbert(r)
         return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
 
+    def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """How far from X = -a and X = a, under the punch, -μ u,X over N/(2a) exceeds a value.
+
+        Under the punch u,X is a multiple of the pressure, infinite at both edges. From its least value,
+        which is between them, the pressure grows towards each, so that its logarithm can be halved.
+
+        Args:
+            strain: positive.
+
+        Returns:
+            Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
+        """
+        answer = self.response
+        by_pressure = answer.q + (answer.n12 + answer.m * self.g) * self._cot
+        size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
+        wanted = np.log(strain / size)
+        return self._within(self.β, self.α, wanted), self._within(self.α, self.β, wanted)
+
+    @staticmethod
+    def _within(own: Any, other: Any, wanted: Any) -> NDArray[np.float64]:
+        """Largest d with own·log d + other·log(2 - d) >= wanted, not beyond where that is least."""
+        high = np.log(-2.0 * own)
+        low = np.minimum((wanted - other * np.log(2.0)) / own, high)  # as if 2 - d were 2
+        for _ in range(_HALVINGS):
+            t = (low + high) / 2.0
+            exceeds = own * t + other * np.log(2.0 - np.exp(t)) >= wanted
+            low, high = np.where(exceeds, t, low), np.where(exceeds, high, t)
+        return np.exp(high)
+
     def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
         return self.response.inside(EdgePotential(self.α, self.β), self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.σ_YY(X)
+        return np.where(
+            on, [self.σ_XX(X), σ_YY, self.g * σ_YY], self.inside(X, np.where(on, -1.0, Y))
+        )  # fmt: skip
 
     def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
         """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""

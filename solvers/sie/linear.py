@@ -24,6 +24,9 @@ _FAR, _POWERS = 2.0, 27
 #: cancel there, but infinite ones would not.
 _NEXT_TO_KNOT = 1e-30
 
+#: Pairs of a piece and a point that are looked at together.
+_AT_ONCE = 50_000
+
 
 @dataclass(frozen=True)
 class LinearPressure:
@@ -63,21 +66,25 @@ class LinearPressure:
     @staticmethod
     def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:
         """Φ, or its real part on the surface, of all pieces."""
-        return functools.reduce(np.add, integrals) / np.pi
+        return functools.reduce(np.add, (of_some.sum(axis=0) for of_some in integrals)) / np.pi
 
-    def _pieces(self, z: NDArray) -> Iterator["_Piece"]:
-        """Pieces that are loaded, each with the points z seen from it."""
-        for i in np.flatnonzero((self.values[1:] != 0.0) | (self.values[:-1] != 0.0)):
-            yield _Piece(self.knots[i : i + 2], self.values[i : i + 2], z)
+    def _pieces(self, z: NDArray) -> Iterator["_Pieces"]:
+        """Pieces that are loaded, some at a time, with the points z seen from them."""
+        loaded = np.flatnonzero((self.values[1:] != 0.0) | (self.values[:-1] != 0.0))
+        ends = np.stack([loaded, loaded + 1])
+        together = max(1, _AT_ONCE // max(z.size, 1))
+        for first in range(0, len(loaded), together):
+            some = ends[:, first : first + together].reshape(2, -1, *(1,) * z.ndim)
+            yield _Pieces(self.knots[some], self.values[some], z)
 
 
-class _Piece:
-    """A piece of the pressure and points, of which it gives ∫ σ/(t - z) dt.
+class _Pieces:
+    """Pieces of the pressure and points, of which each gives ∫ σ/(t - z) dt, (pieces, ...).
 
     Args:
-        ends: positions of its two ends.
-        values: the pressure there.
-        z: points; real ones are on the surface, and the integral is a principal value.
+        ends: positions of their two ends, (2, pieces, 1, ...).
+        values: the pressure there, (2, pieces, 1, ...).
+        z: points, (...); real ones are on the surface, and the integral is a principal value.
     """
 
     def __init__(self, ends: NDArray, values: NDArray, z: NDArray) -> None:
@@ -89,7 +96,7 @@ class _Piece:
         self._far = abs(self._w) > _FAR
 
     def at(self) -> NDArray[Any]:
-        """The integral."""
+        """The integrals."""
         ratio = self._right / self._left
         L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
         v = 1.0 / np.where(self._far, self._w, np.inf)
@@ -98,7 +105,7 @@ class _Piece:
         return np.where(self._far, far, self._pressure * L + 2.0 * slope)
 
     def change(self, step: NDArray, share: float) -> NDArray[np.complex128]:
-        """Its change for a step share·step of the points, over share."""
+        """Their change for a step share·step of the points, over share."""
         d = step / self._half
         left, right = self._left + share * d, self._right + share * d
         growth = 2.0 * d / (left * self._right)
@@ -113,11 +120,11 @@ class _Piece:
         return np.where(self._far, far, near)
 
     @property
-    def _mean(self) -> float:
+    def _mean(self) -> NDArray[np.float64]:
         return (self._values[0] + self._values[1]) / 2.0
 
     @property
-    def _slope(self) -> float:
+    def _slope(self) -> NDArray[np.float64]:
         """Half the difference of the values."""
         return (self._values[1] - self._values[0]) / 2.0
 
@@ -163,3 +170,10 @@ class GivenPressure:
     def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
         return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.pressure(X)
+        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
+        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))

@@ -199,9 +199,10 @@ def rayleigh_speed(κ: float) -> float:
 
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
-    from scipy.optimize import brentq  # slow to import, and seldom needed
-
-    return brentq(lambda c: MovingFrame(κ, c).r, 0.1, 1.0 - 1e-15, xtol=1e-16, rtol=1e-15)
+    low, high = 0.1, 1.0 - 1e-15
+    while low < (c := (low + high) / 2.0) < high:  # scipy.optimize takes longer to import than a run
+        low, high = (c, high) if MovingFrame(κ, c).r > 0.0 else (low, c)
+    return c
 
 
 SOLIDS.register("isotropic", Isotropic)

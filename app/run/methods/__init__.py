@@ -9,7 +9,7 @@ from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess.quantities import Quantity, states, stresses
+from galinx.postprocess.quantities import Quantity, states, stresses, validity
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.registry import Registry
 from galinx.solvers.solution import Body
@@ -26,10 +26,12 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if body.pressure:
         return "the pressure is given" if quantity in _INTENSITIES else ""
-    if quantity and not body.flat and quantity.asked_by == stresses.BELOW:
+    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
         return "known below flat punches only"
     if quantity and not body.flat and quantity is states.K_I_BOTH:
         return "the two ends differ"
+    if quantity and not body.flat and quantity in validity.STRAINED:
+        return "known of flat punches only"
     return ""
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.method import Solver
+from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure, LinearPressure
 from galinx.solvers.solution import Surface
@@ -57,6 +58,15 @@ class Punches:
         """The edges, where every sharp punch is like a flat one."""
         return FlatPunch(self.task.response, self.g)
 
+    def _strength(self, exact: FlatPunch | GivenPressure) -> Strength:
+        """Yield, where stresses are known at all points."""
+        task = self.task
+
+        def field(points: NDArray) -> NDArray[np.float64]:
+            return exact.stresses(points[..., 0], points[..., 1])
+
+        return Strength(field, task.body, task.response, self.g, self.local)
+
 
 class FlatPunches(Punches):
     """Flat punches, exact."""
@@ -65,6 +75,10 @@ class FlatPunches(Punches):
     def K_I(self) -> NDArray[np.float64]:
         """At X = -a and X = a, the same number, (states, 2)."""
         return np.column_stack([self.local.K_I] * 2)
+
+    def strained_within(self, strain: float) -> NDArray[np.float64]:
+        """How far from X = -a and X = a, under the punch, -u,X exceeds a strain, over a, (states, 2)."""
+        return np.column_stack(self.local.strained_within(strain / self.task.body.strain))
 
     @cached_property
     def _over_places(self) -> FlatPunch:
@@ -79,6 +93,11 @@ class FlatPunches(Punches):
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self._over_places.inside(*self.task.places.points.T)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        return self._strength(self._over_places)
 
 
 class OwnPressures(Punches):
@@ -107,6 +126,11 @@ class OwnPressures(Punches):
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self._over_places.inside(*self.task.places.points.T)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        return self._strength(self._over_places)
 
 
 class ShapedPunches(Punches):

@@ -15,7 +15,7 @@ from galinx.meshes.cells import check_cells
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 from galinx.postprocess.quantities.quantity import FEM
-from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
 
@@ -39,7 +39,7 @@ class Discretisation:
         assert plan.fem
         self.plan: FemPlan = plan.fem
         self.chunk, self.clock = plan.chunk, clock
-        self.stresses = frozenset(word for word in (ON_SURFACE, BELOW) if plan.asks(word, FEM))
+        self.stresses = frozenset(word for word in (ON_SURFACE, BELOW, YIELD) if plan.asks(word, FEM))
         self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
         self._progress = progress
         self._meshes: dict[int, tuple[Any, Any]] = {}

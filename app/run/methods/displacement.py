@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
-from galinx.postprocess.quantities.stresses import BELOW
-from galinx.solvers.fem.interior import InteriorGradients
+from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.fem.interior import InteriorGradients, KeptValues
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
 from galinx.solvers.solution import Surface
@@ -33,6 +33,8 @@ class Displacement:
             self._slopes  # noqa: B018 - cached
         if BELOW in words:
             self._gradients  # noqa: B018
+        if YIELD in words:
+            self._around  # noqa: B018
 
     @cached_property
     def _slopes(self) -> SurfaceSlopes:
@@ -40,8 +42,18 @@ class Displacement:
 
     @cached_property
     def _gradients(self) -> InteriorGradients:
-        task = self._task
-        return InteriorGradients(self._space, task.response, self._fields, task.places.points)
+        return self._at(self._task.places.points)
+
+    @cached_property
+    def _around(self) -> InteriorGradients:
+        return self._at(self._task.places.around)
+
+    @cached_property
+    def _values(self) -> KeptValues:
+        return KeptValues(self._space, self._task.response, self._fields)
+
+    def _at(self, points: NDArray) -> InteriorGradients:
+        return InteriorGradients(self._space, self._task.response, self._fields, points, self._values)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """The surface of states with these weights and contact stress, NaN beside the punch."""
@@ -49,6 +61,16 @@ class Displacement:
         σ = np.nan_to_num(σ_YY)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
         return Surface(self._task.places, σ_YY, σ_XX, raw, v_X)
+
+    def around(self, weights: NDArray) -> NDArray[np.float64]:
+        """The same where stresses are looked at for yield, (3, states, k)."""
+        return self._task.response.stresses(self._around.of(weights))
+
+    def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
+        """The same at points of all states, (1, n, 2), or of each, (states, n, 2): (3, states, n)."""
+        found = self._at(points.reshape(-1, 2))
+        together = len(points) == 1
+        return self._task.response.stresses((found.of if together else found.of_each)(weights))
 
     def inside(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these weights, (3, states, m)."""

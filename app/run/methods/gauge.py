@@ -13,7 +13,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.postprocess import scale
 from galinx.postprocess.pressure import JacobiPressure, chebyshev
 from galinx.postprocess.quantities.quantity import INTENSITIES
-from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.space import Space
 
 #: Points inside on which the error is measured; of more, so many are picked.
@@ -63,10 +63,10 @@ def of_in_plane(σ_XX: NDArray, X: NDArray) -> Gauge:
     return Gauge(ON_SURFACE, σ_XX, scale.of_in_plane(σ_XX, X))
 
 
-def of_inside(σ: NDArray, points: NDArray) -> Gauge:
-    """Stresses inside, (3, states, m)."""
+def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
+    """Stresses inside, (3, states, m), and the word that asks for them."""
     size = scale.of_inside(σ, *points.T)
-    return Gauge(BELOW, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
+    return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
 
 
 class StressGauges:
@@ -92,6 +92,8 @@ class StressGauges:
             found.append(of_in_plane(surface.σ_XX, places.X))
         if BELOW in self._words:
             found.append(of_inside(self._displacement.inside(weights), places.points))
+        if YIELD in self._words:
+            found.append(of_inside(self._displacement.around(weights), places.around, YIELD))
         return found
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
@@ -107,10 +109,16 @@ class StressGauges:
 
 def gauged(task: Task) -> Task:
     """The task at fewer points inside: some at all distances from the edges, from nearest to farthest."""
-    points = task.places.points
-    if len(points) <= _POINTS:
+    points, around = (_some(all_) for all_ in (task.places.points, task.places.around))
+    if points is task.places.points and around is task.places.around:
         return task
+    return replace(task, places=replace(task.places, points=points, around=around))
+
+
+def _some(points: NDArray) -> NDArray[np.float64]:
+    if len(points) <= _POINTS:
+        return points
     X, Y = points.T
     order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
     picked = order[np.unique(np.linspace(0, len(order) - 1, _POINTS).astype(int))]
-    return replace(task, places=replace(task.places, points=points[np.sort(picked)]))
+    return points[np.sort(picked)]

@@ -15,6 +15,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
+from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -159,3 +160,12 @@ class GivenLoads:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self.at.displacement.inside(self.at.level.weights(self.g))
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        at, weights = self.at, self.at.level.weights(self.g)
+        field = at.displacement.at
+        return Strength(
+            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local
+        )

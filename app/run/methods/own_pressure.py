@@ -14,7 +14,8 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.ladder import Ladder
-from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
+from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
@@ -67,6 +68,7 @@ class PiecesSeen:
         on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
         self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
         self._inside = pieces.gradients(loads, places.points[: len(places.points) * (BELOW in words)])
+        self._around = pieces.gradients(loads, places.around[: len(places.around) * (YIELD in words)])
 
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""
@@ -80,6 +82,10 @@ class PiecesSeen:
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, _weights(g)))
+
+    def around(self, g: NDArray) -> NDArray[np.float64]:
+        """The same where stresses are looked at for yield, (3, states, k)."""
+        return self._task.response.stresses(np.einsum("nijd,ds->snij", self._around, _weights(g)))
 
 
 def _weights(g: NDArray) -> NDArray[np.float64]:
@@ -125,7 +131,16 @@ class PiecesLevel:
             found.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
         if BELOW in words:
             found.append(of_inside(self._gauged.inside(g), places.points))
+        if YIELD in words:
+            found.append(of_inside(self._gauged.around(g), places.around, YIELD))
         return found
+
+    def at(self, points: NDArray, g: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points of all states, (1, n, 2), or of each, (states, n, 2)."""
+        assert self._loads
+        G = self._pieces.gradients(self._loads, points.reshape(-1, 2))
+        G = G.reshape(*points.shape[:2], 2, 2, -1)
+        return self._task.response.stresses(G[..., 0] + g[:, None, None, None] * G[..., 1])
 
     def rounding(self, g: NDArray) -> list[float]:
         """Not seen here: the mirror images of loads are no loads."""
@@ -191,3 +206,9 @@ class OwnPressures:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self.at.level.everywhere.inside(self.g)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        task, level = self.at.task, self.at.level
+        return Strength(lambda points: level.at(points, self.g), task.body, task.response, self.g, None)

@@ -17,6 +17,7 @@ from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.postprocess.pressure import JacobiPressure, contact_recovery, from_moments
+from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -191,3 +192,12 @@ class Punches:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self.at.displacement.inside(self.contact.weights)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        at, weights = self.at, self.contact.weights
+        field = at.displacement.at
+        return Strength(
+            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local
+        )

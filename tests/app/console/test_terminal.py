@@ -9,6 +9,8 @@ import pytest
 from support import HOME, SCENE, clean_environment, command, widest
 
 CLOSED = ("--set", 'solve.methods=["closed_form"]')
+#: Strokes that many waves cross: nothing is warned about.
+SLOW = ("--set", "motion.c=[1e-6, 2e-6]")
 
 
 def on_a_terminal(*arguments, cwd, **environment):
@@ -61,18 +63,19 @@ def test_colours_on_a_terminal_unless_unwanted(archive, tmp_path):
 def test_progress_is_drawn_on_a_terminal_unless_quiet(tmp_path):
     said = on_a_terminal("run", SCENE, "-o", "a.h5", cwd=tmp_path)
     assert "finite elements at c = 0.6 (2 of 2)" in said and "%" in said
-    assert on_a_terminal("run", SCENE, "-o", "b.h5", "--quiet", *CLOSED, cwd=tmp_path) == ""
+    assert on_a_terminal("run", SCENE, "-o", "b.h5", "--quiet", *CLOSED, *SLOW, cwd=tmp_path) == ""
 
 
 def test_quiet_says_warnings_only(tmp_path):
-    done = command("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED)
+    done = command("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED, *SLOW)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     done = command("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
     assert done.stdout == "" and "within 1 % of the Rayleigh speed" in done.stderr
 
 
 def test_verbose_and_log_tell_every_step(tmp_path):
-    done = command("-n", "2", "run", SCENE, "-o", "a.h5", "-v", "--log", "steps.txt", cwd=tmp_path)
+    run = ("run", SCENE, "-o", "a.h5", "-v", "--log", "steps.txt", *SLOW)
+    done = command("-n", "2", *run, cwd=tmp_path)
     steps = [line for line in done.stderr.splitlines() if line]
     for expected in ("mesh: confocal", "12 of 12 states", "verdict: PASS; archive: a.h5"):
         assert steps.count(expected) == 1

@@ -5,10 +5,11 @@ import os
 import h5py
 import numpy as np
 import pytest
+import support
 
 from galinx import files
 from galinx.postprocess.errors import UnwritableArchive
-from galinx.postprocess.hdf5 import archive, seal
+from galinx.postprocess.hdf5 import archive, reader, seal
 from galinx.postprocess.target import Target
 
 DATA = {
@@ -126,3 +127,21 @@ def test_rows_are_written_without_reading_what_is_there(tmp_path, monkeypatch):
     assert count[0] < 2 * 2 * values.nbytes
     with h5py.File(tmp_path / "a.h5") as file:
         np.testing.assert_array_equal(file["states/g"], values)
+
+
+def test_an_archive_tells_what_slides_over_what(tmp_path):
+    support.computed("fig5", {"solve.methods": ["closed_form"]}).save(tmp_path / "a.h5")
+    _, told = reader.read(tmp_path / "a.h5")
+    assert told["material"] == "T302" and told["schema_version"] == 3
+    assert json.loads(told["solid"]) == {
+        "kind": "isotropic", "E": 193e9, "nu": 0.25, "rho": 7860.0, "plane": "strain",
+        "yield_strength": 205e6,
+    }  # fmt: skip
+    c_s = np.sqrt(193e9 / 2.5 / 7860.0)
+    known = {
+        "half_width": 1e-3,
+        "load": 55.3e3,
+        "c_s": c_s,
+        "speed_limit": c_s * np.sqrt(2 - 2 / np.sqrt(3)),
+    }
+    assert {name: told[name] for name in known} == pytest.approx(known, rel=1e-14)

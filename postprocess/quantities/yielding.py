@@ -1,0 +1,103 @@
+"""Where and at which load the solid yields, by von Mises; σ_ZZ is included."""
+
+from collections.abc import Callable
+from typing import Any
+
+from numpy.typing import NDArray
+
+from galinx.postprocess.quantities.quantity import (
+    ANYWHERE,
+    CLOSED_FORM,
+    FEM,
+    OWN_PRESSURE,
+    PUNCH,
+    QUANTITIES,
+    STATE,
+    Quantity,
+)
+from galinx.postprocess.quantities.stresses import YIELD
+from galinx.solvers.parameters import Range
+
+_NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
+_INFINITE = "NaN where it is infinite: with friction, where the pressure ends in a jump"
+_BEYOND = "NaN beyond 10 a: no solid carries that"
+
+
+def _both(
+    name: str,
+    unit: str,
+    about: str,
+    of: Callable[[Any, Any], NDArray],
+    mode: str = "",
+    compared: str = "",
+    range: Range = _NOT_NEGATIVE,
+) -> dict[str, Quantity]:
+    """A quantity of a state by both methods."""
+    return {
+        method: Quantity(
+            f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
+            nan_allowed=ANYWHERE, compared=(compared,) * (method == FEM and bool(compared)), range=range,
+        )
+        for method in (CLOSED_FORM, FEM)
+    }  # fmt: skip
+
+
+VON_MISES = _both(
+    "von_mises", "N/(2a)", f"largest von Mises stress, on the surface and inside; {_INFINITE}",
+    lambda s, _: s.strength.von_mises.value, OWN_PRESSURE, "largest stresses",
+)  # fmt: skip
+VON_MISES_X = _both(
+    "von_mises_X_over_a", "1", "where that is, along the surface, over the half-width",
+    lambda s, _: s.strength.von_mises.X, OWN_PRESSURE, range=Range(),
+)  # fmt: skip
+VON_MISES_Y = _both(
+    "von_mises_Y_over_a", "1", "where that is, outwards, over the half-width",
+    lambda s, _: s.strength.von_mises.Y, OWN_PRESSURE, range=_BELOW,
+)  # fmt: skip
+SHEAR = _both(
+    "max_shear", "N/(2a)", f"largest shear stress in the plane, on the surface and inside; {_INFINITE}",
+    lambda s, _: s.strength.shear.value, OWN_PRESSURE, "largest stresses",
+)  # fmt: skip
+SHEAR_X = _both(
+    "max_shear_X_over_a", "1", "where that is, along the surface, over the half-width",
+    lambda s, _: s.strength.shear.X, OWN_PRESSURE, range=Range(),
+)  # fmt: skip
+SHEAR_Y = _both(
+    "max_shear_Y_over_a", "1", "where that is, outwards, over the half-width",
+    lambda s, _: s.strength.shear.Y, OWN_PRESSURE, range=_BELOW,
+)  # fmt: skip
+FIRST_LOAD = _both(
+    "first_yield_load", "N/m",
+    "load N per depth at which the solid first yields somewhere; 0 where its stress is infinite",
+    lambda s, _: s.strength.first_load, OWN_PRESSURE,
+)  # fmt: skip
+REACH_LEFT = _both(
+    "yield_reach_left", "1",
+    "largest distance from X = -a, on its side of the middle, at which the von Mises stress reaches the "
+    f"yield strength at the load, over the half-width; {_BEYOND}",
+    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone",
+)  # fmt: skip
+REACH_RIGHT = _both(
+    "yield_reach_right", "1", f"the same from X = a; {_BEYOND}",
+    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone",
+)  # fmt: skip
+DEPTH = _both(
+    "yield_depth", "1",
+    "largest depth at which the von Mises stress reaches the yield strength at the load, over the "
+    f"half-width; {_BEYOND}",
+    lambda s, _: s.strength.depth, compared="depth of yield",
+)  # fmt: skip
+ESTIMATE_YIELD = Quantity(
+    "states/fem/estimate_yield", "1",
+    "estimated error of the stresses in which yield is looked for, over the larger of the largest there "
+    "and further than 0.01 a from the edges, no closed form used",
+    (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
+    range=_NOT_NEGATIVE,
+)  # fmt: skip
+
+#: By method, those that are lengths.
+OVER_HALF_WIDTH = (
+    VON_MISES_X, VON_MISES_Y, SHEAR_X, SHEAR_Y, REACH_LEFT, REACH_RIGHT, DEPTH,
+)  # fmt: skip
+
+QUANTITIES.add_all(globals())

@@ -1,0 +1,106 @@
+"""What the stresses of some states mean for a solid that yields by von Mises."""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.postprocess.yielding import edges
+from galinx.postprocess.yielding.peak import Levels, Peak
+from galinx.solvers.solids.solid import Response
+from galinx.solvers.solution import Body
+
+#: σ_XX, σ_YY, σ_XY at points (states or 1, n, 2) over a with Y <= 0: (3, states, n).
+Field = Callable[[NDArray], NDArray]
+
+
+def places(body: Body) -> NDArray[np.float64]:
+    """Where the stresses of every state are looked at, over a, (n, 2)."""
+    if body.pressure:
+        return Levels(body.pressure.knots).places
+    return edges.places()
+
+
+class Strength:
+    """Yield of some states at one speed.
+
+    Args:
+        field: their stresses, of one method.
+        body: what slides over what; its yield strength is known.
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY under the punch, (states,).
+        local: exponents α at X = a and β at X = -a, (states,); of a punch.
+    """
+
+    def __init__(self, field: Field, body: Body, response: Response, g: NDArray, local: Any) -> None:
+        self._field, self._body, self._local = field, body, local
+        ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
+        #: Which states have an infinite stress where the pressure ends in a jump, (states,).
+        self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
+        assert body.yield_strength
+        #: Yield strength in the unit of stresses.
+        self.strength = body.yield_strength / body.stress
+
+    @cached_property
+    def von_mises(self) -> Peak:
+        """Largest von Mises stress of a pressure."""
+        return self._peak(self._von_mises, self._invariants[0])
+
+    @cached_property
+    def shear(self) -> Peak:
+        """Largest shear stress in the plane of a pressure."""
+        return self._peak(lambda points: maximum_shear(*self._field(points)), self._invariants[1])
+
+    @property
+    def first_load(self) -> NDArray[np.float64]:
+        """Load N per depth at which a pressure makes the solid yield somewhere [N/m], (states,)."""
+        largest = self.von_mises.value
+        return np.where(self.infinite, 0.0, self._body.load * self.strength / largest)
+
+    @cached_property
+    def _zones(self) -> edges.Zones:
+        exponents = np.column_stack([self._local.β, self._local.α])
+        return edges.zones(self._over_strength, self._invariants[0] / self.strength, exponents)
+
+    @property
+    def reach(self) -> NDArray[np.float64]:
+        """Distance over a from X = -a and from X = a within which yield is passed, (states, 2)."""
+        return self._zones.reach
+
+    @property
+    def depth(self) -> NDArray[np.float64]:
+        """Depth over a to which the solid yields at the load, (states,)."""
+        if not self._body.pressure:
+            return self._zones.depth
+        there, peak = self._invariants[0] / self.strength, self.von_mises
+        scaled = Peak(peak.value / self.strength, peak.X, peak.Y)
+        return self._levels.depth(self._over_strength, there, scaled)
+
+    @cached_property
+    def _levels(self) -> Levels:
+        assert self._body.pressure
+        return Levels(self._body.pressure.knots)
+
+    @cached_property
+    def _invariants(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Von Mises and largest shear stress at :func:`places`, (states, n)."""
+        XX, YY, XY = self._field(places(self._body)[None])
+        ZZ = self._body.solid.σ_ZZ(XX, YY, XY)
+        both = von_mises(XX, YY, XY, ZZ), maximum_shear(XX, YY, XY)
+        # At a jump, where they are not known, there is nothing to climb to.
+        found = [np.where(np.isnan(stress), 0.0, stress) for stress in both]
+        return found[0], found[1]
+
+    def _von_mises(self, points: NDArray) -> NDArray[np.float64]:
+        XX, YY, XY = self._field(points)
+        return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
+
+    def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
+        return self._von_mises(points) / self.strength
+
+    def _peak(self, stress: Callable[[NDArray], NDArray], there: NDArray) -> Peak:
+        peak = self._levels.peak(stress, there)
+        return Peak(*(np.where(self.infinite, np.nan, x) for x in (peak.value, peak.X, peak.Y)))

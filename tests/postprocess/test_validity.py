@@ -1,0 +1,122 @@
+"""Where answers do not hold: zones at the edges, against values by hand; what is said of them."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from support import computed
+
+from galinx.postprocess.validity import Validity
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids import Isotropic
+
+SOLID = Isotropic(193e9, 0.25, 7860.0)
+CLOSED = {"solve.methods": ["closed_form"]}
+
+
+@pytest.mark.parametrize("c, g", [(0.0, 0.0), (0.0, 0.7), (0.6, -0.5), (0.9, 0.3)])
+@pytest.mark.parametrize("strain", [0.5, 5.0, 1e3])
+def test_within_the_zones_the_surface_is_pressed_together_more(c, g, strain):
+    response = SOLID.response(c)
+    punch = FlatPunch(response, g)
+
+    def u_X(X):  # from σ_XX by Hooke's law, not from the pressure
+        κ = response.κ
+        return (punch.σ_XX(X) - (3.0 - κ) / (κ + 1.0) * punch.σ_YY(X)) * (κ + 1.0) / 8.0
+
+    left, right = punch.strained_within(strain)
+    least = punch.α - punch.β  # where the pressure is least
+    for end, width in ((-1.0, left), (1.0, right)):
+        if -u_X(least) >= strain:
+            np.testing.assert_allclose(width, abs(end - least), rtol=1e-12)
+        elif width > 1e-6:  # nearer, X has not its digits
+            np.testing.assert_allclose(-u_X(end - np.sign(end) * width), strain, rtol=1e-8)
+    assert left > 0.0 and right > 0.0
+
+
+def test_without_friction_the_zones_are_those_of_a_root():
+    """σ_YY = -(2/π)/√(1 - X²) over N/(2a), u,X = q σ_YY."""
+    strain, q = 3.0, SOLID.response(0.0).q
+    width = 1.0 - np.sqrt(1.0 - (2.0 * q / (np.pi * strain)) ** 2)
+    for found in FlatPunch(SOLID.response(0.0), 0.0).strained_within(strain):
+        np.testing.assert_allclose(found, width, rtol=1e-13)
+
+
+def test_faint_zones_keep_their_digits():
+    wide, narrow = (FlatPunch(SOLID.response(0.0), 0.4).strained_within(s) for s in (1e10, 1e20))
+    punch = FlatPunch(SOLID.response(0.0), 0.4)
+    for one, other, exponent in zip(wide, narrow, (punch.β, punch.α)):
+        np.testing.assert_allclose((one / other) ** -exponent, 1e10, rtol=1e-9)
+
+
+def test_states_have_their_speed_and_their_wave_crossings():
+    data = computed("tables4_5", CLOSED | {"motion.c": [0.0, 0.3, 0.6]}).data
+    c, L, a = data["states/c"], 1e-4, 1e-3
+    np.testing.assert_allclose(data["states/speed"], c * np.sqrt(193e9 / 2.5 / 7860.0), rtol=1e-14)
+    assert np.isnan(data["states/wave_crossings"][c == 0.0]).all()
+    moving = c > 0.0
+    np.testing.assert_allclose(data["states/wave_crossings"][moving], L / (2 * a * c[moving]), rtol=1e-14)
+
+
+def told(changes):
+    return json.loads(computed("tables4_5", CLOSED | changes).attributes["warnings"])
+
+
+def test_the_studys_fast_strokes_are_warned_about_and_its_slow_ones_are_not():
+    (warning,) = told({})
+    assert "crosses the contact 0.083 times at the least, and less than 30 times in 6 states" in warning
+    assert not told({"motion.c": 4.786e-7}) and not told({"motion.c": 0.0})
+
+
+def test_steep_friction_is_told():
+    (warning,) = told({"motion.c": 0.0, "friction.mu_c": 2.0})
+    f = np.abs(computed("tables4_5", CLOSED | {"motion.c": 0.0, "friction.mu_c": 2.0}).data["states/f"])
+    assert f"is up to {f.max():.3g}, and at least 1 in {(f >= 1.0).sum()} state" in warning
+
+
+def test_a_load_that_no_linear_solid_carries_is_told():
+    soft = {"motion.c": 0.0, "solid.E": "1 MPa", "punch.load": "500 N/m"}
+    slip, strain = told(soft)
+    data = computed("tables4_5", CLOSED | soft).data
+    widest = max(data[f"states/closed_form/slip_reversed_{side}"].max() for side in ("left", "right"))
+    assert slip.startswith(f"slip has turned round up to {widest:.3g} a from an edge, beyond 0.01 a in")
+    assert "strains are beyond 5 % up to" in strain
+
+
+def test_the_zones_are_those_of_the_load():
+    """1 + u,X with the load's own size: twice the load at the same place, half the strain."""
+    data = computed("tables4_5", CLOSED | {"motion.c": 0.0, "friction.mu_c": 1e-9}).data
+    ε = 55.3e3 / 2e-3 / (193e9 / 2.5)
+    q = SOLID.response(0.0).q
+    width = 1.0 - brentq(lambda X: ε * q * 2.0 / np.pi / np.sqrt(1.0 - X**2) - 0.05, 0.9, 1.0 - 1e-9)
+    np.testing.assert_allclose(data["states/closed_form/large_strain_left"], width, rtol=1e-4)
+
+
+def test_tension_and_its_place_are_told():
+    pressure = [[-1, 0], [0, -2], [0.52, 0.25], [1, 0]]  # a knot where the surface has a place
+    result = computed(
+        "tables4_5",
+        CLOSED | {"motion.c": 0.0, "solve.mode": "traction", "solve.pressure": pressure},
+    )
+    data = result.data
+    np.testing.assert_allclose(data["states/closed_form/tension"], 0.25, rtol=1e-2)
+    np.testing.assert_allclose(data["states/closed_form/tension_X_over_a"], 0.52, atol=0.02)
+    (warning,) = json.loads(result.attributes["warnings"])
+    assert warning.startswith("the punch would have to pull, by up to 0.25 N/(2a), at X/a = 0.5")
+
+
+def test_nothing_is_said_of_what_holds_or_is_not_known():
+    validity = Validity()
+    nan = np.full(3, np.nan)
+    validity.see({"states/wave_crossings": nan, "states/g": np.array([0.1, -0.9, 0.0])})
+    validity.see({f"states/closed_form/slip_reversed_{side}": nan for side in ("left", "right")})
+    assert validity.words() == []
+
+
+def test_what_several_parts_say_is_one_sentence():
+    validity = Validity()
+    for g in ([1.0, 0.2], [-3.0, 1.5]):
+        validity.see({"states/g": np.array(g)})
+    (text,) = validity.words()
+    assert "up to 3, and at least 1 in 3 states" in text

@@ -145,6 +145,16 @@ def inner(scene: Scene, far: float = 0.0) -> float:
     return _INNER * MESHES[scene.solve.mesh].reach(Wanted(scene.solve.tolerance, farthest=far))
 
 
+def warnings_of_size(numbers: int) -> Iterator[str]:
+    """What does not fit into memory, of the numbers of the states that are treated together."""
+    needed, free = cost.bytes_of_chunk(numbers), cost.free_memory()
+    if needed > free:
+        yield (
+            f"the stresses of a single state need about {needed / 1e9:.2g} GB, of which this machine has "
+            f"{free / 1e9:.2g} GB free: ask for fewer points"
+        )
+
+
 def warnings_of(fem: FemPlan) -> Iterator[str]:
     """What finite elements will not reach, or not fit into."""
     cut_off = fem.kind.truncation(fem.wanted)

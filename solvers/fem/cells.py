@@ -47,9 +47,14 @@ def reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.fl
         Array (n, 2, ...).
     """
     (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
-    along_a = np.einsum("ni,nj,ij...->n...", slope_a, value_b, u, optimize=True)
-    along_b = np.einsum("ni,nj,ij...->n...", value_a, slope_b, u, optimize=True)
-    return np.stack([along_a, along_b], axis=1)
+    n, rest = len(nodes), u.shape[2:]
+    # Nodes along the second direction come last: the inner sum runs over what lies together.
+    lines = np.moveaxis(u.reshape(n, n, -1), 1, 2).reshape(n, -1)
+    along_a, along_b = (
+        np.einsum("nfj,nj->nf", (a @ lines).reshape(len(t), -1, n), b)
+        for a, b in ((slope_a, value_b), (value_a, slope_b))
+    )
+    return np.stack([along_a, along_b], axis=1).reshape(len(t), 2, *rest)
 
 
 def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:

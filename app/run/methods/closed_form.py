@@ -1,6 +1,6 @@
 """The singular integral equation: closed forms, or its collocation where the punch is not flat."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +17,9 @@ from galinx.solvers.solution import Surface
 
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
 TERMS = 40
+
+#: Points inside whose potentials are held at once.
+_TOGETHER = 20_000
 
 
 class ClosedForm:
@@ -57,6 +60,15 @@ class Punches:
         """The edges, where every sharp punch is like a flat one."""
         return FlatPunch(self.task.response, self.g)
 
+    def _by_batches(self, inside: Callable[[NDArray, NDArray], NDArray]) -> NDArray[np.float64]:
+        """Stresses inside, (3, states, m), some points after the others: potentials take much room."""
+        points = self.task.places.points
+        found = np.empty((3, len(self.g), len(points)))
+        for first in range(0, len(points), _TOGETHER):
+            some = slice(first, first + _TOGETHER)
+            found[:, :, some] = inside(*points[some].T)
+        return found
+
 
 class FlatPunches(Punches):
     """Flat punches, exact."""
@@ -78,7 +90,7 @@ class FlatPunches(Punches):
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self._over_places.inside(*self.task.places.points.T)
+        return self._by_batches(self._over_places.inside)
 
 
 class OwnPressures(Punches):
@@ -106,7 +118,7 @@ class OwnPressures(Punches):
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self._over_places.inside(*self.task.places.points.T)
+        return self._by_batches(self._over_places.inside)
 
 
 class ShapedPunches(Punches):

@@ -15,6 +15,7 @@ from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.ladder import Ladder
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.solvers.fem.interior import TOGETHER
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
@@ -66,7 +67,13 @@ class PiecesSeen:
         self._task, places = task, task.places
         on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
         self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
-        self._inside = pieces.gradients(loads, places.points[: len(places.points) * (BELOW in words)])
+        below = places.points[: len(places.points) * (BELOW in words)]
+        self._inside = np.concatenate(
+            [
+                pieces.gradients(loads, below[first : first + TOGETHER])
+                for first in range(0, max(len(below), 1), TOGETHER)
+            ]
+        )
 
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""

@@ -13,6 +13,9 @@ from galinx.postprocess.target import LOG, Target
 #: Bytes that file systems allow a name.
 _LONGEST = 255
 
+#: Endings of files that galinx, or other programs, make of results.
+_OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".vtkhdf", ".vtu", ".toml"}
+
 
 class _File(click.Path):
     """A path; one that no file can have is bad input, and no failure of the machine."""
@@ -24,7 +27,17 @@ class _File(click.Path):
         return super().convert(value, param, ctx)
 
 
-FILE = _File(path_type=Path)
+class _Folder(_File):
+    """A folder's path; a name that says a file is one of somebody who expects a single file."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        path = super().convert(value, param, ctx)
+        if path.suffix.lower() in _OF_FILES and not path.is_dir():
+            self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
+        return path
+
+
+FILE, FOLDER = _File(path_type=Path), _Folder(path_type=Path)
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)
@@ -60,7 +73,7 @@ def _extensions() -> tuple[Path, ...]:
 def folder(default: str) -> Callable[[Any], Any]:
     """``-o FOLDER``."""
     return click.option(
-        "-o", "folder", type=FILE, default=Path(default), show_default=True,
+        "-o", "folder", type=FOLDER, default=Path(default), show_default=True,
         help="Folder; it is made.",
     )  # fmt: skip
 

@@ -151,11 +151,12 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     """
     from galinx.app.errors import BadInput
     from galinx.app.scene.changes import changed
+    from galinx.app.scene.excerpt import excerpt, nearest
     from galinx.app.scene.templates import templates
 
     known = templates()
     if name not in known:
-        raise BadInput(f"template {name!r}: no such scene; expected one of {', '.join(known)}")
+        raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), known)}")
     return scenes.parse(changed(known[name].text, changes or {}), name)
 
 

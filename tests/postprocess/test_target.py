@@ -74,6 +74,21 @@ def test_what_one_makes_is_made_again_and_all_else_is_kept(made, tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["foreign", "own"]
 
 
+@pytest.mark.parametrize(
+    "kind, name, expected",
+    [
+        (FIELDS, "a.vtu", ".hdf or .vtkhdf for a file of fields"),
+        (PAGE, "a.pdf", ".html or .htm for a report"), (TABLE, "a.xlsx", ".csv or .txt for a table"),
+        (FIELDS, "a.b.txt", ".hdf or .vtkhdf"),
+    ],
+)  # fmt: skip
+def test_an_ending_says_what_a_file_is(tmp_path, kind, name, expected):
+    with pytest.raises(Occupied, match=rf"{name} ends with \.\w+, expected {expected}"):
+        Target(tmp_path / name, kind, overwrite=True)
+    for good in (kind.endings[0], kind.endings[1].upper(), ""):
+        assert Target(tmp_path / f"a{good}", kind).place == tmp_path / f"a{good}"
+
+
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_only_files_are_replaced(tmp_path, overwrite):
     os.mkfifo(tmp_path / "fifo")

@@ -1,7 +1,7 @@
 """Results in Python: everything the command line does in a few lines, with or without files."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from functools import cached_property
 from pathlib import Path
@@ -93,25 +93,30 @@ class Result:
         target.write(report.text().encode())
 
     def fields(
-        self, path: Path | str, state: int = 0, extent: float = 10.0, overwrite: bool = False
+        self,
+        path: Path | str,
+        state: int | Sequence[int] = 0,
+        extent: float = 10.0,
+        overwrite: bool = False,
     ) -> None:
-        """Write displacement and stresses of a state for ParaView (VTKHDF); collective under MPI.
+        """Write displacement and stresses of states for ParaView (VTKHDF); collective under MPI.
 
         Args:
-            path: the file, ``.hdf`` by ParaView's habit.
-            state: which, from 0.
-            extent: how far from the punch's centre, over a.
+            path: the file, ``.hdf`` or ``.vtkhdf``.
+            state: which, from 0; several become a series, which ParaView knows from 5.12 on.
+            extent: how far from the punch's centre, over a; cells that reach further are cut there.
             overwrite: a file that holds no fields of galinx is replaced, too.
 
         Raises:
             BadInput: no such state, or finite elements have no answer there.
-            Occupied: another file is there, and ``overwrite`` is false.
+            Occupied: the ending is another kind's, or another file is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from galinx.app.results.paraview import write_field
+        from galinx.app.results.paraview import write_fields
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
-        write_field(self.scene, state, target, extent, self._degree(state))
+        numbers = [state] if isinstance(state, int) else list(state)
+        write_fields(self.scene, numbers, target, extent, [self._degree(one) for one in numbers])
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.

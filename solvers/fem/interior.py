@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order
+from galinx.solvers.fem.cells import gradients_in_plane, pull_back, tensor_order
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -21,10 +21,6 @@ _SLACK = 1e-9
 
 #: Points whose gradients are held at once: of every field, or of every state.
 TOGETHER = 20_000
-
-#: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
-#: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
-_SETTLED = 1e-8
 
 
 class InteriorGradients:
@@ -180,7 +176,7 @@ class _Held:
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
     cell, point = _near(vertices, x)
-    t = _pull_back(vertices[cell], x[point])
+    t = pull_back(vertices[cell], x[point])
     inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
     return _Held(point[inside], cell[inside], t[inside])
 
@@ -201,23 +197,3 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
         cell.append(np.full(len(found), i))
         point.append(found)
     return np.concatenate(cell), np.concatenate(point)
-
-
-def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
-    """Places in the unit square of points x (n, 2) by cells (n, 4, 2): Newton's method for bilinear maps.
-
-    NaN where that does not converge: the point is then far outside the cell.
-    """
-    t = np.full(x.shape, 0.5)
-    moving = np.arange(len(x))
-    for _ in range(25):
-        if not len(moving):
-            break
-        at, corners = t[moving], vertices[moving]
-        rest = x[moving] - image(corners, at[:, None])[:, 0]
-        step = np.linalg.solve(jacobian(corners, at), rest[..., None])[..., 0]
-        t[moving] = at + step
-        size = np.maximum(1.0, np.abs(t[moving]).max(axis=1))
-        moving = moving[~(np.abs(step).max(axis=1) < _SETTLED * size)]
-    t[moving] = np.nan
-    return t

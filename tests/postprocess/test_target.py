@@ -29,7 +29,7 @@ def made(tmp_path_factory):
     result.report(folder / "a.html")
     pdf, png = result.plot(folder, "a")[:2]
     square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
-    vtkhdf.write(folder / "a.hdf", [square], {"u": ("m", "galinx")})
+    vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
         print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))
     with (folder / "a.csv").open("w") as file:

@@ -14,6 +14,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.fem.interior import TOGETHER
 from galinx.solvers.fem.linear_loads import LinearLoads
@@ -34,8 +35,8 @@ def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressur
 @contextmanager
 def one_state(
     work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray]]:
-    """Space, fields and weights of one state: the pressure as a whole, not piece by piece."""
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state: the pressure as a whole, not piece by piece."""
     # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
     loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _put_in(task)
     try:
@@ -43,7 +44,7 @@ def one_state(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
             pressure.knots[1:-1],
         )
-        yield loaded.space, loaded.fields, np.array([1.0, g])
+        yield loaded.space, loaded.fields, np.array([1.0, g]), pressure
     finally:
         loaded.destroy()
 

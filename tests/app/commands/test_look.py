@@ -45,7 +45,7 @@ def test_states_are_named_by_numbers_and_ranges(text, found):
 
 @pytest.mark.parametrize("text", ["", "a", "1,,2", "-1", "3-1", "1.5", "0-99999999", "1-2-3"])
 def test_what_names_no_states_is_refused(text):
-    with pytest.raises(BadInput, match="^--states: found "):
+    with pytest.raises(BadInput, match=r"^--states: found "):
         options.numbers(text)
 
 

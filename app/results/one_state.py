@@ -1,11 +1,13 @@
 """Single states of a scene, solved once more by finite elements to see all of their fields."""
 
 from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
 
 from numpy.typing import NDArray
 
+from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
 from galinx.app.plan.plan import make_plan
@@ -113,6 +115,30 @@ def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
     for state in states:
         with fem.one_state(state.task, state.g, state.degree) as (space, fields, weights, pressure):
             yield Solved(state, space, fields, weights, pressure, fem.work.comm)
+
+
+def displacement(scene: Scene, number: int, degree: int | None = None) -> Any:
+    """The displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
+
+    Raises:
+        BadInput: no such state, finite elements have no answer there, or there are several ranks.
+        MachineFailure: dolfinx is not installed.
+        SolveError: the equations could not be solved.
+    """
+    if ranks.size() > 1:
+        raise BadInput(
+            f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
+        )
+    (state,) = chosen(scene, [number], [degree])
+    body, response = state.task.body, state.task.response
+    with closing(solved([state])) as states:
+        from galinx.solvers.fem.physical import in_physical_plane
+
+        found = next(states)
+        half_width = body.profile.half_width
+        return in_physical_plane(
+            found.space, response, found.fields, found.weights, half_width, body.displacement
+        )
 
 
 def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:

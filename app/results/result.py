@@ -30,6 +30,17 @@ class Result:
     ) -> None:
         self.data, self.attributes, self.inputs = data, attributes, inputs
 
+    def __repr__(self) -> str:
+        count = len(self.data[states.FRICTION.path])
+        plural = "s" * (count > 1)
+        return f"<galinx result {self.attributes['title']!r}: {count} state{plural}, {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: verdict and states."""
+        from galinx.app.results.notebook import html
+
+        return html(self.data, self.attributes)
+
     @cached_property
     def scene(self) -> Scene:
         """The scene that was computed."""
@@ -65,13 +76,42 @@ class Result:
 
         return of_archive(self.data, self.scene)
 
-    def plot(self, folder: Path | str = ".", name: str = "galinx", overwrite: bool = False) -> list[Path]:
+    def figure(self, name: str = "") -> Any:
+        """One of the figures, as a matplotlib figure, which notebooks show.
+
+        Args:
+            name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
+                friction where there are no stresses.
+
+        Raises:
+            BadInput: the result has no such figure.
+        """
+        from galinx.postprocess.figures.notebook import shown
+
+        found = {drawing.name: drawing.figure for drawing in self.drawings()}
+        chosen = name or ("surface" if "surface" in found else "friction")
+        if chosen not in found:
+            from galinx.app.errors import BadInput
+            from galinx.app.scene.excerpt import excerpt, nearest
+
+            raise BadInput(
+                f"figure {excerpt(name)}: the result has none of that name{nearest(name, found)}"
+            )
+        return shown(found[chosen])
+
+    def plot(
+        self, folder: Path | str | None = None, name: str = "galinx", overwrite: bool = False
+    ) -> Any:
         """Write every figure as PDF and PNG into a folder, which is made; their paths.
+
+        Without a folder nothing is written, and the figure is returned that :meth:`figure` gives.
 
         Raises:
             Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
+        if folder is None:
+            return self.figure()
         from galinx.postprocess.figures.canvas import save
 
         figures = ((f"{name}_{drawing.name}", drawing.figure) for drawing in self.drawings())
@@ -117,6 +157,24 @@ class Result:
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
         numbers = [state] if isinstance(state, int) else list(state)
         write_fields(self.scene, numbers, target, extent, [self._degree(one) for one in numbers])
+
+    def displacement(self, state: int = 0) -> Any:
+        """The displacement of a state as a dolfinx function, to go on with in dolfinx; on one rank only.
+
+        The state is solved once more by finite elements, at the degree that was used. Of the function
+        ``u``, ``u.function_space.mesh`` is the mesh of the solid, in m, the punch's centre at the origin
+        and the solid below; ``u`` itself is in m, relative to the far boundary.
+
+        Args:
+            state: which, from 0.
+
+        Raises:
+            BadInput: no such state, finite elements have no answer there, or there are several ranks.
+            MachineFailure: dolfinx is not installed.
+        """
+        from galinx.app.results.one_state import displacement
+
+        return displacement(self.scene, state, self._degree(state))
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.

@@ -16,6 +16,7 @@ from galinx.app.console.program import as_called, program
 from galinx.app.console.streams import plain_streams
 from galinx.app.errors import BadInput, MachineFailure
 from galinx.app.process import link, stop
+from galinx.app.scene.excerpt import meant, short
 from galinx.postprocess.errors import Occupied, UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
 
@@ -28,13 +29,18 @@ _FAILURES = (
 #: What shells say of a program whose reader went away: 128 + SIGPIPE.
 _CUT_OFF = 141
 
+#: The script in the tree, and words that it knows besides the commands.
+_SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "docs"]
+
 
 class _Commands(click.Group):
     """Commands by name; click takes an unknown one that begins with a sign for a call for help."""
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args[0] not in self.commands:
-            ctx.fail(f"No such command {args[0]!r}.")
+            known = [*self.commands, *_OF_SCRIPT * (program() == _SCRIPT)]
+            hint = meant(args[0], known) or f"; {program()} --help lists the commands"
+            ctx.fail(f"No such command {short(args[0])!r}{hint}")
         return super().resolve_command(ctx, args)
 
 

@@ -6,6 +6,7 @@ mkdocs loads it as a hook, so the program is imported only where pages are made.
 
 import json
 import os
+import runpy
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -237,6 +238,7 @@ def pages() -> dict[Path, str]:
     return {
         HOME / "docs" / "archive.md": archive_page(),
         HOME / "docs" / "commands.md": commands_page(),
+        HOME / "docs" / "gallery.md": runpy.run_path(str(HOME / "docs" / "gallery.py"))["page"](),
         HOME / "docs" / "scene.md": scene_page(),
         HOME / "scenes" / "scene.schema.json": schema_text(),
     }

@@ -1,18 +1,50 @@
 """Wall time by step."""
 
+import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from time import perf_counter
 
 
 class Clock(dict[str, float]):
-    """Seconds by name of the step, in the order in which steps first ended."""
+    """Seconds by name of the step; together they are all that went by.
+
+    A step within another counts for itself only. What belongs to no step counts for ``rest``.
+
+    Args:
+        rest: its name.
+        seconds: of the rest that have gone by.
+    """
+
+    def __init__(self, rest: str = "other", seconds: float = 0.0) -> None:
+        super().__init__()
+        self._steps, self._since = [rest], perf_counter() - seconds
 
     @contextmanager
     def __call__(self, step: str) -> Iterator[None]:
         """Add the time of a block to a step."""
-        started = perf_counter()
+        self.lap()
+        self._steps.append(step)
         try:
             yield
         finally:
-            self[step] = self.get(step, 0.0) + perf_counter() - started
+            self.lap()
+            self._steps.pop()
+
+    def lap(self) -> None:
+        """Add the time since the last lap to the step that is being done."""
+        now, step = perf_counter(), self._steps[-1]
+        self[step] = self.get(step, 0.0) + now - self._since
+        self._since = now
+
+
+def age() -> float:
+    """Seconds since this process was started, before it became Python; 0 where nobody knows."""
+    try:
+        told = Path("/proc/self/stat").read_text(encoding="ascii", errors="replace")
+        started = int(told.rpartition(")")[2].split()[19]) / os.sysconf("SC_CLK_TCK")
+        return max(0.0, time.clock_gettime(time.CLOCK_BOOTTIME) - started)
+    except (OSError, ValueError, AttributeError, IndexError):
+        return 0.0

@@ -10,7 +10,7 @@ class UnwritableArchive(Exception):
 
 
 class Occupied(Exception):
-    """What is there may not be replaced; the message says what it is, and what to do."""
+    """A file cannot have that name: what is there may not be replaced, or the ending is another's."""
 
 
 class ArchiveInUse(UnwritableArchive):

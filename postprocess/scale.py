@@ -1,5 +1,8 @@
 """What stresses are measured against: what a relative error of theirs is relative to."""
 
+from collections.abc import Iterable
+from functools import reduce
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,14 +29,19 @@ def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
     return _at_least_far(np.abs(σ_XX), from_edge(X) >= NEAR)
 
 
-def of_inside(σ: NDArray, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float64]:
     """The same of stresses inside, the largest component at a point taken for all: (states, m).
 
     Args:
-        σ: components, (3, states, m).
+        σ: components, each (states, m).
         X, Y: positions over a, (m,).
     """
-    return _at_least_far(np.abs(σ).max(axis=0), np.hypot(from_edge(X), Y) >= NEAR)
+    return _at_least_far(largest(σ), np.hypot(from_edge(X), Y) >= NEAR)
+
+
+def largest(components: Iterable[NDArray]) -> NDArray[np.float64]:
+    """Largest absolute value of some arrays of one shape, element by element."""
+    return reduce(np.maximum, map(np.abs, components))
 
 
 def of_factor(f: NDArray) -> NDArray[np.float64]:

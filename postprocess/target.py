@@ -22,12 +22,14 @@ class Kind:
         looks: what the whole of one matches from its beginning.
         option: how another name is given.
         asked: may a file of another kind be replaced where that is asked for?
+        endings: that names may have, by which other programs know the kind; none for any.
     """
 
     noun: str
     looks: re.Pattern[bytes]
     option: str = "-o"
     asked: bool = True
+    endings: tuple[str, ...] = ()
 
     def of(self, path: Path) -> bool:
         """Is a file one of these?"""
@@ -38,19 +40,24 @@ class Kind:
                 return bool(self.looks.match(data))
 
 
-def _kind(noun: str, looks: bytes) -> Kind:
-    return Kind(noun, re.compile(looks, re.DOTALL))
+def _kind(noun: str, looks: bytes, *endings: str) -> Kind:
+    return Kind(noun, re.compile(looks, re.DOTALL), endings=endings)
 
 
 #: How HDF5 files begin, and how the names in the root of one go on whose only group is VTK's.
 _HDF5, _VTK = rb"\x89HDF\r\n\x1a\n", rb".{,2000}HEAP.{,60}\0VTKHDF\0"
 #: With its digest before it, or without.
 ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
-FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK)
-PAGE = _kind("a report of galinx", rb'<!doctype html>.{,500}<meta name="generator" content="galinx')
+FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK, ".hdf", ".vtkhdf")
+PAGE = _kind(
+    "a report of galinx",
+    rb'<!doctype html>.{,500}<meta name="generator" content="galinx',
+    ".html",
+    ".htm",
+)
 PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
 PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
-TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),")
+TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),", ".csv", ".txt")
 TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
 
@@ -69,7 +76,8 @@ class Target:
         place: the name at the end of all links.
 
     Raises:
-        Occupied: something is there that may not be replaced, or the folder does not exist.
+        Occupied: something is there that may not be replaced, the folder does not exist, or the name has
+            the ending of another kind of file.
     """
 
     def __init__(
@@ -90,6 +98,11 @@ class Target:
             raise Occupied(f"{path} is also a file that this command reads or writes; {self._another}")
         if self._earlier:
             self._check_replaceable()
+        if kind and kind.endings and path.suffix and path.suffix.lower() not in kind.endings:
+            raise Occupied(
+                f"{path} ends with {path.suffix}, expected {' or '.join(kind.endings)} for {kind.noun}; "
+                f"{self._another}"
+            )
 
     def write(self, data: bytes | Iterable[bytes]) -> None:
         """Write the file, whole or not at all.

@@ -165,24 +165,3 @@ def areas(points, quads):
     """Signed areas of polygons, (m,)."""
     X, Y = points[quads][..., 0], points[quads][..., 1]
     return 0.5 * (X * np.roll(Y, -1, axis=1) - np.roll(X, -1, axis=1) * Y).sum(axis=1)
-
-
-def clipped(polygon, axis, bound, sign):
-    """The part of a polygon with sign·x[axis] <= sign·bound."""
-    result = []
-    for p, q in zip(polygon, np.roll(polygon, -1, axis=0)):
-        outside_p, outside_q = (sign * (z[axis] - bound) for z in (p, q))
-        if outside_p <= 0.0:
-            result.append(p)
-        if outside_p * outside_q < 0.0:
-            result.append(p + (q - p) * outside_p / (outside_p - outside_q))
-    return np.reshape(result, (-1, 2))
-
-
-def area_within(points, quads, extent):
-    total = 0.0
-    for polygon in points[quads]:
-        for axis, bound, sign in ((0, extent, 1), (0, -extent, -1), (1, -extent, -1)):
-            polygon = clipped(polygon, axis, bound, sign) if len(polygon) else polygon
-        total += areas(polygon, np.arange(len(polygon))[None])[0] if len(polygon) else 0.0
-    return total

@@ -23,6 +23,7 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
 
     Example: ./run.sh init own_material -o mine.toml
     """
+    from galinx.app.scene.excerpt import nearest, short
     from galinx.app.scene.templates import templates
 
     known = templates()
@@ -33,7 +34,7 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
             say(f"{template.name:<16} {template.about}", 17)
         return errors.GOOD
     if name not in known:
-        raise BadInput(f"init {name}: no such scene; expected one of {', '.join(known)}")
+        raise BadInput(f"init {short(name)}: no such scene{nearest(name, known)}")
     target = output or Path(f"{name}.toml")
     Target(target, None, overwrite, options.inputs()).write(known[name].text.encode())
     print(f"scene: {target}")

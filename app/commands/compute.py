@@ -14,6 +14,7 @@ from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import print_summary, print_times, say
 from galinx.app.errors import BadInput
 from galinx.app.process import stop
+from galinx.clock import Clock, age
 from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
 
@@ -36,6 +37,7 @@ def run(
     from galinx.app.plan.plan import make_plan
     from galinx.app.run.flow import compute
 
+    clock = Clock("start and end", age())
     path = output or Path(scene.stem + ".h5")
     checked = _read(scene, changes, unset)
     if not ranks.is_root() and not make_plan(checked).fem:
@@ -50,11 +52,11 @@ def run(
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
     with progress:
         progress.note(f"scene: {scene}")
-        verdict = _archived(checked, target, journal, progress)
+        verdict = _archived(checked, target, journal, progress, clock)
     data, attributes = read(path, stresses=False, just_sealed=True)
     print_summary(data, attributes, quiet)
     if not quiet:
-        print_times(data)
+        print_times(clock)
         print(f"archive: {path}")
         print(f"next: {program()} report {path}")
     return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
@@ -73,7 +75,7 @@ def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
     return read(path, from_words(changes, unset))
 
 
-def _archived(scene: Any, target: Target, journal: Any, progress: Progress) -> str:
+def _archived(scene: Any, target: Target, journal: Any, progress: Progress, clock: Clock) -> str:
     """Compute a scene into its archive, keeping finished parts on the way; the verdict."""
     from galinx.app.run.flow import compute
     from galinx.postprocess.hdf5 import archive
@@ -81,10 +83,12 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress) -> s
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
             with stop.leaving(lambda: _left(journal), "what is finished is kept, go on with --resume"):
-                attributes = compute(scene, writer, progress, journal)
+                with clock("other"):
+                    attributes = compute(scene, writer, progress, journal, clock)
                 stop.too_late()
             progress.say("checking the archive")
-            writer.finish(attributes)
+            with clock("archive"):
+                writer.finish(attributes)
             journal.complete()
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except UnwritableArchive as error:

@@ -89,22 +89,33 @@ def plot(archive: Path, folder: Path, overwrite: bool) -> int:
 
 @click.command()
 @options.archive
-@click.option("--state", type=int, default=0, show_default=True, help="Number of the state, see show.")
-@click.option("--extent", type=float, default=10.0, show_default=True, help="How far, over a.")
-@click.option("-o", "output", type=options.FILE, help="File; default: ARCHIVE_STATE.hdf.")
+@click.option("--state", type=int, help="Number of the state, see show.  [default: 0]")
+@click.option("--states", help="Several, as 0,4,7 or 0-5, as a series over their numbers.")
+@click.option(
+    "--extent", type=float, default=10.0, show_default=True,
+    help="How far in X and Y, over a; cells that reach further are cut there.",
+)  # fmt: skip
+@click.option("-o", "output", type=options.FILE, help="File; default: ARCHIVE_STATES.hdf.")
 @options.overwrite
-def fields(archive: Path, state: int, extent: float, output: Path | None, overwrite: bool) -> int:
-    """Write displacement and stresses of a state of ARCHIVE for ParaView (VTKHDF).
+def fields(
+    archive: Path, state: int | None, states: str | None, extent: float, output: Path | None,
+    overwrite: bool,
+) -> int:  # fmt: skip
+    """Write displacement and stresses of states of ARCHIVE for ParaView (VTKHDF).
 
-    The state is computed once more by finite elements, at the degree that the archive used.
+    The states are computed once more by finite elements, at the degree that the archive used.
 
     Example: ./run.sh fields tables.h5 --state 3
     """
-    target = output or Path(f"{archive.stem}_{state}.hdf")
-    _loaded(archive, stresses=False).fields(target, state, extent, overwrite)
+    if state is not None and states is not None:
+        raise click.UsageError("--state and --states exclude each other; keep one")
+    numbers = [state or 0] if states is None else options.numbers(states)
+    target = output or Path(f"{archive.stem}_{states or numbers[0]}.hdf")
+    _loaded(archive, stresses=False).fields(target, numbers, extent, overwrite)
     if ranks.is_root():
         print(f"fields: {target}")
-        print("next: open it in ParaView (5.11 or newer), and colour by von_mises")
+        version = "5.12" if len(numbers) > 1 else "5.11"
+        print(f"next: open it in ParaView ({version} or newer), and colour by von_mises_for_colours")
     return errors.GOOD
 
 

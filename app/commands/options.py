@@ -1,6 +1,7 @@
 """Arguments and options that several commands have."""
 
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,10 +9,18 @@ from typing import Any
 import click
 
 from galinx.app.console.progress import Progress
+from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import short
 from galinx.postprocess.target import LOG, Target
 
 #: Bytes that file systems allow a name.
 _LONGEST = 255
+
+#: States that a range of them may have.
+_SEVERAL = 10_000
+
+#: Endings of files that galinx, or other programs, make of results.
+_OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".vtkhdf", ".vtu", ".toml"}
 
 
 class _File(click.Path):
@@ -24,7 +33,17 @@ class _File(click.Path):
         return super().convert(value, param, ctx)
 
 
-FILE = _File(path_type=Path)
+class _Folder(_File):
+    """A folder's path; a name that says a file is one of somebody who expects a single file."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        path = super().convert(value, param, ctx)
+        if path.suffix.lower() in _OF_FILES and not path.is_dir():
+            self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
+        return path
+
+
+FILE, FOLDER = _File(path_type=Path), _Folder(path_type=Path)
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)
@@ -59,10 +78,30 @@ def _extensions() -> tuple[Path, ...]:
     return click.get_current_context().find_root().params.get("extensions", ())
 
 
+def numbers(text: str) -> list[int]:
+    """Numbers of states, as ``0,4,7`` or ``0-5``.
+
+    Raises:
+        BadInput: these are none.
+    """
+    found: list[int] = []
+    for word in text.split(","):
+        ends = re.fullmatch(r"\s*(\d{1,9})(?:\s*-\s*(\d{1,9}))?\s*", word)
+        if not ends:
+            raise BadInput(f"--states: found {short(word)!r}, expected numbers, as in 0,4,7 or 0-5")
+        first, last = int(ends[1]), int(ends[2] or ends[1])
+        if not first <= last < first + _SEVERAL:
+            raise BadInput(
+                f"--states: found {word}, expected a range that grows, of up to {_SEVERAL} states"
+            )
+        found += range(first, last + 1)
+    return list(dict.fromkeys(found))
+
+
 def folder(default: str) -> Callable[[Any], Any]:
     """``-o FOLDER``."""
     return click.option(
-        "-o", "folder", type=FILE, default=Path(default), show_default=True,
+        "-o", "folder", type=FOLDER, default=Path(default), show_default=True,
         help="Folder; it is made.",
     )  # fmt: skip
 

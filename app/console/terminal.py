@@ -11,6 +11,7 @@ from typing import Any
 from galinx.app import ranks
 from galinx.app.console.streams import plain
 from galinx.app.process import link
+from galinx.clock import Clock
 
 
 def say(text: str, hang: int = 2) -> None:
@@ -50,10 +51,9 @@ def print_warnings(attributes: dict[str, Any]) -> None:
         print(f"warning: {text}", file=sys.stderr)
 
 
-def print_times(data: dict[str, Any]) -> None:
-    """Wall time of the steps that took some, longest first."""
-    from galinx.postprocess.quantities.runs import SECONDS, STEPS
-
-    steps = sorted(zip(data[SECONDS.path].tolist(), data[STEPS.path].tolist()), reverse=True)
+def print_times(clock: Clock) -> None:
+    """Wall time of the process, and of the steps that took most of it."""
+    clock.lap()
+    steps = sorted(((seconds, name) for name, seconds in clock.items()), reverse=True)
     told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
-    say(f"time: {sum(seconds for seconds, _ in steps):.2g} s{f' ({told})' if told else ''}")
+    say(f"time: {sum(clock.values()):.3g} s{f' ({told})' if told else ''}")

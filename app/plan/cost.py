@@ -14,8 +14,14 @@ STATE = 1e-4
 #: Seconds without: a stroke along which a law is followed, a quantity at a speed, a state, and each of
 #: its archived numbers.
 _STROKE, _QUANTITY, _STATE, _NUMBER = 3e-5, 2.5e-5, 2.2e-6, 1.3e-7
+#: Seconds of a point inside: to find its cell, gradients of a state there, potentials of a state; with a
+#: pressure of the user's own gradients and potentials of each of its pieces.
+_FOUND, _GRADIENT, _POTENTIAL = 2.2e-6, 1.1e-6, 4.5e-7
+_GRADIENTS_OF_PIECE, _POTENTIAL_OF_PIECE = 4e-6, 9e-7
+#: Bytes of a number of the states that are treated together, and of one in an archive.
+_HELD, _ARCHIVED = 24, 8
 #: Bytes of a program without finite elements, and of a state's friction.
-_PROGRAM, _FRICTION = 60e6, 300.0
+_PROGRAM, _FRICTION = 110e6, 300.0
 #: Bytes of the libraries, and cells that are condensed at once.
 _LIBRARIES, _AT_ONCE = 170e6, 64
 #: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.
@@ -27,6 +33,36 @@ def seconds_of_states(strokes: int, speeds: int, states: int, quantities: int, n
     return _STROKE * strokes + _QUANTITY * speeds * quantities + states * (_STATE + _NUMBER * numbers)
 
 
+def seconds_inside(points: int, speeds: int, states: int, pieces: int, fem: bool, exact: bool) -> float:
+    """Stresses at points inside.
+
+    Args:
+        points: their number.
+        speeds, states: numbers of all.
+        pieces: of a pressure of the user's own, 0 for a punch.
+        fem: are they found by finite elements?
+        exact: are they found in closed form?
+    """
+    by_fem = speeds * _GRADIENTS_OF_PIECE * pieces if pieces else speeds * _FOUND + states * _GRADIENT
+    in_closed_form = states * (_POTENTIAL_OF_PIECE * pieces if pieces else _POTENTIAL)
+    return points * (by_fem * fem + in_closed_form * exact)
+
+
+def seconds_to_archive(numbers: int) -> float:
+    """Numbers are judged, written, read back and sealed."""
+    return _NUMBER * numbers
+
+
+def bytes_of_chunk(numbers: int) -> float:
+    """Memory of the numbers of the states that are treated together."""
+    return _HELD * numbers
+
+
+def bytes_archived(numbers: int) -> float:
+    """Size of an archive of so many numbers."""
+    return _ARCHIVED * numbers
+
+
 def bytes_of_states(states: int) -> float:
     """Memory of all states' friction, which is held at once."""
     return _FRICTION * states
@@ -34,7 +70,7 @@ def bytes_of_states(states: int) -> float:
 
 def bytes_without_fem(states: int, chunk_numbers: int) -> float:
     """Largest resident set of a run without finite elements."""
-    return _PROGRAM + bytes_of_states(states) + 3 * 8 * chunk_numbers
+    return _PROGRAM + bytes_of_states(states) + bytes_of_chunk(chunk_numbers)
 
 
 def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> float:
@@ -65,4 +101,4 @@ def free_memory() -> float:
 def bytes_of(unknowns: float, degree: int, direct: bool, chunk_numbers: int) -> float:
     """Largest resident set of a rank that has so many unknowns."""
     dense = 3 * 8 * _AT_ONCE * (2 * (degree + 1) ** 2) ** 2
-    return _LIBRARIES + bytes_of_levels(unknowns, direct) + dense + 3 * 8 * chunk_numbers
+    return _LIBRARIES + bytes_of_levels(unknowns, direct) + dense + bytes_of_chunk(chunk_numbers)

@@ -35,23 +35,20 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
     first = bisect_left(ordered, True, key=beyond_limit)
     almost = bisect_left(ordered[:first], True, key=lambda c: beyond_limit(c / 0.99))
     near, beyond = ([f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:]))
-    c_R = scene.solid.limit() if beyond or near else None
+    c_R = scene.solid.limit() if beyond or near else 0.0
+    limit = f"the Rayleigh speed c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
     if fem and beyond:
         raise BadInput(
-            f"motion: c = {listed(beyond)} is not below the Rayleigh speed "
-            f"c_R = {c_R:.6g} (over c_s): the finite element form is indefinite there and does not "
-            'converge; take lower speeds, or methods = ["closed_form"]'
+            f"motion: c = {listed(beyond)} is not below {limit}: the finite element form is indefinite "
+            'there and does not converge; take lower speeds, or methods = ["closed_form"]'
         )
     warnings = []
     if beyond:
-        warnings.append(
-            f"c = {listed(beyond)} is not below the Rayleigh speed "
-            f"c_R = {c_R:.6g} (over c_s): the closed form is formal there"
-        )
+        warnings.append(f"c = {listed(beyond)} is not below {limit}: the closed form is formal there")
     if near:
         warnings.append(
-            f"c = {listed(near)} is within 1 % of the Rayleigh speed "
-            f"c_R = {c_R:.6g} (over c_s): displacements grow without bound and errors with them"
+            f"c = {listed(near)} is within 1 % of {limit}: displacements grow without bound and errors "
+            "with them"
         )
     return warnings
 
@@ -145,6 +142,16 @@ def inner(scene: Scene, far: float = 0.0) -> float:
         far: distance that its mesh has to reach, if it can.
     """
     return _INNER * MESHES[scene.solve.mesh].reach(Wanted(scene.solve.tolerance, farthest=far))
+
+
+def warnings_of_size(numbers: int) -> Iterator[str]:
+    """What does not fit into memory, of the numbers of the states that are treated together."""
+    needed, free = cost.bytes_of_chunk(numbers), cost.free_memory()
+    if needed > free:
+        yield (
+            f"the stresses of a single state need about {needed / 1e9:.2g} GB, of which this machine has "
+            f"{free / 1e9:.2g} GB free: ask for fewer points"
+        )
 
 
 def warnings_of(fem: FemPlan) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Which work a scene needs, derived from the outputs it asks for."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from galinx.app.plan.limits import (
     check_speeds,
     check_states,
     warnings_of,
+    warnings_of_size,
 )
 from galinx.app.plan.states import enumerate_states, laws_followed, speeds, states_a_speed
 from galinx.app.plan.task import Plan, Tasks
@@ -58,12 +60,14 @@ def make_plan(scene: Scene) -> Plan:
         warnings += warnings_of(fem)
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
-    return Plan(
+    plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
         strokes=laws_followed(scene) * len(scene.motion.strokes), fem=fem, skipped=skipped,
         warnings=tuple(warnings),
     )  # fmt: skip
+    heavy = warnings_of_size(plan.chunk * plan.numbers)
+    return replace(plan, warnings=(*plan.warnings, *heavy))
 
 
 def _contact(scene: Scene) -> bool:

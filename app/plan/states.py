@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
 from galinx.solvers.friction import FrictionLaw
@@ -54,12 +55,16 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     if scene.motion.c is not None:
         return tuple(dict.fromkeys(scene.motion.c))
     c_s = scene.solid.c_s
-    for speed in scene.motion.speed or ():
-        if speed >= c_s:
-            raise BadInput(
-                f"motion.speed = {speed:g} m/s: expected less than the shear wave speed {c_s:.6g} m/s"
-                + "".join(f"; {text}" for text in oddities(scene))
+    if fast := [f"{speed:g}" for speed in scene.motion.speed or () if speed >= c_s]:
+        limit = f"the shear wave speed {c_s:.6g} m/s"
+        if "fem" in scene.solve.methods:  # the one that is met first
+            limit = (
+                f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s (by closed_form alone, {limit})"
             )
+        raise BadInput(
+            f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
+            + "".join(f"; {text}" for text in oddities(scene))
+        )
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 

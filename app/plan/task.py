@@ -136,6 +136,12 @@ class Plan:
         looked_at = 3 * len(self.places.around)
         return looked_at + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
+    @property
+    def numbers_inside(self) -> int:
+        """Those of them at points inside."""
+        inside = (quantity for quantity in self.quantities if INSIDE in quantity.over)
+        return sum(int(np.prod(self.shape(quantity))) for quantity in inside)
+
     def chunks(self, task: Task) -> list[slice]:
         """A task's rows, so many at a time."""
         rows = range(task.rows.start, task.rows.stop, self.chunk)

@@ -8,7 +8,7 @@ from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import FEM
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -50,25 +50,53 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
 
 
 def expense(plan: Plan) -> str:
-    """Estimated time and memory of a plan."""
-    fem = plan.fem
-    if not fem:
-        seconds = cost.START_WITHOUT_FEM + cost.seconds_of_states(
+    """Estimated time and memory of a plan, and the size of its archive."""
+    together = plan.chunk * plan.numbers
+    archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers))}"
+    if not plan.fem:
+        seconds = cost.START_WITHOUT_FEM + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
-        )
-        memory = cost.bytes_without_fem(plan.states, plan.chunk * plan.numbers)
-        return f"about {seconds:.2g} s and {memory / 1e9:.1g} GB"
-    mesh = fem.pattern
-    solved = [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
-    direct = fem.solver == "direct"
-    seconds = sum(
-        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct) for p, k in solved
+        )  # fmt: skip
+        memory = cost.bytes_without_fem(plan.states, together)
+        return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
+    fem = plan.fem
+    speeds, states = _seconds_of_levels(fem) / ranks.size(), cost.STATE * plan.states
+    sharing = 1 if fem.shared_speeds else ranks.size()
+    inside = _inside(plan) * sharing / ranks.size()
+    most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
+    numbers = max(CHUNK_NUMBERS, together)
+    memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
+    parts = {"start": cost.START, "finite elements": speeds, "states": states, "stresses inside": inside}
+    told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
+    total = sum(parts.values())
+    return f"about {total:.2g} s ({told}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+
+
+def _inside(plan: Plan) -> float:
+    """Seconds for stresses inside, those to archive them among them."""
+    shape = len(plan.places.points), len(plan.tasks), plan.states
+    pieces = len(plan.body.pressure.knots) - 1 if plan.body.pressure else 0
+    by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
+    seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)
+    if not plan.fem:
+        return seconds  # the law for states knows of all their numbers
+    return seconds + cost.seconds_to_archive(plan.states * plan.numbers_inside)
+
+
+def _levels(fem: FemPlan) -> list[tuple[int, int]]:
+    """Degrees and cuts that every speed is solved with."""
+    return [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
+
+
+def _seconds_of_levels(fem: FemPlan) -> float:
+    """Seconds of the levels of every speed, one after the other."""
+    mesh, direct = fem.pattern, fem.solver == "direct"
+    return sum(
+        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
+        for p, k in _levels(fem)
     )
-    speeds, states = seconds / ranks.size(), cost.STATE * plan.states
-    highest = max(fem.degrees)
-    together = 1 if fem.shared_speeds else ranks.size()
-    most = unknowns(mesh, max(p * k for p, k in solved)) / together
-    memory = cost.bytes_of(most, highest, direct, CHUNK_NUMBERS)
-    parts = f"start {cost.START:g}, finite elements {speeds:.2g}, states {states:.2g}"
-    total = cost.START + speeds + states
-    return f"about {total:.2g} s ({parts}) on cores of 3 GHz, and {memory / 1e9:.2g} GB a rank"
+
+
+def _size(count: float) -> str:
+    """Bytes for a reader."""
+    return f"{count / 1e9:.2g} GB" if count >= 1e8 else f"{count / 1e6:.2g} MB"

@@ -1,6 +1,8 @@
-"""The whole field of one state, for ParaView: displacement and stresses from finite elements."""
+"""Whole fields of states, for ParaView: displacement and stresses from finite elements."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -8,18 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.console.progress import Progress
+from galinx import __version__
 from galinx.app.errors import BadInput, finite_elements_installed
 from galinx.app.plan.limits import inner
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states, speeds
-from galinx.app.plan.task import Plan, Task
-from galinx.app.scene.scene import Output, Scene
-from galinx.clock import Clock
-from galinx.meshes.kind import DEGREES
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+from galinx.app.results.one_state import OneState, Solved, chosen, solved
+from galinx.app.scene.scene import Scene
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.target import Target
+from galinx.solvers.contact import under_punch
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure
 
@@ -31,12 +29,19 @@ ABOUT = {
     "sigma_XY": ("Pa", "shear stress"),
     "sigma_ZZ": ("Pa", "normal stress out of the plane"),
     "von_mises": ("Pa", "von Mises stress"),
+    "von_mises_for_colours": ("Pa", "von Mises stress, N/a where it is larger: infinite at the edges"),
     "maximum_shear": ("Pa", "largest shear stress in the plane"),
+    "contact_pressure": ("Pa", "pressure under the punch, 0 beside it, NaN at its edges and inside"),
     "sigma_error": (
         "Pa",
         "largest difference of sigma_XX, sigma_YY, sigma_XY from the closed form, NaN on the surface",
     ),
 }
+#: What viewers colour by unasked.
+COLOURED = "von_mises_for_colours"
+
+#: Stress over N/(2a) from which that has one colour.
+_BRIGHT = 2.0
 
 #: Depth over a above which a point counts as on the surface, where the potentials do not hold.
 _SURFACE = 1e-14
@@ -48,7 +53,7 @@ class StateField:
 
     Attributes:
         points: positions [m], (n, 2).
-        quads: points of each quadrilateral counterclockwise, (m, 4).
+        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
         data: quantities of ``ABOUT`` at the points, (n,), or (n, 3) for the displacement.
     """
 
@@ -57,28 +62,44 @@ class StateField:
     data: dict[str, NDArray[np.float64]]
 
 
-def write_field(
-    scene: Scene, number: int, path: Path | Target, extent: float = 10.0, degree: int | None = None
+def write_fields(
+    scene: Scene,
+    numbers: Sequence[int],
+    path: Path | Target,
+    extent: float = 10.0,
+    degrees: Sequence[int | None] | None = None,
 ) -> None:
-    """Compute one state of a scene and write it for ParaView; nothing is replaced by a path alone.
+    """Compute states of a scene and write them for ParaView, several as a series over their numbers.
 
-    Collective over MPI's world; rank 0 writes. Arguments and failures are those of :func:`state_field`.
+    Collective over MPI's world; rank 0 writes. Nothing is replaced by a path alone. Arguments and
+    failures are those of :func:`state_field`, with a list for each number.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    state = _state(scene, number, extent, degree)
-    sampled, comm = _sampled(state, extent)
-    mine = _in_si(state, sampled)
-    if comm.rank > 0:
-        comm.send(mine, 0)
+    states = chosen(scene, numbers, degrees)
+    _check(scene, extent)
+    with finite_elements_installed():
+        from mpi4py import MPI
+    if MPI.COMM_WORLD.rank > 0:
+        for found in solved(states):
+            found.comm.send(_piece(found, extent), 0)
         return
     from galinx.postprocess.hdf5 import vtkhdf
 
-    # Rank 0 has one piece of another rank at a time.
+    steps = (
+        vtkhdf.Step(float(found.state.number), _pieces(found, extent), _told(scene, found.state))
+        for found in solved(states)
+    )
+    vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(states) > 1)
+
+
+def _pieces(found: Solved, extent: float) -> Iterable[StateField]:
+    """Those of all ranks, on rank 0, which has one of another rank at a time."""
+    comm = found.comm
     others = (comm.recv(source=rank) for rank in range(1, comm.size))
-    vtkhdf.write(path, chain([mine], others), ABOUT)
+    return chain([_piece(found, extent)], others)
 
 
 def state_field(
@@ -98,74 +119,15 @@ def state_field(
         BadInput: there is no such state, or finite elements have no answer for it.
         SolveError: the equations could not be solved.
     """
-    state = _state(scene, number, extent, degree)
-    sampled, comm = _sampled(state, extent)
-    whole = sampled.gathered(comm)
-    return None if whole is None else _in_si(state, whole)
-
-
-@dataclass(frozen=True)
-class _State:
-    """One state, and what computes it.
-
-    Attributes:
-        plan: finite elements at the scene's speeds.
-        task: the state's speed.
-        g: σ_XY/σ_YY under the punch.
-        degree: polynomial degree.
-        exact: is there a closed form to compare with?
-    """
-
-    plan: Plan
-    task: Task
-    g: float
-    degree: int
-    exact: bool
-
-
-def _state(scene: Scene, number: int, extent: float, degree: int | None) -> _State:
-    states = enumerate_states(scene)
-    if not 0 <= number < len(states):
-        raise BadInput(
-            f"state {number}: no such state; expected 0 to {len(states) - 1}, the scene has {len(states)}"
-        )
-    # What the scene fixes, or what its rule gives, which is one more for given tractions.
-    lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
-    if degree is not None and not lowest <= degree <= highest:
-        raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
-    c = float(states.columns["c"][number])
-    plan = make_plan(_for_finite_elements(scene, c))
+    (state,) = chosen(scene, [number], [degree])
     _check(scene, extent)
-    task = next(task for task in plan.tasks if task.response.c == c)
-    assert plan.fem
-    if degree is None:
-        # Given tractions are solved one degree above the rule: no measured error corrects it here.
-        degree = plan.fem.degrees[task.number] + (scene.solve.mode == "traction")
-    exact = "closed_form" in scene.solve.methods
-    return _State(plan, task, float(states.g[number]), degree, exact)
-
-
-def _for_finite_elements(scene: Scene, c: float) -> Scene:
-    """The scene with finite elements, at all its speeds that these can do, and at c in any case.
-
-    All speeds share one mesh; with the same speeds and places it is that of a run.
-    """
-    mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
-    possible = tuple(v for v in speeds(scene) if v == c or scene.solid.response(v).margin > 0.0)
-    return replace(
-        scene,
-        motion=replace(scene.motion, c=possible, speed=None),
-        solve=replace(scene.solve, methods=("fem",)),
-        output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
-    )
+    with closing(solved([state])) as states:
+        found = next(states)
+        whole = _sampled(found, extent).gathered(found.comm)
+        return None if whole is None else _in_si(found, whole)
 
 
 def _check(scene: Scene, extent: float) -> None:
-    if scene.solid.nearly_incompressible:
-        raise BadInput(
-            f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
-            "elements"
-        )
     limit = inner(scene)
     if not 0.0 < extent <= limit:
         raise BadInput(
@@ -174,30 +136,45 @@ def _check(scene: Scene, extent: float) -> None:
         )
 
 
-def _sampled(state: _State, extent: float) -> tuple[Any, Any]:
-    """This rank's piece of the state's field over a, N/(2μ) and N/(2a), and the ranks."""
-    with finite_elements_installed():
-        from galinx.app.run.methods.fem import FiniteElements
-        from galinx.solvers.fem.sampling import sample
-    task, degree = state.task, state.degree
-    # One speed alone is never shared out.
-    fem = FiniteElements(_on_one_mesh(state.plan), Progress(), Clock())
-    with fem.one_state(task, state.g, degree) as (space, fields, weights):
-        return sample(space, task.response, fields, weights, extent, degree), fem.work.comm
+def _told(scene: Scene, state: OneState) -> dict[str, Any]:
+    """What a file says of a state beside its fields; numbers in SI."""
+    body = state.task.body
+    return {
+        "title": scene.title,
+        "state": state.number,
+        **state.told,
+        "speed": state.told["c"] * body.solid.c_s,
+        "load": body.load,
+        "half_width": body.profile.half_width,
+        "mean_pressure": body.stress,
+        "degree": state.degree,
+        "program": f"galinx {__version__}",
+    }
 
 
-def _on_one_mesh(plan: Plan) -> Plan:
-    assert plan.fem
-    return replace(plan, fem=replace(plan.fem, shared_speeds=False))
+def _piece(found: Solved, extent: float) -> StateField:
+    """This rank's."""
+    return _in_si(found, _sampled(found, extent))
 
 
-def _in_si(state: _State, sampled: Any) -> StateField:
+def _sampled(found: Solved, extent: float) -> Any:
+    """This rank's piece of the state's field over a, N/(2μ) and N/(2a)."""
+    from galinx.solvers.fem.sampling import sample
+
+    state = found.state
+    return sample(
+        found.space, state.task.response, found.fields, found.weights, extent, state.degree
+    )  # fmt: skip
+
+
+def _in_si(solution: Solved, sampled: Any) -> StateField:
     """Lengths in m, stresses in Pa, for the scene's load per depth."""
-    task = state.task
+    state, task = solution.state, solution.state.task
     body, solid = task.body, task.body.solid
     found = task.response.stresses(sampled.gradient)
     XX, YY, XY = body.stress * found
     ZZ = solid.σ_ZZ(XX, YY, XY)
+    mises = von_mises(XX, YY, XY, ZZ)
     displacement = body.displacement * sampled.displacement
     data = {
         "displacement": np.column_stack([displacement, np.zeros(len(displacement))]),
@@ -205,8 +182,10 @@ def _in_si(state: _State, sampled: Any) -> StateField:
         "sigma_YY": YY,
         "sigma_XY": XY,
         "sigma_ZZ": ZZ,
-        "von_mises": von_mises(XX, YY, XY, ZZ),
+        "von_mises": mises,
+        COLOURED: np.minimum(mises, _BRIGHT * body.stress),
         "maximum_shear": maximum_shear(XX, YY, XY),
+        "contact_pressure": body.stress * _pressure(solution, sampled.points),
     }
     if state.exact:
         exact: FlatPunch | GivenPressure = FlatPunch(task.response, state.g)
@@ -216,10 +195,25 @@ def _in_si(state: _State, sampled: Any) -> StateField:
     return StateField(body.profile.half_width * sampled.points, sampled.quads, data)
 
 
+def _inside(points: NDArray) -> NDArray[np.bool_]:
+    """Which points lie below the surface, (n,)."""
+    X, Y = points.T
+    return -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
+
+
+def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
+    """Under the punch over N/(2a), 0 beside it, NaN at its edges and inside, (n,)."""
+    X = points[:, 0]
+    on, found = ~_inside(points), np.full(len(points), np.nan)
+    under = on & under_punch(X)
+    found[on & (np.abs(X) > 1.0)] = 0.0
+    found[under] = -solution.pressure(X[under])
+    return found
+
+
 def _error(exact: FlatPunch | GivenPressure, points: NDArray, found: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
-    X, Y = points.T
-    inside = -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
-    error = np.full(len(points), np.nan)
-    error[inside] = np.abs(found[:, inside] - exact.inside(X[inside], Y[inside])).max(axis=0)
+    inside, error = _inside(points), np.full(len(points), np.nan)
+    X, Y = points[inside].T
+    error[inside] = np.abs(found[:, inside] - exact.inside(X, Y)).max(axis=0)
     return error

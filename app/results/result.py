@@ -1,7 +1,7 @@
 """Results in Python: everything the command line does in a few lines, with or without files."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +29,17 @@ class Result:
         self, data: dict[str, Any], attributes: dict[str, Any], inputs: tuple[Path, ...] = ()
     ) -> None:
         self.data, self.attributes, self.inputs = data, attributes, inputs
+
+    def __repr__(self) -> str:
+        count = len(self.data[states.FRICTION.path])
+        plural = "s" * (count > 1)
+        return f"<galinx result {self.attributes['title']!r}: {count} state{plural}, {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: verdict and states."""
+        from galinx.app.results.notebook import html
+
+        return html(self.data, self.attributes)
 
     @cached_property
     def scene(self) -> Scene:
@@ -65,13 +76,42 @@ class Result:
 
         return of_archive(self.data, self.scene)
 
-    def plot(self, folder: Path | str = ".", name: str = "galinx", overwrite: bool = False) -> list[Path]:
+    def figure(self, name: str = "") -> Any:
+        """One of the figures, as a matplotlib figure, which notebooks show.
+
+        Args:
+            name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
+                friction where there are no stresses.
+
+        Raises:
+            BadInput: the result has no such figure.
+        """
+        from galinx.postprocess.figures.notebook import shown
+
+        found = {drawing.name: drawing.figure for drawing in self.drawings()}
+        chosen = name or ("surface" if "surface" in found else "friction")
+        if chosen not in found:
+            from galinx.app.errors import BadInput
+            from galinx.app.scene.excerpt import excerpt, nearest
+
+            raise BadInput(
+                f"figure {excerpt(name)}: the result has none of that name{nearest(name, found)}"
+            )
+        return shown(found[chosen])
+
+    def plot(
+        self, folder: Path | str | None = None, name: str = "galinx", overwrite: bool = False
+    ) -> Any:
         """Write every figure as PDF and PNG into a folder, which is made; their paths.
+
+        Without a folder nothing is written, and the figure is returned that :meth:`figure` gives.
 
         Raises:
             Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
+        if folder is None:
+            return self.figure()
         from galinx.postprocess.figures.canvas import save
 
         figures = ((f"{name}_{drawing.name}", drawing.figure) for drawing in self.drawings())
@@ -93,25 +133,48 @@ class Result:
         target.write(report.text().encode())
 
     def fields(
-        self, path: Path | str, state: int = 0, extent: float = 10.0, overwrite: bool = False
+        self,
+        path: Path | str,
+        state: int | Sequence[int] = 0,
+        extent: float = 10.0,
+        overwrite: bool = False,
     ) -> None:
-        """Write displacement and stresses of a state for ParaView (VTKHDF); collective under MPI.
+        """Write displacement and stresses of states for ParaView (VTKHDF); collective under MPI.
 
         Args:
-            path: the file, ``.hdf`` by ParaView's habit.
-            state: which, from 0.
-            extent: how far from the punch's centre, over a.
+            path: the file, ``.hdf`` or ``.vtkhdf``.
+            state: which, from 0; several become a series, which ParaView knows from 5.12 on.
+            extent: how far from the punch's centre, over a; cells that reach further are cut there.
             overwrite: a file that holds no fields of galinx is replaced, too.
 
         Raises:
             BadInput: no such state, or finite elements have no answer there.
-            Occupied: another file is there, and ``overwrite`` is false.
+            Occupied: the ending is another kind's, or another file is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from galinx.app.results.paraview import write_field
+        from galinx.app.results.paraview import write_fields
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
-        write_field(self.scene, state, target, extent, self._degree(state))
+        numbers = [state] if isinstance(state, int) else list(state)
+        write_fields(self.scene, numbers, target, extent, [self._degree(one) for one in numbers])
+
+    def displacement(self, state: int = 0) -> Any:
+        """The displacement of a state as a dolfinx function, to go on with in dolfinx; on one rank only.
+
+        The state is solved once more by finite elements, at the degree that was used. Of the function
+        ``u``, ``u.function_space.mesh`` is the mesh of the solid, in m, the punch's centre at the origin
+        and the solid below; ``u`` itself is in m, relative to the far boundary.
+
+        Args:
+            state: which, from 0.
+
+        Raises:
+            BadInput: no such state, finite elements have no answer there, or there are several ranks.
+            MachineFailure: dolfinx is not installed.
+        """
+        from galinx.app.results.one_state import displacement
+
+        return displacement(self.scene, state, self._degree(state))
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.
@@ -151,11 +214,12 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     """
     from galinx.app.errors import BadInput
     from galinx.app.scene.changes import changed
+    from galinx.app.scene.excerpt import excerpt, nearest
     from galinx.app.scene.templates import templates
 
     known = templates()
     if name not in known:
-        raise BadInput(f"template {name!r}: no such scene; expected one of {', '.join(known)}")
+        raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), known)}")
     return scenes.parse(changed(known[name].text, changes or {}), name)
 
 

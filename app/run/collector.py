@@ -11,12 +11,16 @@ from galinx.app.console.progress import Progress
 from galinx.app.plan.task import Plan
 from galinx.app.run.judge import Judge
 from galinx.app.run.sinks import Sink
+from galinx.clock import Clock
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.solvers.errors import SolveError
 
 #: Seconds after which small parts wait no longer for others: so much is lost at most.
 _PATIENCE = 1.0
+
+#: What the time is told as.
+_STEP = "archive"
 
 
 class Collector:
@@ -28,20 +32,23 @@ class Collector:
         progress: is told what is done.
         journal: keeps parts; None for no journal.
         plan: the plan that is followed.
-
-    Attributes:
-        seconds: wall time spent here.
+        clock: takes the time spent here.
     """
 
     def __init__(
-        self, sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, plan: Plan
+        self,
+        sink: Sink,
+        judge: Judge,
+        progress: Progress,
+        journal: Journal | None,
+        plan: Plan,
+        clock: Clock,
     ) -> None:
         self._sink, self._judge, self._progress, self._plan = sink, judge, progress, plan
-        self._journal, self._done = journal, 0
+        self._journal, self._clock, self._done = journal, clock, 0
         self._small: list[Part] = []
         self._kept = perf_counter()
         self._records: dict[int, dict[str, Any]] = {}
-        self.seconds = 0.0
         for quantity in plan.quantities:
             sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
 
@@ -73,24 +80,24 @@ class Collector:
     def _keep(self) -> None:
         """Keep the parts that wait, as one: a file a part, and a look at the archive, take their time."""
         if self._small:
-            part = joined(self._small)
+            with self._clock(_STEP):
+                part = joined(self._small)
+                if self._journal:
+                    self._journal.keep(part)
             self._small = []
-            if self._journal:
-                self._journal.keep(part)
             self._take(part)
         self._kept = perf_counter()
 
     def _take(self, part: Part) -> None:
-        started = perf_counter()
         self._judge.see(part.comparisons)
         self._judge.validity.see(part.data)
-        for name, values in part.data.items():
-            self._sink.write(name, part.rows, values)
+        with self._clock(_STEP):
+            for name, values in part.data.items():
+                self._sink.write(name, part.rows, values)
         if part.record:
             self._records[part.record["speed"]] = part.record
         self._done += part.rows.stop - part.rows.start
         self._progress.done(self._done, self._plan.states)
-        self.seconds += perf_counter() - started
 
     def finish(self) -> None:
         """Write the records of the speeds.

@@ -73,7 +73,8 @@ class Work:
         self, task: Task, rows: slice, solvers: Mapping[str, Solver], failures: dict[str, str]
     ) -> Part:
         g = self.g[rows]
-        data = self._read(LOCAL, Edges(FlatPunch(task.response, g)), task)
+        with self.clock(_STEPS["closed_form"]):
+            data = self._read(LOCAL, Edges(FlatPunch(task.response, g)), task)
         for name in self.methods:
             try:
                 if name not in failures:

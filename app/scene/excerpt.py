@@ -1,6 +1,7 @@
 """What a scene says, short enough for a message."""
 
 import reprlib
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 from math import log10
 
@@ -37,7 +38,13 @@ def short(text: str, most: int = 80) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def nearest(key: str, valid: list[str]) -> str:
-    """What may have been meant, for the end of a message."""
-    close = get_close_matches(key, valid, 1, 0.5)
-    return f"; did you mean {close[0]}?" if close else f"; valid: {', '.join(valid)}"
+def meant(word: str, valid: Iterable[str]) -> str:
+    """What may have been meant, for the end of a message; "" where nothing is near."""
+    known = {name.lower(): name for name in valid}
+    close = get_close_matches(short(word).lower(), known, 1, 0.6)
+    return f"; did you mean {known[close[0]]}?" if close else ""
+
+
+def nearest(key: str, valid: Collection[str]) -> str:
+    """The same, or else all that there is."""
+    return meant(key, valid) or f"; valid: {', '.join(valid)}"

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from galinx import files
+from galinx.app.console.program import program
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.repeated import repeated
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sections import SECTIONS
 from galinx.app.scene.sense import contradictions
@@ -16,6 +18,9 @@ from galinx.app.scene.texts import control_characters
 
 #: Bytes of a scene; a million speeds fit, and what has no end is not read for ever.
 _LARGEST = 50 * 10**6
+
+#: How archives begin, and HDF5 files that were written without a seal.
+_ARCHIVES = (b"galinx archive\n", b"\x89HDF\r\n\x1a\n")
 
 #: Faults that a message lists at most.
 _FAULTS = 30
@@ -37,6 +42,11 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
     if len(data) > _LARGEST:
         raise BadInput(f"{path} is larger than {_LARGEST // 10**6} MB, expected a scene (TOML file)")
+    if data.startswith(_ARCHIVES):
+        raise BadInput(
+            f"{path} is an archive of results, expected a scene (TOML file); "
+            f"{program()} show {path} shows what it holds"
+        )
     try:
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
@@ -59,7 +69,8 @@ def parse(text: str, name: str = "scene") -> Scene:
     try:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise BadInput(f"{name} is not TOML: {error}") from None
+        twice = repeated(text, str(error))
+        raise BadInput(f"{name} is not TOML: {twice or error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be read: its brackets are nested too deeply") from None
     except ValueError:  # Python's limit of digits
@@ -92,5 +103,7 @@ def _fill_in_material(tree: dict[str, Any]) -> None:
     solid = tree.get("solid")
     if isinstance(solid, dict):
         name = solid.get("material")
-        if isinstance(name, str) and name in LIBRARY:
-            tree["solid"] = LIBRARY[name].constants | solid
+        if isinstance(name, str):
+            # Those of a name that there is not are not missing: that is one fault, and found.
+            known = LIBRARY.get(name) or next(iter(LIBRARY.values()))
+            tree["solid"] = known.constants | solid

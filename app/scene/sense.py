@@ -10,6 +10,8 @@ from galinx.solvers.parameters import parameters, values
 
 #: Usual lengths of a stroke [m].
 _STROKE = (1e-10, 1.0)
+#: Mean pressure over the shear modulus above which strains are far from small.
+_PRESSED = 0.1
 
 
 def contradictions(scene: Scene) -> list[str]:
@@ -51,11 +53,22 @@ def oddities(scene: Scene) -> list[str]:
     found = []
     for path, numbers, unit, (low, high) in _usual(scene):
         odd = [f"{value:g}" for value in numbers if not low <= value <= high]
+        known, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
         if len(odd) == 1:
-            found.append(f"{path} = {odd[0]} {unit} is unusual; is its unit as meant?")
+            found.append(f"{path} = {odd[0]}{known} is unusual, {usual}; is its unit as meant?")
         elif odd:
-            found.append(f"{path} = {listed(odd)} {unit} are unusual; is their unit as meant?")
-    return found
+            found.append(f"{path} = {listed(odd)}{known} are unusual, {usual}; is their unit as meant?")
+    return [*found, *_too_much(scene)]
+
+
+def _too_much(scene: Scene) -> Iterator[str]:
+    """A load that no solid bears: that half-width and load fit one another, no key can tell alone."""
+    mean = scene.punch.load / (2.0 * scene.punch.profile.half_width)
+    if mean > _PRESSED * scene.solid.μ:
+        yield (
+            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa is {mean / scene.solid.μ:.2g} times the "
+            f"shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
+        )
 
 
 def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:

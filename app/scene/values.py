@@ -4,7 +4,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from galinx.app.scene.excerpt import excerpt
+from galinx.app.scene.excerpt import excerpt, meant
 from galinx.app.scene.units import to_si
 from galinx.solvers.parameters import Range
 
@@ -93,7 +93,8 @@ class Choice:
 
     def __call__(self, value: Any) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise ValueError(f"found {excerpt(value)}, expected {_one_of(self.options)}")
+            hint = meant(value, self.options) if isinstance(value, str) else ""
+            raise ValueError(f"found {excerpt(value)}, expected {_one_of(self.options)}{hint}")
         return value
 
     def schema(self) -> dict[str, Any]:

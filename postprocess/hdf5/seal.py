@@ -5,6 +5,7 @@ HDF5 itself crashes over some damaged files: what is sealed is verified before H
 """
 
 import hashlib
+import re
 from pathlib import Path
 
 from galinx.postprocess.errors import UnreadableArchive
@@ -15,6 +16,8 @@ ROOM = 512
 _TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n{}\n"
 #: How every HDF5 file begins that has no user block.
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+#: What the beginning of a scene has, comments and a title before it, and no control character.
+_SCENE = re.compile(rb"\A[^\0-\x08\x0e-\x1f]*^\s*(?:\[[\w.]+\]|\w+\s*=)", re.MULTILINE)
 
 
 def put(path: Path, seal: bytes | None = None) -> None:
@@ -43,6 +46,11 @@ def is_sealed(path: Path) -> bool:
         start = file.read(ROOM)
     if start.startswith(_HDF5):
         return False
+    if _SCENE.search(start):
+        raise UnreadableArchive(
+            f"{path} is a scene or another text, expected an archive of results; the command run makes "
+            "one of a scene"
+        )
     if not start.startswith(_TITLE.encode()):
         raise UnreadableArchive(
             f"{path} begins neither as an archive of galinx does nor as HDF5: it is something else, or "

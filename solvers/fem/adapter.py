@@ -11,6 +11,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 try:
+    import basix
     import basix.ufl as elements
 except ImportError:  # elements were UFL's own
     elements = None
@@ -36,6 +37,31 @@ def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray) -> Any:
     # named here, the form has one key in both cases.
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, 1, variant="equispaced"))
     return dolfinx.mesh.create_mesh(comm, cells, points, domain)
+
+
+def create_curved_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int) -> Any:
+    """A mesh whose cells have evenly spaced nodes of a degree, in the order of Lagrange elements."""
+    cells = cells.astype(np.int64)
+    if elements:
+        even = {"lagrange_variant": basix.LagrangeVariant.equispaced, "shape": (2,)}
+        element = elements.element("Lagrange", _CELL, degree, **even)
+        return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
+    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, degree, variant="equispaced"))
+    return dolfinx.mesh.create_mesh(comm, cells, points, domain)
+
+
+def original_cells(mesh: Any) -> NDArray[np.int64]:
+    """What each cell's number was when the mesh was made."""
+    return np.asarray(mesh.topology.original_cell_index)
+
+
+def function(mesh: Any, element: Any, values: NDArray, name: str) -> Any:
+    """A function of vector elements from its values at the nodes of every cell, (cells, nodes, 2)."""
+    found = fem.Function(space(mesh, element, {}), name=name)
+    # It is asked for at all nodes of one cell after the other.
+    found.interpolate(lambda x: values.reshape(-1, 2).T)
+    found.x.scatter_forward()
+    return found
 
 
 def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:

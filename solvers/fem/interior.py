@@ -3,7 +3,8 @@
 Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,16 +12,15 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.cells import gradients_in_plane, image, jacobian, tensor_order
+from galinx.solvers.fem.cells import gradients_in_plane, pull_back, tensor_order
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
 
-#: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
-#: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
-_SETTLED = 1e-8
+#: Points whose gradients are held at once: of every field, or of every state.
+TOGETHER = 20_000
 
 
 #: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
@@ -52,7 +52,9 @@ class KeptValues:
 
 
 class InteriorGradients:
-    """Displacement gradients along X and Y at given points.
+    """Displacement gradients along X and Y at given points, some of them at a time.
+
+    Where they are many, what is kept of the fields are their values at nodes, of which there are fewer.
 
     Args:
         space: the finite element space.
@@ -74,11 +76,34 @@ class InteriorGradients:
         values: Values | None = None,
     ) -> None:
         values = values or (lambda cells: space.cell_values(fields, response, cells))
-        self._basis = gradients_at(space, response, points, values)
+        self._count, self._fields = len(points), len(fields)
+        self._batches = [
+            _Batch(space, response, points[first : first + TOGETHER])
+            for first in range(0, max(len(points), 1), TOGETHER)
+        ]
+        cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
+        self._nodal = _Nodal(space, cells, values(cells))
+        #: Gradients of all fields, where one batch has all points.
+        self._basis: NDArray[np.float64] | None = None
+        if len(self._batches) == 1:
+            self._basis = self._batches[0].gradients(self._nodal)
+            self._nodal = self._nodal.combined(np.empty((0, 0)))  # no longer needed
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
-        return np.einsum("nijf,sf->snij", self._basis[..., : weights.shape[1]], weights)
+        return np.concatenate([found for _, found in self.by_batches(weights)], axis=1)
+
+    def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
+        """The same, and of which points it is, for some points after the others. Collective."""
+        states, fields = weights.shape
+        for i, batch in enumerate(self._batches):
+            some = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
+            if self._basis is None and states < self._fields:
+                combined = batch.gradients(self._nodal.combined(weights))
+                yield some, np.moveaxis(combined, -1, 0)
+            else:
+                basis = batch.gradients(self._nodal) if self._basis is None else self._basis
+                yield some, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
 
     def of_each(self, weights: NDArray) -> NDArray[np.float64]:
         """The same where the points are those of the first combination, of the second, and so on.
@@ -86,8 +111,12 @@ class InteriorGradients:
         Returns:
             Array (states, n/states, 2, 2).
         """
-        basis = self._basis[..., : weights.shape[1]].reshape(len(weights), -1, 2, 2, weights.shape[1])
-        return np.einsum("snijf,sf->snij", basis, weights)
+        basis = self._basis
+        if basis is None:
+            basis = np.concatenate([batch.gradients(self._nodal) for batch in self._batches])
+        states, fields = weights.shape
+        each = basis[..., :fields].reshape(states, -1, 2, 2, fields)
+        return np.einsum("snijf,sf->snij", each, weights)
 
 
 def gradients_at(
@@ -104,25 +133,79 @@ def gradients_at(
     Raises:
         MeshError: a point lies outside the mesh.
     """
-    chart = space.contracted(response)
-    x = chart.from_physical(points)
-    vertices = space.vertices[..., :2]
-    held = _locate(vertices, x)
-    found = space.comm.allreduce(np.bincount(held.point, minlength=len(points)))
-    if not found.all():
-        X, Y = points[np.argmin(found)]
-        raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-    cells = np.unique(held.cell)
-    u = values(cells)
-    gradients = np.zeros((len(points), 2, 2, u.shape[-1]))
-    grid, nodes = tensor_order(space.reference_nodes)
-    for cell, nodal in zip(cells, u[:, grid]):
-        here = held.cell == cell
-        in_plane = gradients_in_plane(vertices[cell], nodes, held.t[here], nodal)
-        np.add.at(gradients, held.point[here], in_plane)
-    # On the border between cells the gradient jumps; it is their mean.
-    gradients = space.comm.allreduce(gradients) / found[:, None, None, None]
-    return chart.physical_gradients(x, gradients)
+    batch = _Batch(space, response, points)
+    return batch.gradients(_Nodal(space, batch.cells, values(batch.cells)))
+
+
+class _Nodal:
+    """Values of fields at the nodes of some cells.
+
+    Args:
+        space: the finite element space.
+        cells: numbers of this rank's cells, sorted, (m,).
+        values: at their local nodes, (m, nodes, 2, fields).
+
+    Attributes:
+        nodes: places of the nodes along a side of the unit square, (p+1,).
+        values: (m, p+1, p+1, 2, fields).
+    """
+
+    def __init__(self, space: Space, cells: NDArray[np.int64], values: NDArray) -> None:
+        grid, self.nodes = tensor_order(space.reference_nodes)
+        self.cells, self.values = cells, values[:, grid]
+
+    def combined(self, weights: NDArray) -> "_Nodal":
+        """Combinations of the fields with weights (states, fields) as fields."""
+        other = copy(self)
+        other.values = self.values[..., : weights.shape[1]] @ weights.T
+        return other
+
+    def of(self, cell: int) -> NDArray[np.float64]:
+        """Of one of the cells, (p+1, p+1, 2, fields)."""
+        return self.values[np.searchsorted(self.cells, cell)]
+
+
+class _Batch:
+    """Points, and where in this rank's cells they lie.
+
+    Args:
+        space: the finite element space.
+        response: for which the mesh is contracted.
+        points: positions over a with Y <= 0, (n, 2).
+
+    Attributes:
+        cells: this rank's cells that hold a point, sorted.
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+
+    def __init__(self, space: Space, response: Response, points: NDArray) -> None:
+        self._chart, self._comm = space.contracted(response), space.comm
+        self._points, self._vertices = points, space.vertices[..., :2]
+        held = _locate(self._vertices, self._chart.from_physical(points))
+        order = np.argsort(held.cell, kind="stable")
+        self._point, self._t = held.point[order].astype(np.int32), held.t[order]
+        self.cells, self._first = np.unique(held.cell[order], return_index=True)
+        found = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
+        if not found.all():
+            X, Y = points[np.argmin(found)]
+            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+        #: How many cells hold a point, which are many on a border only.
+        self._found = found.astype(np.int16)
+
+    def gradients(self, nodal: _Nodal) -> NDArray[np.float64]:
+        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective."""
+        result = np.zeros((len(self._points), 2, 2, nodal.values.shape[-1]))
+        ends = np.append(self._first[1:], len(self._point))
+        for cell, first, end in zip(self.cells, self._first, ends):
+            # A cell holds a point once.
+            result[self._point[first:end]] += gradients_in_plane(
+                self._vertices[cell], nodal.nodes, self._t[first:end], nodal.of(cell)
+            )
+        # On the border between cells the gradient jumps; it is their mean.
+        result = self._comm.allreduce(result) / self._found[:, None, None, None]
+        return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
 
 
 @dataclass(frozen=True)
@@ -141,7 +224,7 @@ class _Held:
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
     cell, point = _near(vertices, x)
-    t = _pull_back(vertices[cell], x[point])
+    t = pull_back(vertices[cell], x[point])
     inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
     return _Held(point[inside], cell[inside], t[inside])
 
@@ -162,23 +245,3 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
         cell.append(np.full(len(found), i))
         point.append(found)
     return np.concatenate(cell), np.concatenate(point)
-
-
-def _pull_back(vertices: NDArray, x: NDArray) -> NDArray[np.float64]:
-    """Places in the unit square of points x (n, 2) by cells (n, 4, 2): Newton's method for bilinear maps.
-
-    NaN where that does not converge: the point is then far outside the cell.
-    """
-    t = np.full(x.shape, 0.5)
-    moving = np.arange(len(x))
-    for _ in range(25):
-        if not len(moving):
-            break
-        at, corners = t[moving], vertices[moving]
-        rest = x[moving] - image(corners, at[:, None])[:, 0]
-        step = np.linalg.solve(jacobian(corners, at), rest[..., None])[..., 0]
-        t[moving] = at + step
-        size = np.maximum(1.0, np.abs(t[moving]).max(axis=1))
-        moving = moving[~(np.abs(step).max(axis=1) < _SETTLED * size)]
-    t[moving] = np.nan
-    return t

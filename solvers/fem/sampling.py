@@ -15,10 +15,12 @@ from petsc4py import PETSc
 from galinx.solvers.fem.cells import (
     gradients_in_plane,
     image,
+    pull_back,
     reference_values,
     tensor_order,
 )
 from galinx.solvers.fem.chart import Contracted
+from galinx.solvers.fem.clipping import clipped, in_quads
 from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
@@ -33,7 +35,7 @@ class SampledField:
 
     Attributes:
         points: positions over a, (n, 2).
-        quads: points of each quadrilateral counterclockwise, (m, 4).
+        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
         displacement: over N/(2μ), (n, 2).
         gradient: μ ∂u_i/∂X_j over N/(2a), (n, 2, 2).
     """
@@ -59,7 +61,7 @@ def sample(
 ) -> SampledField:
     """This rank's piece of a combination of fields, in the part |X|, |Y| <= extent of the solid.
 
-    Collective. Quadrilaterals that reach beyond that part are whole.
+    Collective. Quadrilaterals that reach beyond that part are cut along its sides.
 
     Args:
         space: the finite element space.
@@ -75,6 +77,7 @@ def sample(
     X = chart.to_physical(image(vertices, t))
     low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
     wanted = np.all((low < extent) & (high > -extent), axis=2)
+    whole = np.all((low >= -extent) & (high <= extent), axis=2)
     cells = np.flatnonzero(wanted.any(axis=1))
     field = fields[0].duplicate()
     field.zeroEntries()
@@ -84,10 +87,13 @@ def sample(
     for start in range(0, space.comm.allreduce(len(cells), MPI.MAX), CHUNK):
         some = cells[start : start + CHUNK]
         for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
-            quads = corners[wanted[cell]]  # counterclockwise, as every mesh's cells are
-            displacement = reference_values(nodes, t, u)[..., 0]
-            gradient = _gradients(chart, vertices[cell], nodes, t, u, n)
-            pieces.append(_without_unused(SampledField(X[cell], quads, displacement, gradient)))
+            crossing = corners[wanted[cell] & ~whole[cell]]
+            at, cut = _cut(chart, vertices[cell], t, crossing, extent)
+            quads = np.concatenate([corners[whole[cell]], cut])
+            displacement = reference_values(nodes, at, u)[..., 0]
+            gradient = _gradients(chart, vertices[cell], nodes, at, u, n)
+            points = chart.to_physical(image(vertices[cell], at))
+            pieces.append(_without_unused(SampledField(points, quads, displacement, gradient)))
     field.destroy()
     return _joined(pieces)
 
@@ -99,6 +105,21 @@ def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     number = np.arange(len(t)).reshape(n + 1, n + 1)
     around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
     return t, np.stack(around, axis=-1).reshape(-1, 4)
+
+
+def _cut(
+    chart: Contracted, vertices: NDArray, t: NDArray, quads: NDArray, extent: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A cell's quadrilaterals cut along a box: points of the unit square, new ones last, and quads."""
+    points, cut, count = [t], [np.empty((0, 4), dtype=np.int64)], len(t)
+    for corners in chart.to_physical(image(vertices, t[quads])):  # counterclockwise, as all cells are
+        polygon = clipped(corners, extent)
+        if len(polygon) >= 3:
+            cells = np.broadcast_to(vertices, (len(polygon), 4, 2))
+            points.append(pull_back(cells, chart.from_physical(polygon)))
+            cut.append(count + in_quads(len(polygon)))
+            count += len(polygon)
+    return np.concatenate(points), np.concatenate(cut)
 
 
 def _gradients(

@@ -21,7 +21,7 @@ class Flat:
     about: ClassVar[str] = "flat"
 
     half_width: float = parameter(
-        "half_width", "half-width a", "m", symbol="a", above=0.0, usual=(1e-9, 10.0),
+        "half_width", "half-width a", "m", symbol="a", above=0.0, usual=(1e-9, 0.5),
         note="dimensionless results do not depend on it",
     )  # fmt: skip
 

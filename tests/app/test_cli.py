@@ -15,8 +15,13 @@ from galinx.app.cli import cli
     [
         (("run", "missing.toml"), "cannot read missing.toml"),
         (("run", "bad.toml"), "solid.nu"),
-        (("show", "bad.toml"), "damaged"),
-        (("frobnicate",), "No such command"),
+        (("show", "bad.toml"), "bad.toml is a scene or another text, expected an archive"),
+        (("frobnicate",), "No such command 'frobnicate'; "),
+        (("shwo",), "No such command 'shwo'; did you mean show?"),
+        (("reprot", "a.h5"), "did you mean report?"),
+        (("init", "tabel1"), "init tabel1: no such scene; did you mean table1?"),
+        (("init", "quite something else"), "no such scene; valid: box, "),
+        (("plot", "a.h5", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),
         (("./bad.toml",), "No such command"),
     ],
 )

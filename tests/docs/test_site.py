@@ -1,9 +1,11 @@
 """Pages that are made, and the site that is built of all pages."""
 
+import re
 import runpy
 import shutil
 import subprocess
 from html.parser import HTMLParser
+from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
 
 import pytest
@@ -33,6 +35,58 @@ class Page(HTMLParser):
             self.links.append(given["href"])
         elif tag in ("img", "script", "link") and (target := given.get("src") or given.get("href")):
             self.loaded.append(target)
+
+
+#: What prose writes with one letter, by page; the glossary has each once.
+SYMBOLS = re.compile(r"^\| ([^|\\]+?) \|", re.MULTILINE)
+
+
+def test_no_symbol_and_no_word_stands_twice_in_the_glossary():
+    text = (DOCS / "glossary.md").read_text(encoding="utf-8")
+    found = [name for row in SYMBOLS.findall(text) for name in row.split(", ")]
+    found = [name for name in found if name not in ("symbol", "word", "---")]
+    assert len(found) > 70 and len(set(found)) == len(found)
+    for name in ("σ₀l/N", "pre-sliding", "confocal", "back-substitution", "not judged", "friction state"):
+        assert name in found
+
+
+def test_every_parameter_of_a_scene_is_in_the_glossary():
+    """The models' own: what has a symbol."""
+    from galinx.solvers.friction import LAWS
+    from galinx.solvers.parameters import parameters
+    from galinx.solvers.profiles import PROFILES
+    from galinx.solvers.solids import SOLIDS
+
+    text = (DOCS / "glossary.md").read_text(encoding="utf-8")
+    models = [LAWS["dahl"], PROFILES["flat"], SOLIDS["isotropic"]]
+    keys = [key for model in models for key, known in parameters(model).items() if not known.options]
+    assert len(keys) >= 6
+    assert not [key for key in keys if not re.search(rf"`(\w+\.)?{key}`", text)]
+
+
+def test_the_gallery_shows_figures_of_scenes_that_are_there():
+    known = runpy.run_path(str(DOCS / "gallery.py"))["SHOWN"]
+    scenes = {path.stem for path in (HOME / "scenes").glob("*.toml")}
+    pictures = {path.stem for path in (DOCS / "figures" / "gallery").glob("*.png")}
+    assert known.keys() <= scenes and pictures == set(known)
+    page = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    assert all(f"`scenes/{name}.toml`" in page or f"`{name}`" in page for name in scenes)
+
+
+def test_formulas_are_typeset_without_a_network():
+    """What the page becomes, and that all that it loads is in the site."""
+    made = runpy.run_path(str(DOCS / "mathjax.py"))
+    convert, installed = made["on_page_content"], made["on_page_content"].__globals__
+    source = '<p>$<code>a &lt; b</code>$</p>\n<pre><code class="language-math">x_1\n</code></pre>'
+    html = convert(source, SimpleNamespace(url="theory.html"))
+    if installed["_INSTALLED"].is_dir():
+        assert '<script type="math/tex">a < b</script>' in html
+        assert '<script type="math/tex; mode=display">x_1</script>' in html
+        assert html.count('src="mathjax/MathJax.js?config=TeX-AMS_SVG"') == 1
+        assert 'src="../mathjax/' in convert(source, SimpleNamespace(url="below/theory.html"))
+    assert convert("<p>no formula</p>", SimpleNamespace(url="a.html")) == "<p>no formula</p>"
+    installed["_INSTALLED"] = DOCS / "nowhere"
+    assert convert(source, SimpleNamespace(url="theory.html")) == source
 
 
 def test_the_site_is_built_and_its_links_hold(tmp_path):

@@ -29,7 +29,7 @@ def made(tmp_path_factory):
     result.report(folder / "a.html")
     pdf, png = result.plot(folder, "a")[:2]
     square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
-    vtkhdf.write(folder / "a.hdf", [square], {"u": ("m", "galinx")})
+    vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
         print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))
     with (folder / "a.csv").open("w") as file:
@@ -72,6 +72,21 @@ def test_what_one_makes_is_made_again_and_all_else_is_kept(made, tmp_path):
     Target(foreign, PAGE, overwrite=True).write(b"newer")
     assert own.read_bytes() == foreign.read_bytes() == b"newer"
     assert sorted(os.listdir(tmp_path)) == ["foreign", "own"]
+
+
+@pytest.mark.parametrize(
+    "kind, name, expected",
+    [
+        (FIELDS, "a.vtu", ".hdf or .vtkhdf for a file of fields"),
+        (PAGE, "a.pdf", ".html or .htm for a report"), (TABLE, "a.xlsx", ".csv or .txt for a table"),
+        (FIELDS, "a.b.txt", ".hdf or .vtkhdf"),
+    ],
+)  # fmt: skip
+def test_an_ending_says_what_a_file_is(tmp_path, kind, name, expected):
+    with pytest.raises(Occupied, match=rf"{name} ends with \.\w+, expected {expected}"):
+        Target(tmp_path / name, kind, overwrite=True)
+    for good in (kind.endings[0], kind.endings[1].upper(), ""):
+        assert Target(tmp_path / f"a{good}", kind).place == tmp_path / f"a{good}"
 
 
 @pytest.mark.parametrize("overwrite", [False, True])

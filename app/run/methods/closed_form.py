@@ -1,6 +1,6 @@
 """The singular integral equation: closed forms, or its collocation where the punch is not flat."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +18,9 @@ from galinx.solvers.solution import Surface
 
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
 TERMS = 40
+
+#: Points inside whose potentials are held at once.
+_TOGETHER = 20_000
 
 
 class ClosedForm:
@@ -67,6 +70,15 @@ class Punches:
 
         return Strength(field, task.body, task.response, self.g, self.local)
 
+    def _by_batches(self, inside: Callable[[NDArray, NDArray], NDArray]) -> NDArray[np.float64]:
+        """Stresses inside, (3, states, m), some points after the others: potentials take much room."""
+        points = self.task.places.points
+        found = np.empty((3, len(self.g), len(points)))
+        for first in range(0, len(points), _TOGETHER):
+            some = slice(first, first + _TOGETHER)
+            found[:, :, some] = inside(*points[some].T)
+        return found
+
 
 class FlatPunches(Punches):
     """Flat punches, exact."""
@@ -92,7 +104,7 @@ class FlatPunches(Punches):
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self._over_places.inside(*self.task.places.points.T)
+        return self._by_batches(self._over_places.inside)
 
     @cached_property
     def strength(self) -> Strength:
@@ -125,7 +137,7 @@ class OwnPressures(Punches):
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self._over_places.inside(*self.task.places.points.T)
+        return self._by_batches(self._over_places.inside)
 
     @cached_property
     def strength(self) -> Strength:

@@ -11,7 +11,7 @@ from galinx.app.console.progress import Progress
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import given, own_pressure, punch
 from galinx.app.run.methods.discretisation import Discretisation, quiet_compiler
-from galinx.app.run.methods.method import Solver
+from galinx.app.run.methods.method import Pressure, Solver
 from galinx.clock import Clock
 from galinx.postprocess.quantities.quantity import OWN_PRESSURE
 from galinx.solvers.fem.space import Space
@@ -47,7 +47,9 @@ class FiniteElements:
             yield solver
 
     @contextmanager
-    def one_state(self, task: Task, g: float, degree: int) -> Iterator[tuple[Space, Any, NDArray]]:
-        """Space, displacement fields and their weights of one state at a degree, no error measured."""
+    def one_state(
+        self, task: Task, g: float, degree: int
+    ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+        """Space, displacement fields, their weights and the pressure of one state, no error measured."""
         with quiet_compiler(), self._mode.one_state(self.work, task, g, degree) as found:
             yield found

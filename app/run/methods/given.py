@@ -15,6 +15,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
@@ -32,12 +33,13 @@ def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpe
 @contextmanager
 def one_state(
     work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray]]:
-    """Space, fields and weights of one state."""
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state."""
     loaded = LoadedHalfPlane(work.space(degree), task.response)
     try:
-        loaded.load(FlatPunch(task.response, g).σ_YY_by_distance)
-        yield loaded.space, loaded.fields, np.array([1.0, g])
+        punch = FlatPunch(task.response, g)
+        loaded.load(punch.σ_YY_by_distance)
+        yield loaded.space, loaded.fields, np.array([1.0, g]), punch.σ_YY
     finally:
         loaded.destroy()
 

@@ -14,6 +14,9 @@ from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity
 from galinx.solvers.solution import Body, Solution
 
+#: σ_YY over N/(2a) at positions X over a under the punch.
+Pressure = Callable[[NDArray], NDArray]
+
 
 class Solver(Protocol):
     """Friction states at one speed."""

@@ -14,8 +14,10 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.postprocess.yielding.strength import Strength
+from galinx.solvers.fem.interior import TOGETHER
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
@@ -34,8 +36,8 @@ def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressur
 @contextmanager
 def one_state(
     work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray]]:
-    """Space, fields and weights of one state: the pressure as a whole, not piece by piece."""
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state: the pressure as a whole, not piece by piece."""
     # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
     loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _put_in(task)
     try:
@@ -43,7 +45,7 @@ def one_state(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
             pressure.knots[1:-1],
         )
-        yield loaded.space, loaded.fields, np.array([1.0, g])
+        yield loaded.space, loaded.fields, np.array([1.0, g]), pressure
     finally:
         loaded.destroy()
 
@@ -67,7 +69,13 @@ class PiecesSeen:
         self._task, places = task, task.places
         on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
         self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
-        self._inside = pieces.gradients(loads, places.points[: len(places.points) * (BELOW in words)])
+        below = places.points[: len(places.points) * (BELOW in words)]
+        self._inside = np.concatenate(
+            [
+                pieces.gradients(loads, below[first : first + TOGETHER])
+                for first in range(0, max(len(below), 1), TOGETHER)
+            ]
+        )
         self._around = pieces.gradients(loads, places.around[: len(places.around) * (YIELD in words)])
 
     def surface(self, g: NDArray) -> Surface:

@@ -16,6 +16,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.pressure import JacobiPressure, contact_recovery, from_moments
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
@@ -38,13 +39,16 @@ def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtS
 @contextmanager
 def one_state(
     work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray]]:
-    """Space, fields and weights of one state."""
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state."""
     space = work.space(degree, work.plan.cuts)
     punch = SlidingPunch(space, task.response, work.plan.solver, height=profile_on(space, task.body))
     try:
-        weights = punch.states(g).weights[0]  # the fields are complete after this
-        yield space, punch.fields, weights
+        states = punch.states(g)  # the fields are complete after this
+        recovery = contact_recovery(space.contact.s, space.degree, space.chart, np.empty(0))
+        local = FlatPunch(task.response, states.g)
+        pressure = from_moments(states.normal @ recovery.moments, local.α, local.β)
+        yield space, punch.fields, states.weights[0], lambda X: pressure.σ_YY(X)[0]
     finally:
         punch.destroy()
 

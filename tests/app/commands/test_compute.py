@@ -1,8 +1,10 @@
 """Commands that compute: what they write, refuse and leave undone."""
 
 import json
+import re
 import subprocess
 import sys
+import time
 
 import h5py
 import numpy as np
@@ -66,6 +68,15 @@ def test_plan_computes_nothing(tmp_path):
     done = command("plan", SCENE, cwd=tmp_path)
     said = " ".join(done.stdout.split())  # lines are folded
     assert done.returncode == 0 and "one factorisation" in said and not list(tmp_path.iterdir())
+
+
+def test_the_time_that_is_told_is_all_that_went_by(tmp_path):
+    """But for the program's own end, which nobody is left to tell of."""
+    started = time.monotonic()
+    done = command("run", SCENE, "-o", tmp_path / "out.h5", *FEW_DEGREES)
+    wall = time.monotonic() - started
+    told = float(re.search(r"^time: (\S+) s", done.stdout, re.MULTILINE)[1])
+    assert 0.9 * wall - 0.4 < told < wall + 0.02
 
 
 @pytest.mark.parametrize("ranks", [(), ("-n", "2")])

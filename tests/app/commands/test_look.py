@@ -4,10 +4,14 @@ import json
 import shutil
 from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
 from support import command
 from tampering import opened
 
+from galinx.app.commands import options
+from galinx.app.errors import BadInput
 from galinx.postprocess.hdf5 import seal
 
 
@@ -44,6 +48,30 @@ def test_plot(archive, tmp_path):
     for name in ("friction", "surface"):
         assert (tmp_path / f"{archive.stem}_{name}.png").stat().st_size > 10_000
         assert (tmp_path / f"{archive.stem}_{name}.pdf").read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    "text, found", [("3", [3]), ("0,4,2", [0, 4, 2]), ("0-2, 1,5 - 5", [0, 1, 2, 5]), ("7-7", [7])]
+)
+def test_states_are_named_by_numbers_and_ranges(text, found):
+    assert options.numbers(text) == found
+
+
+@pytest.mark.parametrize("text", ["", "a", "1,,2", "-1", "3-1", "1.5", "0-99999999", "1-2-3"])
+def test_what_names_no_states_is_refused(text):
+    with pytest.raises(BadInput, match=r"^--states: found "):
+        options.numbers(text)
+
+
+def test_several_states_for_paraview(archive, tmp_path):
+    done = command("fields", archive, "--states", "0,3", "--extent", "2", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    path = tmp_path / f"{archive.stem}_0,3.hdf"
+    with h5py.File(path) as file:
+        assert file["VTKHDF/Steps/Values"][:].tolist() == [0.0, 3.0]
+        assert np.abs(file["VTKHDF/Points"][:]).max() == pytest.approx(2e-3, rel=1e-12)
+    done = command("fields", archive, "--states", "0", "--state", "3", cwd=tmp_path)
+    assert done.returncode == 2 and "exclude each other" in done.stderr
 
 
 def test_check_tells_damage_from_contradictions(archive, tmp_path):

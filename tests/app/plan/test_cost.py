@@ -23,8 +23,50 @@ def test_planned_memory_covers_what_runs_took(degree, cuts, measured):
     """Largest resident sets of runs with one speed, on one rank."""
     mesh = {"solve.degree": degree, "solve.cuts": cuts, "output.quantities": ["sif"]}
     scene = template("tables4_5", mesh | {"solve.tolerance": 1e-4, "motion.c": 0.0})
-    planned = float(re.search(r"and (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
+    planned = float(re.search(r", (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
     assert 0.95 * measured < planned < 1.6 * measured
+
+
+BOTH, EXACT = ["closed_form", "fem"], ["closed_form"]
+
+
+@pytest.mark.parametrize(
+    "positions, states, methods, pressure, seconds, memory",
+    [
+        (500, 1, BOTH, 0, 3.3, 0.238e9), (500, 6, BOTH, 0, 5.5, 0.286e9),
+        (2000, 1, BOTH, 0, 22.0, 0.643e9), (500, 6, EXACT, 0, 1.4, 0.128e9),
+        (2000, 1, EXACT, 0, 3.5, 0.319e9),
+        (300, 1, BOTH, 3, 3.3, 0.232e9), (300, 1, BOTH, 9, 5.6, 0.246e9),
+    ],
+)  # fmt: skip
+def test_a_map_is_planned_as_what_it_takes(positions, states, methods, pressure, seconds, memory):
+    """Processor time and largest resident sets of runs with maps of positions x positions."""
+    knots = [[x, -1.0 - 0.5 * x * (i % 2)] for i, x in enumerate(np.linspace(-1.0, 1.0, pressure))]
+    changes = {
+        "motion.c": 0.6, "motion.strokes": ["forward"],
+        "motion.X_over_L": np.linspace(0.1, 0.8, states).tolist(), "solve.methods": methods,
+        "output.quantities": ["sif", "interior"],
+        "output.map": {"X": [-2, 2, positions], "Y": [-2, -0.01, positions]},
+    }  # fmt: skip
+    if knots:
+        changes |= {"solve.mode": "traction", "solve.pressure": knots}
+    told = expense(make_plan(template("tables4_5", changes)))
+    assert 0.5 < float(re.search(r"about (\S+) s", told)[1]) / seconds < 2.0
+    size, unit = re.search(r", (\S+) ([GM])B(?: a rank)? and", told).groups()
+    assert 0.95 * memory < float(size) * {"G": 1e9, "M": 1e6}[unit] < 1.6 * memory
+    archived = re.search(r"archive of (\S+) ([GM])B", told)
+    numbers = 3 * len(methods) * positions**2 * states
+    assert float(archived[1]) * {"G": 1e9, "M": 1e6}[archived[2]] == pytest.approx(8 * numbers, rel=0.05)
+
+
+def test_a_map_that_memory_does_not_hold_is_warned_of(monkeypatch):
+    monkeypatch.setattr(cost, "free_memory", lambda: 0.5e9)
+    changes = {"output.quantities": ["sif", "interior"], "solve.methods": EXACT}
+    grid = {"output.map": {"X": [-2, 2, 2000], "Y": [-2, -0.01, 2000]}}
+    assert not make_plan(template("tables4_5", changes | grid)).warnings
+    monkeypatch.setattr(cost, "free_memory", lambda: 0.2e9)
+    (warning,) = make_plan(template("tables4_5", changes | grid)).warnings
+    assert "need about 0.29 GB, of which this machine has 0.2 GB free: ask for fewer points" in warning
 
 
 SIF, SURFACE = ["friction", "sif"], ["friction", "sif", "surface"]

@@ -30,6 +30,22 @@ def test_a_value_off_by_its_unit_is_warned_of():
     assert any("solid.E = 193 Pa" in text for text in make_plan(scene).warnings)
 
 
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"friction.mu_c": 40}, "friction.mu_c = 40 is unusual, usual is 0.0001 to 10"),
+        ({"punch.half_width": 1}, "punch.half_width = 1 m is unusual, usual is 1e-09 to 0.5"),
+        (
+            {"punch.load": "1.55e9 N/m"},
+            "mean pressure N/(2a) = 7.75e+11 Pa is 10 times the shear modulus",
+        ),
+    ],
+)
+def test_what_is_unusual_is_warned_of(changes, message):
+    (warning,) = make_plan(template("tables4_5", CLOSED | changes)).warnings
+    assert message in warning
+
+
 def test_speed_in_metres_per_second():
     changes = {"motion.c": None, "motion.speed": ["1.5 mm/s", "1880.4 m/s"]}
     scene = template("tables4_5", changes)

@@ -64,11 +64,22 @@ def test_defaults_leave_only_what_has_none():
         ({"motion.c": 0.95}, "Rayleigh speed c_R = 0.919402"),
         ({"motion.speed": "1 m/s"}, "exclude each other"),
         ({"motion.c": None}, "motion: expected c"),
-        ({"motion.c": None, "motion.speed": "4 km/s"}, "shear wave speed 3133.99"),
+        (
+            {"motion.c": None, "motion.speed": ["4 km/s", "5 km/s"]},
+            r"^motion.speed = 4000, 5000 m/s: expected less than the Rayleigh speed 2881.39 m/s \(by",
+        ),
+        (
+            {"motion.c": None, "motion.speed": "4 km/s", "solve.methods": ["closed_form"]},
+            r"^motion.speed = 4000 m/s: expected less than the shear wave speed 3133.99 m/s$",
+        ),
+        ({"motion.c": None, "motion.speed": "3.1 km/s"}, r"c_R = 0.919402 \(over c_s\), 2881.39 m/s"),
         ({"motion.X_over_L": 1.2}, "X_over_L"),
         ({"motion.X_over_L": []}, "X_over_L"),
         ({"motion.strokes": ["sideways"]}, "strokes"),
-        ({"solve.methods": ["fme"]}, "methods"),
+        ({"solve.methods": ["fme"]}, "expected closed_form or fem; did you mean fem\\?"),
+        ({"motion.strokes": ["foward"]}, "did you mean forward\\?"),
+        ({"solid.material": "STEEL"}, r"has 1 fault:.*found 'STEEL', .*; did you mean steel\?"),
+        ({"solid.material": "gold"}, r"has 1 fault:.*silica or PMMA$"),
         ({"solve.methods": []}, "solve.methods is empty"),
         ({"solve.tolerance": 0}, "tolerance"),
         ({"solve.mesh": "round"}, "mesh"),
@@ -79,8 +90,34 @@ def test_defaults_leave_only_what_has_none():
     ],
 )
 def test_each_fault_has_its_message(changes, message):
-    with pytest.raises(BadInput, match=message):
+    with pytest.raises(BadInput, match=re.compile(message, re.DOTALL)):
         make_plan(template("tables4_5", changes))
+
+
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (
+            "[solid]\n# mu_c = 1\nE = 1\nnu = 0\n'E' = 2\n",
+            "found [solid] E twice, in lines 3 and 5; keep one",
+        ),
+        (
+            "[solid]\nE = 1\n[friction]\nE = 1\nnu = 0\nE = 2\n",
+            "found [friction] E twice, in lines 4 and 6",
+        ),
+        ("title = 'a'\nmu_c = 1\ntitle = 'b'\n", "found title twice, in lines 1 and 3; keep one"),
+        (
+            "[solid]\n[motion]\n [ solid ]\n",
+            "found [solid] twice, in lines 1 and 3; put its keys together",
+        ),
+        ("map = {X = 1, X = 2}", "Duplicate inline table key"),
+        ("E = [1,\nE = 2", "Invalid value"),
+    ],
+)
+def test_what_stands_twice_is_named(text, message):
+    with pytest.raises(BadInput) as caught:
+        parse(text)
+    assert f"scene is not TOML: {message}" in str(caught.value)
 
 
 @pytest.mark.parametrize("changes", [{"solid.nu": 0.5}, {"friction.integrator": "rk4"}])
@@ -125,7 +162,14 @@ def test_all_faults_come_in_one_message():
 
 @pytest.mark.parametrize(
     "content, message",
-    [(b"", "empty"), (b"\xff\xfe", "UTF-8"), (None, "cannot read"), ("folder", "folder")],
+    [
+        (b"", "empty"),
+        (b"\xff\xfe", "UTF-8"),
+        (None, "cannot read"),
+        ("folder", "folder"),
+        (b"galinx archive\n\0\xff", "is an archive of results, expected a scene"),
+        (b"\x89HDF\r\n\x1a\n\0", "is an archive of results, expected a scene"),
+    ],
 )
 def test_files_that_are_no_scenes(tmp_path, content, message):
     path = tmp_path / "scene.toml"

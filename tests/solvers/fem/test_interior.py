@@ -1,11 +1,14 @@
 """Displacement gradients at points inside."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
-from support import space_on
+from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.errors import MeshError
+from galinx.solvers.fem import interior
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -19,3 +22,42 @@ def test_a_point_outside_the_mesh_is_named():
             space, MovingFrame(2.0, 0.0), punch.fields, np.array([[0.0, -1.0], [0.0, -1e6]])
         )
     punch.destroy()
+
+
+@pytest.fixture(scope="module")
+def punch():
+    made = small_punch()
+    made.states([0.3, 0.6])
+    yield made
+    made.destroy()
+
+
+@pytest.mark.parametrize("states", [1, 40])
+def test_batches_of_points_give_the_same(punch, states, monkeypatch):
+    """Those with fewer states than fields, whose nodal values are combined first, and those with more."""
+    random = np.random.default_rng(3)
+    points = random.uniform([-2.0, -2.0], [2.0, -0.01], (50, 2))
+    points = np.concatenate([points, [[0.0, -0.5]]])  # which lies between two cells
+    weights = random.standard_normal((states, len(punch.fields)))
+    arguments = punch.space, MovingFrame(2.0, 0.6), punch.fields, points
+    whole = InteriorGradients(*arguments).of(weights)
+    monkeypatch.setattr(interior, "TOGETHER", 7)
+    gradients = InteriorGradients(*arguments)
+    pieces = [*gradients.by_batches(weights)]
+    assert [some.stop - some.start for some, _ in pieces] == [7] * 7 + [2]
+    assert whole.shape == (states, 51, 2, 2)
+    np.testing.assert_allclose(gradients.of(weights), whole, rtol=1e-10, atol=1e-10)
+
+
+def test_many_points_are_not_held_for_every_field(punch):
+    count = 100_000
+    points = np.random.default_rng(3).uniform([-2.0, -2.0], [2.0, -0.01], (count, 2))
+    fields, weights = punch.fields, np.ones((1, len(punch.fields)))
+    tracemalloc.start()
+    gradients = InteriorGradients(punch.space, MovingFrame(2.0, 0.6), fields, points)
+    for _ in gradients.by_batches(weights):
+        pass
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # Gradients of every field would be 32 bytes a field and point.
+    assert len(fields) >= 10 and peak < 250 * count

@@ -1,0 +1,169 @@
+"""Single states of a scene, solved once more by finite elements to see all of their fields."""
+
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import NDArray
+
+from galinx.app import ranks
+from galinx.app.console.progress import Progress
+from galinx.app.errors import BadInput, finite_elements_installed
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.task import Plan, Task
+from galinx.app.scene.scene import Output, Scene
+from galinx.clock import Clock
+from galinx.meshes.kind import DEGREES
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+
+
+@dataclass(frozen=True)
+class OneState:
+    """One state, and what computes it.
+
+    Attributes:
+        number: of the state, from 0.
+        plan: finite elements at the scene's speeds, on one mesh.
+        task: the state's speed.
+        g: σ_XY/σ_YY under the punch.
+        degree: polynomial degree.
+        exact: is there a closed form to compare with?
+        told: what tells the state from others, by the names of archives' columns.
+    """
+
+    number: int
+    plan: Plan
+    task: Task
+    g: float
+    degree: int
+    exact: bool
+    told: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A state's displacement.
+
+    Attributes:
+        state: the state.
+        space: the finite element space.
+        fields, weights: displacements over N/(2μ), and what of them makes the state's.
+        pressure: σ_YY over N/(2a) at X over a under the punch.
+        comm: the ranks that share the mesh.
+    """
+
+    state: OneState
+    space: Any
+    fields: Sequence[Any]
+    weights: NDArray
+    pressure: Callable[[NDArray], NDArray]
+    comm: Any
+
+
+def chosen(
+    scene: Scene, numbers: Sequence[int], degrees: Sequence[int | None] | None = None
+) -> list[OneState]:
+    """States of a scene, whatever it asks for and by whichever method.
+
+    Args:
+        scene: the scene.
+        numbers: of the states, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
+        degrees: polynomial degrees, one a state; None for that which the scene's tolerance suggests.
+
+    Raises:
+        BadInput: there is no such state, or finite elements have no answer for it.
+    """
+    states = enumerate_states(scene)
+    for number in numbers:
+        if not 0 <= number < len(states):
+            raise BadInput(
+                f"state {number}: no such state; expected 0 to {len(states) - 1}, the scene has "
+                f"{len(states)}"
+            )
+    if not numbers:
+        raise BadInput("states: found none, expected numbers of some")
+    wanted = degrees or [None] * len(numbers)
+    _check(scene, wanted)
+    columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
+    plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
+    assert plan.fem
+    fem = replace(plan.fem, shared_speeds=False)
+    tasks = {task.response.c: task for task in plan.tasks}
+    # Given tractions are solved one degree above the rule: no measured error corrects it here.
+    more = scene.solve.mode == "traction"
+    found = []
+    for i, number in enumerate(numbers):
+        told = {name: values[i] for name, values in columns.items()}
+        task = tasks[told["c"]]
+        degree = wanted[i] or fem.degrees[task.number] + more
+        exact = "closed_form" in scene.solve.methods
+        found.append(OneState(number, replace(plan, fem=fem), task, told["g"], degree, exact, told))
+    return found
+
+
+def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
+    """One state after the other, each as long as the next is not asked for; collective.
+
+    Raises:
+        SolveError: the equations could not be solved.
+    """
+    with finite_elements_installed():
+        from galinx.app.run.methods.fem import FiniteElements
+    fem = FiniteElements(states[0].plan, Progress(), Clock())
+    for state in states:
+        with fem.one_state(state.task, state.g, state.degree) as (space, fields, weights, pressure):
+            yield Solved(state, space, fields, weights, pressure, fem.work.comm)
+
+
+def displacement(scene: Scene, number: int, degree: int | None = None) -> Any:
+    """The displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
+
+    Raises:
+        BadInput: no such state, finite elements have no answer there, or there are several ranks.
+        MachineFailure: dolfinx is not installed.
+        SolveError: the equations could not be solved.
+    """
+    if ranks.size() > 1:
+        raise BadInput(
+            f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
+        )
+    (state,) = chosen(scene, [number], [degree])
+    body, response = state.task.body, state.task.response
+    with closing(solved([state])) as states:
+        from galinx.solvers.fem.physical import in_physical_plane
+
+        found = next(states)
+        half_width = body.profile.half_width
+        return in_physical_plane(
+            found.space, response, found.fields, found.weights, half_width, body.displacement
+        )
+
+
+def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
+    """The scene with finite elements, at all its speeds that these can do, and those that are wanted.
+
+    All speeds share one mesh; with the same speeds and places it is that of a run.
+    """
+    mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
+    possible = tuple(v for v in speeds(scene) if v in wanted or scene.solid.response(v).margin > 0.0)
+    return replace(
+        scene,
+        motion=replace(scene.motion, c=possible, speed=None),
+        solve=replace(scene.solve, methods=("fem",)),
+        output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
+    )
+
+
+def _check(scene: Scene, degrees: Sequence[int | None]) -> None:
+    # What the scene fixes, or what its rule gives, which is one more for given tractions.
+    lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
+    for degree in degrees:
+        if degree is not None and not lowest <= degree <= highest:
+            raise BadInput(f"degree: found {degree}, expected {lowest} to {highest}")
+    if scene.solid.nearly_incompressible:
+        raise BadInput(
+            f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
+            "elements"
+        )

@@ -1,0 +1,71 @@
+"""Writes the pictures of the gallery: ``PYTHONPATH=. python3 docs/gallery.py``, a minute.
+
+The page itself is written by ``docs/make.py``, which ``./run.sh docs`` runs.
+"""
+
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+
+#: Scene, the figure of its archive that is shown, and what to see there.
+SHOWN = {
+    "fig2": ("friction", "Friction rises from 0, turns on the way back, and closes its loop."),
+    "fig6": ("friction", "μ_C sets the height, σ₀l/N how soon it comes, δ how round the corner is."),
+    "fig5": ("surface", "Pressure and tension lead at the trailing edge, X = -a in forward motion."),
+    "fig7": ("surface", "The same at 0.6 of the shear wave speed: tension beside the punch is larger."),
+    "high_speed": ("surface", "From rest to c = 0.9: what σ_XX does where the pressure hardly changes."),
+    "fig8": ("surface", "A larger μ_C leans the pressure to one end and raises the tension there."),
+    "fig9": ("surface", "A stiffer contact comes nearer to full slip at the same place of the stroke."),
+    "fig10": ("surface", "Dahl's exponent acts through f alone."),
+    "inside": ("inside", "Stresses below the punch by both methods, and their difference."),
+    "tables4_5": ("degrees", "Ten times more accurate with every degree: how the error is known."),
+    "graded": ("mesh", "A mesh of straight cells, graded towards the edges."),
+    "box": ("mesh", "The study's block; its walls are far outside this picture."),
+    "own_material": ("surface", "Acrylic glass at 1 mm/s, 100 m/s and 800 m/s."),
+}  # fmt: skip
+
+_HEAD = """\
+# Gallery
+
+Written by `docs/make.py` from the scenes in `scenes/`; every picture is one of the figures that `plot`
+makes of the scene's archive. To have one of your own, copy its scene and change it:
+
+```console
+./run.sh init fig8 -o mine.toml
+./run.sh run mine.toml --set "friction.mu_c=[0.2, 0.5, 0.8]"
+./run.sh plot mine.h5 -o figures
+```
+"""
+
+
+def page() -> str:
+    """The page: every scene with what it is about, those of ``SHOWN`` with a picture."""
+    from galinx.app.scene.templates import templates
+
+    known = templates()
+    parts = [_HEAD]
+    for name, (figure, seen) in SHOWN.items():
+        parts.append(
+            f"## {name}\n\n{known[name].about}\n\n"
+            f"[![{figure} of {name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
+            f"*{seen}* Scene: `scenes/{name}.toml`; figure: `{name}_{figure}`.\n"
+        )
+    others = "\n".join(f"- `{name}`: {known[name].about}" for name in known if name not in SHOWN)
+    parts.append(f"## Other scenes\n\n{others}\n")
+    return "\n".join(parts)
+
+
+def main() -> None:
+    """Compute the scenes and draw what is shown."""
+    from galinx import compute, template
+
+    folder = DOCS / "figures" / "gallery"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (wanted, _) in SHOWN.items():
+        found = {drawing.name: drawing.figure for drawing in compute(template(name)).drawings()}
+        found[wanted].savefig(folder / f"{name}.png", dpi=70, metadata={"Software": "galinx"})
+        print(f"written: docs/figures/gallery/{name}.png", flush=True)
+
+
+if __name__ == "__main__":
+    main()

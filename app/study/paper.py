@@ -32,11 +32,12 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     if not ranks.is_root():
         compute(study), compute(inside)
         return True  # the verdict is rank 0's
-    from galinx.app.results.drawings import inside as draw_inside
-    from galinx.app.results.drawings import mesh
+    from galinx.app.pictures.choice import Choice
+    from galinx.app.pictures.inside import inside as draw_inside
+    from galinx.app.pictures.numerics import mesh
     from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
-    from galinx.postprocess.figures.canvas import save
+    from galinx.postprocess.figures.canvas import FORMATS, content, save
     from galinx.postprocess.hdf5 import archive, reader
 
     results = []
@@ -47,12 +48,15 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)
-    figures = []
-    for drawing in (*of_study(data), draw_inside(below, inside), mesh(study)):
+    figures, plain = [], Choice()
+    drawings = (*of_study(data, study), draw_inside(below, inside, plain), mesh(data, study, plain))
+    for drawing in drawings:
         progress.say(f"figure: {drawing.name}")
         report.add(drawing)
-        figures.append((drawing.name, drawing.figure))
-    save(figures, folder)
+        for ending in ("pdf", "png"):
+            target = folder.target(f"{drawing.name}.{ending}", FORMATS[ending][1])
+            figures.append((target, content(drawing.figure, ending)))
+    save(figures)
     targets["report.html"].write(report.text().encode())
     _print(targets["tables.txt"], sheets, attributes, quiet)
     if not quiet:

@@ -1,4 +1,4 @@
-"""Commands that look at archives: show, check, report, plot, fields."""
+"""Commands that look at archives: show, check, report, fields."""
 
 import json
 from pathlib import Path
@@ -67,22 +67,6 @@ def report(archive: Path, output: Path | None, overwrite: bool) -> int:
 
 @click.command()
 @options.archive
-@options.folder(".")
-@options.overwrite
-def plot(archive: Path, folder: Path, overwrite: bool) -> int:
-    """Draw what ARCHIVE holds, each figure as PDF and PNG.
-
-    Example: ./run.sh plot tables.h5 -o figures
-    """
-    result = _loaded(archive)
-    if ranks.is_root():
-        for path in result.plot(folder, archive.stem, overwrite):
-            print(f"figure: {path}")
-    return errors.GOOD
-
-
-@click.command()
-@options.archive
 @click.option("--state", type=int, default=0, show_default=True, help="Number of the state, see show.")
 @click.option("--extent", type=float, default=10.0, show_default=True, help="How far, over a.")
 @click.option("-o", "output", type=options.FILE, help="File; default: ARCHIVE_STATE.hdf.")
@@ -135,4 +119,4 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any]) -> dict[str, Any]
     }
 
 
-COMMANDS: tuple[Any, ...] = (show, check, report, plot, fields)
+COMMANDS: tuple[Any, ...] = (show, check, report, fields)

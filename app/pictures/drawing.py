@@ -54,9 +54,9 @@ def by_method(
     """
     found: dict[str, dict[str, Quantity]] = {}
     for path, row in table().items():
-        if path in data and row.over == over and row.type != TEXT and not row.symbol:
-            if row.method in ("", method or row.method):
-                found.setdefault(path.rpartition("/")[2], {})[row.method] = row
+        told = path in data and row.over == over and row.type != TEXT and not row.symbol
+        if told and row.method in ("", method or row.method):
+            found.setdefault(path.rpartition("/")[2], {})[row.method] = row
     return found
 
 

@@ -56,7 +56,7 @@ def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]
         fields,
         choice.size,
     )
-    return made, not_shown(told, frames.tolist(), "--figure film --states")
+    return made, not_shown(told, frames.tolist(), "--figure film --states", choice.states)
 
 
 def _shown(

@@ -93,7 +93,7 @@ def friction(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     else:
         shown, drawn = loops.panels()
     seen = np.flatnonzero(np.isin(rows, rows[drawn])).tolist()
-    missing = not_shown(told, seen, "--figure friction --states")
+    missing = not_shown(told, seen, "--figure friction --states", choice.states)
     caption = (
         "Friction along the strokes, in the direction of the arrows: it builds up over the first stroke "
         "and after each turn, faster in a stiffer law, and does not pass μ_C."

@@ -11,9 +11,9 @@ from galinx.app.pictures.told import C, Told, not_shown
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.maps import Map, maps_figure
 from galinx.postprocess.figures.style import COLUMN, PAGE
-from galinx.postprocess.figures.typeset import folded
+from galinx.postprocess.figures.typeset import folded, number, plain
 from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, INSIDE, STATE
+from galinx.postprocess.quantities.quantity import INSIDE, STATE
 from galinx.postprocess.stresses import maximum_shear, von_mises
 
 #: Name and symbol of what maps show unasked.
@@ -45,7 +45,9 @@ class Fields:
     @property
     def names(self) -> list[str]:
         """Of all there is."""
-        return list(dict.fromkeys([*self._known, *(name for name in _SHOWN if self._of_components(name))]))
+        return list(
+            dict.fromkeys([*self._known, *(name for name in _SHOWN if self._of_components(name))])
+        )
 
     def grid(self) -> tuple[NDArray, NDArray]:
         """Positions over a along both axes."""
@@ -71,7 +73,9 @@ class Fields:
         return f"{called}{' ' if alone else chr(10)}${symbol}/(N/2a)$"
 
     def _of_components(self, name: str) -> bool:
-        return name not in self._known and len({"sigma_XX", "sigma_YY", "sigma_XY"} & set(self._known)) == 3
+        return (
+            name not in self._known and len({"sigma_XX", "sigma_YY", "sigma_XY"} & set(self._known)) == 3
+        )
 
     def _on_grid(self, values: NDArray) -> NDArray:
         return values[: np.prod(self._shape)].reshape(self._shape)
@@ -95,7 +99,7 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     shown, differences, largest = [], [], 0.0
     for name in names:
         values = np.array([fields.values(name, method, i) for i in some])
-        shown.append(Map(fields.label(name, alone), values, bool(values.min() < 0.0)))
+        shown.append(Map(fields.label(name, len(names) == 1), values, bool(values.min() < 0.0)))
         if len(fields.methods) > 1:
             others = np.array([fields.values(name, fields.methods[1], i) for i in some])
             off = (others - values) / np.abs(values).max()
@@ -107,18 +111,19 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     figure = maps_figure(X, Y, shown, titles, differences, choice.size)
     caption = _caption(told, some, METHODS[method], largest)
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
-    return Drawing("inside", caption, figure, True, not_shown(told, some, how))
+    return Drawing("inside", caption, figure, True, not_shown(told, some, how, choice.states))
 
 
 def _caption(told: Told, some: list[int], method: str, largest: float) -> str:
     fixed = [name for name in told.parameters if name not in told.varied(some)]
     text = (
-        f"Stresses inside below the punch (black bar), {method}, at {told.label(some[0], fixed)}. They peak "
-        "at both edges, more at the trailing one; beyond the ends of a bar with arrows its colours are clipped."
+        f"Stresses inside below the punch (black bar), {method}, at {told.text(some[0], fixed)}. They "
+        "spread from the edges; beyond an arrow at the end of a bar its colours are clipped."
     )
     if largest:
-        other = next(name for name in METHODS.values() if name != METHODS[CLOSED_FORM])
-        text += f" The {other} differ by at most {largest:.1e} of the largest value."
+        text += (
+            f" Finite elements differ by at most {plain(f'${number(largest, 2)}$')} of the largest value."
+        )
     return text
 
 

@@ -33,7 +33,7 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     caption = (
         f"The {fem.mesh} mesh under the punch (orange) and, nearer and nearer, its edge X = a: lines are "
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
-        f"{(degree + 1) ** 2} in each cell. Their density, not that of the cells, is that of the solution."
+        f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
     )
     return Drawing("mesh", caption, figure, pixels=True)
 

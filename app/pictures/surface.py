@@ -17,8 +17,8 @@ from galinx.postprocess.quantities.quantity import POINT, STATE
 from galinx.postprocess.quantities.states import FRICTION, POSITION
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 
-#: Curves that can be told apart in a panel, columns of a page, and the least width of one [in].
-_CURVES, _COLUMNS, _LEAST = 6, 3, 1.7
+#: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
+_CURVES, _COLUMNS, _LEAST = 6, 3, 2.3
 
 #: Names of the stresses that are shown unasked, and what axes call them.
 _SHOWN = {
@@ -60,15 +60,15 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     ]
     shown = [state for _, some, _ in groups for state in some]
     caption = (
-        "Stress along the surface: at its edges the punch presses without bound, and where it slides "
-        "away from it pulls the surface behind it. Insets show where on the friction loop each curve sits."
+        "Stresses along the surface, under the punch (grey) and beside it: at its edges they grow "
+        "without bound. Insets show where on the friction loop each curve sits."
     )
     fixed = [name for name in told.parameters if name not in told.varied(shown)]
     varied = [name for name in told.varied() if name in fixed]
     if varied:
-        caption += f" All at {told.label(shown[0], varied)}."
+        caption += f" All at {told.text(shown[0], varied)}."
     figure = surface_figure(data[SURFACE_X.path], stresses(data, choice), columns, choice.size)
-    missing = not_shown(told, shown, "--figure surface --states")
+    missing = not_shown(told, shown, "--figure surface --states", choice.states)
     return Drawing("surface", caption, figure, left_out=missing)
 
 
@@ -88,7 +88,7 @@ def _groups(told: Told, wanted: Sequence[int], width: float) -> list[tuple[str, 
     """Title, states and what tells them apart, by column."""
     some: NDArray = np.array(wanted) if wanted else told.all
     varied = told.varied(some)
-    most = max(1, min(_COLUMNS, int(width / _LEAST) if width < PAGE else _COLUMNS))
+    most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 or C in varied else ""
     if by and wanted and len(told.distinct(by, some)) > most:
         by = ""
@@ -101,5 +101,5 @@ def _groups(told: Told, wanted: Sequence[int], width: float) -> list[tuple[str, 
         group, names = told.where(some, **{by: value}), [name for name in varied if name != by]
         if not wanted:
             names, group = few(told, names, group, _CURVES)
-        groups.append((told.label(int(group[0]), [by]), group.tolist(), names))
+        groups.append((told.label(int(group[0]), [by]), told.ordered(group).tolist(), names))
     return groups

@@ -1,5 +1,6 @@
 """Single numbers of states over what a scene sweeps."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,18 +11,22 @@ from numpy.typing import NDArray
 from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import Drawing, by_method, noun
-from galinx.app.pictures.told import C, Told, not_shown, spread
+from galinx.app.pictures.told import PLACE, C, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, column
 from galinx.postprocess.quantities.quantity import FEM, STATE
+from galinx.postprocess.quantities.states import FRICTION
 
 #: Values of a parameter that make a curve, and curves that can be told apart.
 _VALUES, _CURVES = 3, 6
 
 #: Relative change below which numbers count as constant or, up to a factor, as those of another column.
 _SAME = 1e-5
+
+#: Name of the friction coefficient.
+_F = FRICTION.path.rpartition("/")[2]
 
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
@@ -32,11 +37,13 @@ class Column:
     """Numbers of states of one name.
 
     Attributes:
-        about: what they are, with symbol and unit.
+        about: what they are, with symbol.
+        unit: in TeX.
         exact, found: in closed form or of no method, and by finite elements, (states,).
     """
 
     about: str
+    unit: str
     exact: NDArray | None
     found: NDArray | None
 
@@ -53,53 +60,103 @@ class Column:
         return (self.exact is not None) + (self.found is not None)
 
 
+@dataclass(frozen=True)
+class Sweep:
+    """What is drawn of an archive.
+
+    Attributes:
+        over, x: the parameter, and its numbers, (states,).
+        by: name of what tells curves apart, "" for one curve.
+        groups: label and states of each curve.
+        fixed: what else differs between states, and where it is looked at.
+        drawn: names of columns.
+        same: names of those that show nothing else, or no change.
+    """
+
+    over: Parameter
+    x: NDArray
+    by: str
+    groups: list[tuple[str, NDArray]]
+    fixed: dict[str, Any]
+    drawn: list[str]
+    same: list[str]
+
+    @property
+    def states(self) -> NDArray[np.int64]:
+        """All that are drawn."""
+        return np.concatenate([states for _, states in self.groups])
+
+
 def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
-    """Is something swept, or wanted?"""
+    """Is something swept that changes something, or wanted?"""
     told = Told(data, scene)
-    return bool(choice.x or choice.y or _swept(told, told.all)) and bool(_columns(data, choice.method))
+    if choice.x or choice.y or choice.by:
+        return True
+    return bool(_swept(told, _some(told, choice))) and bool(_sweep(data, told, choice).drawn)
 
 
 def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """What varies, over what is swept."""
+    """What varies, over what is swept.
+
+    Raises:
+        BadInput: the states differ in no number, or nothing varies with it.
+    """
     told, known = Told(data, scene), _columns(data, choice.method)
-    some = np.array(choice.states) if choice.states else told.all
-    x, over, values = _over(told, known, choice.x, some)
-    by = _by(told, choice.by, x, some)
-    free = [x, by] if x in told.parameters else [x, by, *told.varied()]
-    fixed = told.fixed([name for name in told.varied(some) if name not in free], some)
-    some = told.where(some, **fixed)
-    groups = _groups(told, by, some)
-    shown = np.concatenate([states for _, states in groups])
-    names, same = _worth_it(known, shown, choice.y, x)
+    sweep = _sweep(data, told, choice)
+    if not sweep.drawn:
+        raise BadInput(f"--x: no number of the states varies with it; --y takes {', '.join(known)}")
     panels = [
-        Panel(known[name].about, [_line(known[name], label, values, states) for label, states in groups])
-        for name in names
+        Panel(
+            known[name].about,
+            [_line(known[name], label, sweep.x, states) for label, states in sweep.groups],
+            known[name].unit,
+        )
+        for name in sweep.drawn
     ]
-    figure = curves_figure(panels, over, not by or told.numeric(by), choice.size)
-    at = f" at {told.label(int(shown[0]), list(fixed))}" if fixed else ""
-    caption = f"What follows from {plain(over.label)}{at}."
-    if same:
-        caption += f" The same up to a factor and not drawn, or constant: {', '.join(same)}."
-    how = "--states, or --x, --y and --by"
-    return Drawing("parameters", caption, figure, left_out=not_shown(told, shown.tolist(), how))
+    ordered = not sweep.by or told.numeric(sweep.by)
+    figure = curves_figure(panels, sweep.over, ordered, choice.size)
+    at = f" at {told.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""
+    caption = f"What follows from {plain(sweep.over.label)}{at}."
+    if sweep.same:
+        caption += f" Not drawn, being constant or the same up to a factor: {', '.join(sweep.same)}."
+    left_out = not_shown(told, sweep.states.tolist(), "--states, --x and --by", choice.states)
+    return Drawing("parameters", caption, figure, left_out=left_out)
+
+
+def _some(told: Told, choice: Choice) -> NDArray[np.int64]:
+    return np.array(choice.states) if choice.states else told.all
+
+
+def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
+    known, some = _columns(data, choice.method), _some(told, choice)
+    name, over, x = _over(told, known, choice.x, some)
+    by = _by(told, choice.by, name, some)
+    free = [name, by] if name in told.parameters else [by, *told.varied()]
+    fixed = told.fixed([one for one in told.varied(some) if one not in free], some)
+    groups = _groups(told, by, told.where(some, **fixed))
+    drawn, same = _worth_it(known, [states for _, states in groups], choice.y, name)
+    return Sweep(over, x, by, groups, fixed, drawn, same)
 
 
 def _columns(data: dict[str, Any], method: str) -> dict[str, Column]:
     """What an archive has one number a state of, but how good these are."""
     found = {}
     for name, rows in by_method(data, (STATE,), method).items():
-        if all(row.accuracy for row in rows.values()):
+        first = next(iter(rows.values()))
+        if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
         exact = next((data[row.path] for of, row in rows.items() if of != FEM), None)
         fem = data[rows[FEM].path] if FEM in rows else None
-        found[name] = Column(_label(next(iter(rows.values()))), exact, fem)
+        found[name] = Column(_label(first), unit(first.unit).removeprefix(r"\,"), exact, fem)
     return found
 
 
 def _label(row: Quantity) -> str:
-    symbol = f" ${row.symbol}$" if row.symbol else ""
-    over = f" $/\\,({row.unit})$" if "/(" in row.unit else ""
-    return f"{noun(row)}{symbol}{over}" + (f" $[{unit(row.unit)}]$" if unit(row.unit) and not over else "")
+    """What a quantity is, with formulas set as such; stresses over what they are over."""
+    told = re.sub(r"\bX = (-?a)\b", r"$X = \1$", noun(row))
+    if row.symbol:
+        told = f"{told.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"
+    return told
 
 
 def _swept(told: Told, some: NDArray) -> list[str]:
@@ -121,7 +178,9 @@ def _over(
         raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
     if name not in told.parameters:
         return name, Parameter(known[name].about), known[name].best
-    label, values = _label(told.parameters[name]), told.values(name)
+    row, values = told.parameters[name], told.values(name)
+    in_unit = unit(row.unit).removeprefix(r"\,")
+    label = _label(row) + (f" $[{in_unit}]$" if in_unit else "")
     if wanted == _SPEED:
         return name, Parameter("speed [m/s]"), values * told.c_s
     return name, Parameter(label, ("speed [m/s]", told.c_s) if name == C else None), values
@@ -148,30 +207,43 @@ def _groups(told: Told, by: str, some: NDArray) -> list[tuple[str, NDArray]]:
 
 def _line(column: Column, label: str, x: NDArray, states: NDArray) -> Line:
     order = states[np.argsort(x[states], kind="stable")]
-    exact, found = (values if values is None else values[order] for values in (column.exact, column.found))
+    exact, found = (
+        values if values is None else values[order] for values in (column.exact, column.found)
+    )
     return Line(label, x[order], exact, found)
 
 
 def _worth_it(
-    known: dict[str, Column], shown: NDArray, wanted: Sequence[str], x: str
+    known: dict[str, Column], groups: Sequence[NDArray], wanted: Sequence[str], x: str
 ) -> tuple[list[str], list[str]]:
     """Names that are drawn, and those that would show the same or nothing."""
     if wanted:
         return [one_of("--y", name, known) for name in wanted], []
+    states = np.concatenate(list(groups))
+    # Along strokes friction is drawn as a loop.
+    elsewhere = [_F] if x == PLACE and _F in known else []
     drawn: list[str] = []
     same = []
-    for name in sorted((name for name in known if name != x), key=lambda name: -known[name].methods):
-        values = known[name].best[shown]
-        twin = any(_proportional(values, known[other].best[shown]) for other in drawn)
-        if twin or np.ptp(values) <= _SAME * np.abs(values).max() or not np.isfinite(values).all():
+    others = [name for name in known if name not in (x, *elsewhere)]
+    for name in sorted(others, key=lambda name: -known[name].methods):
+        values = known[name].best
+        twins = (known[other].best[states] for other in (*elsewhere, *drawn))
+        twin = any(_proportional(values[states], other) for other in twins)
+        if twin or not any(_varies(values[some]) for some in groups):
             same.append(name)
         else:
             drawn.append(name)
-    if not drawn:
-        raise BadInput("--y: no number of the states varies; expected one of " + ", ".join(known))
     return [name for name in known if name in drawn], same
 
 
+def _varies(values: NDArray) -> bool:
+    some = values[np.isfinite(values)]
+    return len(some) > 1 and np.ptp(some) > _SAME * np.abs(some).max()
+
+
 def _proportional(one: NDArray, other: NDArray) -> bool:
-    one, other = (values / np.abs(values).max() for values in (one, other))
-    return bool(np.allclose(one, other, atol=_SAME, rtol=0.0) or np.allclose(one, -other, atol=_SAME, rtol=0.0))
+    sizes = np.abs(one).max(), np.abs(other).max()
+    if not all(0.0 < size < np.inf for size in sizes):
+        return False
+    one, other = one / sizes[0], other / sizes[1]
+    return any(np.allclose(one, sign * other, rtol=0.0, atol=_SAME) for sign in (1.0, -1.0))

@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.style import LINES, MARKERS, Look, looks
-from galinx.postprocess.figures.typeset import number, unit
+from galinx.postprocess.figures.typeset import number, plain, unit
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import column
 from galinx.postprocess.quantities.quantity import TEXT
 from galinx.postprocess.quantities.states import MOTION, POSITION, SPEED
+
+#: States and values that a sentence names.
+_NAMED = 6
 
 #: Names of what tells places on a loop apart, and of the speed.
 STROKE, PLACE, C = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED))
@@ -62,6 +65,26 @@ class Told:
     def label(self, state: int, names: Sequence[str]) -> str:
         """Some parameters of a state."""
         return ", ".join(self._told(name, self.values(name)[state]) for name in names)
+
+    def ordered(self, some: NDArray) -> NDArray[np.int64]:
+        """Some states in the order of what tells them apart, the first parameter slowest."""
+        keys = [
+            [self.distinct(name, some).index(value) for value in self.values(name)[some].tolist()]
+            for name in self.parameters
+        ]
+        return some[np.lexsort(keys[::-1])]
+
+    def text(self, state: int, names: Sequence[str]) -> str:
+        """The same without formulas."""
+        return plain(self.label(state, names))
+
+    def listed(self, name: str, values: Sequence[Any]) -> str:
+        """Some values of a parameter as plain text."""
+        row = self.parameters[name]
+        if not self.numeric(name):
+            return _short(values)
+        told = _short([plain(f"${number(value)}$") for value in values])
+        return f"{plain(f'${row.symbol}$')} = {told}{plain(f'${unit(row.unit)}$')}"
 
     def _told(self, name: str, value: Any) -> str:
         row = self.parameters[name]
@@ -123,7 +146,8 @@ def few(told: Told, names: Sequence[str], some: NDArray, most: int) -> tuple[lis
     """
     # A sweep is looked at for what it sweeps; without one, strokes and places are.
     swept = [name for name in names if name not in (STROKE, PLACE)]
-    varying, count = [], 1
+    varying: list[str] = []
+    count = 1
     for name in [*swept, *(name for name in names if name not in swept)]:
         values = len(told.distinct(name, some))
         if count * min(values, most) <= most or not varying:
@@ -136,21 +160,33 @@ def few(told: Told, names: Sequence[str], some: NDArray, most: int) -> tuple[lis
     return [name for name in names if name in varying], some
 
 
-def not_shown(told: Told, shown: Sequence[int], how: str) -> str:
+def not_shown(told: Told, shown: Sequence[int], how: str, wanted: Sequence[int] = ()) -> str:
     """What a figure does not show, and how to get it; nothing where it shows all.
 
     Args:
         told: of the archive.
         shown: states.
-        how: option that draws others.
+        how: options that draw others.
+        wanted: states that are asked for, all if none are.
     """
-    missing = sorted(set(told.all.tolist()) - set(shown))
+    missing = sorted(set(wanted or told.all.tolist()) - set(shown))
     if not missing:
         return ""
-    ranges = _ranges(missing)
-    listed = ", ".join(ranges[:6]) + (", …" if len(ranges) > 6 else "")
-    noun = f"states {listed} are" if len(missing) > 1 else f"state {listed} is"
-    return f"{len(missing)} of {len(told.all)} not shown: {noun} drawn with {how}."
+    values = [
+        told.listed(name, absent)
+        for name in told.varied()
+        if (absent := [value for value in told.distinct(name) if value not in told.values(name)[shown]])
+    ]
+    without = f" ({'; '.join(values)})" if values else ""
+    noun = "state" if len(missing) == 1 else "states"
+    ranges = _short(_ranges(missing), ",")
+    count = f"{len(missing)} of {len(told.all)} states not shown{without}"
+    return f"{count}: {noun} {ranges}; choose by {how}."
+
+
+def _short(words: Sequence[str], comma: str = ", ") -> str:
+    """The first of them, and that there are more."""
+    return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
 
 
 def _ranges(numbers: Sequence[int]) -> list[str]:
@@ -161,5 +197,3 @@ def _ranges(numbers: Sequence[int]) -> list[str]:
         else:
             runs.append([number_])
     return [f"{run[0]}" if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs]
-
-

@@ -1,19 +1,25 @@
 """Which figures an archive has, and which of them are wanted."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures import friction, inside, numerics, surface, sweep
+from galinx.app.pictures import film, friction, inside, numerics, surface, sweep
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
+from galinx.app.pictures.files import FILM, Files
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.figures.canvas import TooSmall
+from galinx.postprocess.figures.film import FORMATS as OF_FILMS
 
-__all__ = ["Drawing", "drawn", "of_archive", "there"]
+__all__ = ["Drawing", "of_archive", "there", "write"]
 
 _Data = dict[str, Any]
+
+#: Everything, chosen by itself.
+_PLAIN = Choice()
 
 
 @dataclass(frozen=True)
@@ -36,6 +42,10 @@ def _below(data: _Data, scene: Scene, choice: Choice) -> bool:
     return set(choice.quantities) <= set(inside.Fields(data, scene, choice.method).names)
 
 
+def _no_figure(data: _Data, scene: Scene, choice: Choice) -> Drawing:
+    raise AssertionError("a film is no figure")
+
+
 #: By name, in the order they are drawn.
 _FIGURES = {
     "friction": _Figure({"states"}, lambda data, scene, _: True, friction.friction),
@@ -50,41 +60,60 @@ _FIGURES = {
     "inside": _Figure({"states", "quantities", "method"}, _below, inside.inside),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
+    FILM: _Figure({"states", "quantities", "method"}, film.has, _no_figure),
 }  # fmt: skip
 
 
-def of_archive(data: _Data, scene: Scene, choice: Choice = Choice()) -> Iterator[Drawing]:
+def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[Drawing]:
     """Every figure that an archive's data allow and a choice wants, one after the other.
 
     Raises:
         BadInput: what is wanted is not there; the message says what is.
     """
-    for name in drawn(data, scene, choice):
-        yield _FIGURES[name].draw(data, scene, choice)
+    for name in _names(data, scene, choice):
+        if name != FILM:
+            try:
+                yield _FIGURES[name].draw(data, scene, choice)
+            except TooSmall as error:
+                raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
 
 
-def drawn(data: _Data, scene: Scene, choice: Choice = Choice()) -> list[str]:
-    """Names of the figures that :func:`of_archive` draws.
+def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[str]:
+    """Write what :func:`of_archive` draws, and the film if it is wanted.
+
+    Returns:
+        Lines that name the files, and the states that a figure does not show.
 
     Raises:
-        BadInput: what is wanted is not there; the message says what is.
+        BadInput: what is wanted is not there, or cannot be written so.
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
     """
+    if not choice.figures and (files.one in OF_FILMS or set(files.formats) & OF_FILMS.keys()):
+        choice = replace(choice, figures=(FILM,))
+    names = _names(data, scene, choice)
+    files.check(names)
+    made = (lambda: film.film(data, scene, choice)) if FILM in names else None
+    return files.write(of_archive(data, scene, choice), made)
+
+
+def _names(data: _Data, scene: Scene, choice: Choice) -> list[str]:
     choice.check_states(data)
     if choice.method:
         one_of("--method", choice.method, METHODS)
-    plain = Choice()
-    there_are = [name for name, figure in _FIGURES.items() if figure.has(data, scene, plain)]
+    there_are = [name for name, figure in _FIGURES.items() if figure.has(data, scene, _PLAIN)]
     for name in choice.figures:
-        one_of("--figure", name, there_are)
+        # A film that the archive has too few states for says so itself.
+        one_of("--figure", name, dict.fromkeys([*there_are, FILM]))
         if ignored := choice.given - _FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
     for name in choice.quantities:
         one_of("--quantity", name, dict.fromkeys(_quantities(data, scene)))
     wanted = choice.figures or [
-        name for name in there_are if choice.given <= _FIGURES[name].follows
+        name for name in there_are if name != FILM and choice.given <= _FIGURES[name].follows
     ]
-    found = [name for name in wanted if _FIGURES[name].has(data, scene, choice)]
-    if not found or choice.figures and len(found) < len(choice.figures):
+    found = [name for name in wanted if name == FILM or _FIGURES[name].has(data, scene, choice)]
+    if not found or (choice.figures and len(found) < len(choice.figures)):
         raise BadInput(
             f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
             f"{', '.join(there_are)}"

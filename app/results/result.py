@@ -13,7 +13,7 @@ from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.target import FIELDS, PAGE, Folder, Target
+from galinx.postprocess.target import FIELDS, PAGE, Target
 
 
 class Result:
@@ -59,23 +59,48 @@ class Result:
 
         return over_parameters(self.dataset)
 
-    def drawings(self) -> Iterator[Any]:
-        """Every figure that the result allows, as :class:`galinx.app.results.drawings.Drawing`."""
-        from galinx.app.results.drawings import of_archive
+    def drawings(self, **options: Any) -> Iterator[Any]:
+        """Figures of the result, as :class:`galinx.app.pictures.drawing.Drawing`.
 
-        return of_archive(self.data, self.scene)
-
-    def plot(self, folder: Path | str = ".", name: str = "galinx", overwrite: bool = False) -> list[Path]:
-        """Write every figure as PDF and PNG into a folder, which is made; their paths.
+        Args:
+            options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
 
         Raises:
+            BadInput: what is wanted is not there.
+        """
+        from galinx.app.pictures.choice import Choice
+        from galinx.app.results.drawings import of_archive
+
+        return of_archive(self.data, self.scene, Choice(**options))
+
+    def plot(
+        self, to: Path | str = ".", name: str = "galinx", overwrite: bool = False,
+        formats: tuple[str, ...] = (), dpi: int = 0, **options: Any,
+    ) -> list[str]:  # fmt: skip
+        """Write figures into a folder, which is made, or one into a file.
+
+        Args:
+            to: a folder, or a file whose ending is its format.
+            name: what names in a folder begin with.
+            overwrite: files that are no figures of galinx are replaced, too.
+            formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
+            dpi: dots per inch of what is made of pixels.
+            options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
+
+        Returns:
+            Lines that name the files, and the states that a figure does not show.
+
+        Raises:
+            BadInput: what is wanted is not there, or there is no such format.
             Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from galinx.postprocess.figures.canvas import save
+        from galinx.app.pictures.choice import Choice
+        from galinx.app.pictures.files import Files
+        from galinx.app.results.drawings import write
 
-        figures = ((f"{name}_{drawing.name}", drawing.figure) for drawing in self.drawings())
-        return save(figures, Folder(Path(folder), overwrite, self.inputs))
+        files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
+        return write(self.data, self.scene, Choice(**options), files)
 
     def report(self, path: Path | str, overwrite: bool = False) -> None:
         """Write a self-contained HTML page.

@@ -27,12 +27,13 @@ _LOOP = (
     "once more, the other way, after each turn (BM1, FM2)."
 )
 _PARAMETERS = (
-    "Fig 6. What the parameters do to the loop: (a) μ_C sets how high friction comes, (b) σ₀ l/N how soon, "
-    "and (c) δ_D how sharply it turns."
+    "Fig 6. What the parameters do to the loop: (a) μ_C sets how high friction comes, (b) σ₀ l/N how "
+    "soon, and (c) δ_D how sharply it turns."
 )
 _STRESSES = (
-    "sliding, at two places of three strokes. The pressure leans to the trailing edge; the surface is pulled "
-    "behind the punch and pressed ahead of it. Where insets show the same friction, curves lie on each other."
+    "sliding, at two places of three strokes. The pressure leans to the trailing edge; the surface is "
+    "pulled behind the punch and pressed ahead of it. Where insets show the same friction, curves lie on "
+    "each other."
 )
 
 
@@ -58,9 +59,10 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
             ]
             columns.append(_column(data, loops, told.label(states[0], [C]), states, [name]))
         caption = (
-            f"Fig {figure[3:]}. What {plain(f'${told.parameters[name].symbol}$')} does, slow and fast, at "
-            f"X/L = 0.8 of {STROKES[0]}: only through friction, which insets show; more of it leans the "
-            "pressure back, and pulls the surface more behind the punch. Speed raises the in-plane stress."
+            f"Fig {figure[3:]}. What {plain(f'${told.parameters[name].symbol}$')} does, slow and fast, "
+            f"at X/L = 0.8 of {STROKES[0]}: it acts through friction, which the inset shows; more of it "
+            "leans the pressure back and pulls the surface more behind the punch. Speed raises the "
+            "in-plane stress."
         )
         yield Drawing(figure, caption, _figure(data, columns))
 

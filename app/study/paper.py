@@ -37,7 +37,7 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     from galinx.app.pictures.numerics import mesh
     from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
-    from galinx.postprocess.figures.canvas import FORMATS, content, save
+    from galinx.postprocess.figures.canvas import save
     from galinx.postprocess.hdf5 import archive, reader
 
     results = []
@@ -53,10 +53,8 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     for drawing in drawings:
         progress.say(f"figure: {drawing.name}")
         report.add(drawing)
-        for ending in ("pdf", "png"):
-            target = folder.target(f"{drawing.name}.{ending}", FORMATS[ending][1])
-            figures.append((target, content(drawing.figure, ending)))
-    save(figures)
+        figures.append((drawing.name, drawing.figure))
+    save(figures, folder)
     targets["report.html"].write(report.text().encode())
     _print(targets["tables.txt"], sheets, attributes, quiet)
     if not quiet:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.figures.style import DPI, GREY, SMALL, Look, styled
 from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.target import PDF, PNG, SVG, Kind, Target
+from galinx.postprocess.target import PDF, PNG, SVG, Folder, Kind, Target
 
 #: What in a file says who made it, and the kind of file, by the format's ending.
 FORMATS: dict[str, tuple[str, Kind]] = {
@@ -22,6 +22,9 @@ FORMATS: dict[str, tuple[str, Kind]] = {
     "png": ("Software", PNG),
     "svg": ("Creator", SVG),
 }
+
+#: Formats where none is asked for: text that stays text, and pixels for everything else.
+USUAL = ("pdf", "png")
 
 #: Least size of a panel in which something can be seen [in].
 _LEAST = 0.35
@@ -159,17 +162,31 @@ def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
     return data.getvalue()
 
 
-def save(figures: Iterable[tuple[Target, bytes]]) -> None:
-    """Write files; none where one of them cannot be made.
-
-    Args:
-        figures: each file and its bytes, which are all made before the first is written.
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
+    """Write figures by name into a folder in the usual formats; none where one may not be written.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    for target, data in list(figures):
+    write(
+        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
+        for name, figure in figures
+        for ending in USUAL
+    )
+
+
+def write(files: Iterable[tuple[Target, bytes]]) -> None:
+    """Write files; none where one of them cannot be made.
+
+    Args:
+        files: each with its bytes, which are all made before the first is written.
+
+    Raises:
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
+    """
+    for target, data in list(files):
         target.write(data)
 
 

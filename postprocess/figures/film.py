@@ -66,7 +66,13 @@ def strokes_film(
         size: of the figure.
     """
     count = 1 + len(stresses) + len(mapped)
-    figure, axes = panels(1, count, size or Size(PAGE), 0.85, Room(0.48, 0.62, 0.38, 0.2, 0.62, 0.4))
+    figure, axes = panels(
+        1,
+        count,
+        size or Size(PAGE),
+        0.85,
+        Room(0.48, 0.62 if mapped else 0.1, 0.38, 0.2, 1.05 if mapped else 0.62, 0.4),
+    )
     loops.draw(axes[0, 0], loops.Panel("", [loop]))
     axes[0, 0].set(xlabel=loops.X_LABEL, ylabel=loops.F_LABEL)
     dot = axes[0, 0].plot(*places[0], "o", color="black", markersize=5, zorder=9)[0]
@@ -92,6 +98,7 @@ def _along_surface(axis: Axes, X: NDArray, stress: surface.Stress) -> Callable[[
     low, high = surface.limits(X, values)
     axis.set(xlim=(-half, half), ylim=(low, high), xlabel="$X/a$", ylabel=stress.label)
     axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
+    axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
     parts = surface.parts(X)
     lines = [axis.plot(X[part], values[0][part], color=COLOURS[0])[0] for part in parts]
 

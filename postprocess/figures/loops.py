@@ -68,7 +68,7 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
     below = 0.0 if common else max(map(len, entries)) * 0.15 + 0.05
     above = 0.2 if len(shown) > 1 or shown[0].title else 0.08
     room = Room(0.48, 0.1, 0.38 + below + foot.height, above, 0.35, 0.55 + below)
-    figure, axes = panels(rows, columns, size, 0.78, room)
+    figure, axes = panels(rows, columns, size, 0.62 if columns == 2 else 0.78, room)
     for axis in axes.flat[len(shown) :]:
         axis.remove()
     for n, (axis, panel) in enumerate(zip(axes.flat, shown)):
@@ -140,11 +140,10 @@ def _point(axis: Axes, X: NDArray, f: NDArray, at: int, colour: Any, name: str) 
     ahead = min(at + int(_APART * len(X)) * bool(name), len(X) - 3)
     axis.annotate(
         "", (X[ahead + 1], f[ahead + 1]), (X[ahead], f[ahead]),
-        arrowprops={"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9},
+        arrowprops={
+            "arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9,
+        },
     )  # fmt: skip
     if name:
         box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-        axis.text(
-            X[at], f[at], name, color=colour, fontsize=SMALL, ha="center", va="center", bbox=box
-        )
-
+        axis.text(X[at], f[at], name, color=colour, fontsize=SMALL, ha="center", va="center", bbox=box)

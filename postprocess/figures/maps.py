@@ -58,8 +58,8 @@ def maps_figure(
     size = size or Size(COLUMN if len(titles) == 1 else PAGE)
     columns = len(titles) + (len(differences[0]) if len(differences) else 0)
     right = 0.62 + (0.66 if len(differences) else 0.0)
-    lines = 1 + max(title.count("\n") for title in titles) + (not alone)
-    room = Room(0.45, right, 0.38, 0.06 + 0.145 * lines, 0.12, 0.24)
+    lines = 2 + max(title.count("\n") for title in titles) - (alone or len(differences) == 0)
+    room = Room(0.45, right, 0.38, 0.09 + 0.145 * lines, 0.12, 0.26)
     # The first column of differences stands beside the bars of the stresses.
     figure, axes = panels(len(maps), columns, size, (Y[-1] - Y[0]) / (X[-1] - X[0]), room)
     if len(differences):
@@ -85,13 +85,13 @@ def maps_figure(
 
 
 def _name(axes: NDArray, titles: Sequence[str]) -> None:
+    apart = axes.shape[1] > len(titles)
     told = [*titles, *[f"difference, {title}" for title in titles[: axes.shape[1] - len(titles)]]]
-    lettered(axes.flat)
-    if axes.size == 1:
-        axes[0, 0].set_title(told[0])
-        return
-    for axis, title in zip(axes[0], told):
+    lettered(axes.flat, [] if apart else titles)
+    for axis, title in zip(axes[0], told if apart else []):
         axis.set_title(f"{title}\n{axis.get_title(loc='left')}")
+    for axis in axes.flat:
+        axis.set_title(axis.get_title(loc="left"), pad=4.5)
 
 
 def _make_way(axes: NDArray, by: float) -> None:
@@ -145,11 +145,12 @@ class _Grid:
         axis.locator_params(axis="y", nbins=4)
 
     def bar(self, axis: Axes, limit: float, extend: str, shown: Map) -> None:
-        image = axis.images[0]
-        place = axis.inset_axes((1.03, 0.0, 0.05 if shown.values.shape[0] > 1 else 0.03, 1.0))
-        bar = axis.figure.colorbar(image, cax=place, extend=extend)
+        figure, place = axis.figure, axis.get_position()
+        wide, tall = figure.get_figwidth() * place.width, figure.get_figheight() * place.height
+        beside = axis.inset_axes((1.0 + 0.06 / wide, 0.0, 0.09 / wide, 1.0))
+        bar = figure.colorbar(axis.images[0], cax=beside, extend=extend)
         bar.set_label(shown.label, fontsize=SMALL)
-        bar.locator = MaxNLocator(3 if shown.values.shape[0] > 1 else 5)
+        bar.locator = MaxNLocator(max(3, int(4.0 * tall)))
         bar.update_ticks()
 
 

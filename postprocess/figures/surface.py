@@ -20,8 +20,10 @@ from galinx.solvers.contact import from_edge, under_punch
 _BESIDE, _UNDER = 2.0, 1.04
 #: Distance over a from an edge within which stresses may run out of the picture.
 _EDGE = 0.09
-#: Markers of a curve.
-_MARKERS = 14
+#: Columns whose ranges differ more have limits of their own.
+_APART = 4.0
+#: Markers in a panel.
+_MARKERS = 36
 
 
 @dataclass(frozen=True)
@@ -85,27 +87,29 @@ def surface_figure(
     size = size or Size(COLUMN if len(columns) == 1 else PAGE)
     curves = {curve.label: curve for column in columns for curve in column.curves}
     methods = {method for stress in stresses for method in stress.values}
-    named = [
-        handle(curve.look, label) for label, curve in curves.items() if len(curves) > 1 and label
-    ]
+    named = [handle(curve.look, label) for label, curve in curves.items() if len(curves) > 1 and label]
     legend = Legend([*named, *of_methods(CLOSED_FORM in methods, FEM in methods)], size.width)
-    room = Room(0.55, 0.1, 0.38 + legend.height, _top(columns, stresses), 0.2, 0.52)
+    ranges = [_ranges(X, stress, columns) for stress in stresses]
+    apart = any(len(set(row)) > 1 for row in ranges)
+    room = Room(0.55, 0.1, 0.38 + legend.height, _top(columns, stresses), 0.42 if apart else 0.2, 0.52)
     figure, axes = panels(len(stresses), len(columns), size, 0.6, room)
-    for row, stress in zip(axes, stresses):
+    for row, stress, limits_ in zip(axes, stresses, ranges):
         half = half_width(X, [stress])
-        drawn = [_draw(axis, X, stress, column, half) for axis, column in zip(row, columns)]
-        low, high = limits(X, np.concatenate(drawn))
-        for n, axis in enumerate(row):
-            axis.set(xlim=(-half, half), ylim=(low, high), xlabel="position on the surface $X/a$")
-            axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < 1.5 else 1.0))
+        for axis, column, y in zip(row, columns, limits_):
+            _draw(axis, X, stress, column, half)
+            axis.set(xlim=(-half, half), ylim=y, xlabel="position on the surface $X/a$")
+            axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
             axis.xaxis.set_minor_locator(MultipleLocator(0.25))
-            if half > 1.5:
+            if half == _BESIDE:
                 axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
             axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
-            if n:
+            if axis is not row[0] and not apart:
                 axis.set_yticklabels([])
         row[0].set_ylabel(stress.label)
-    _insets(axes[0], columns)
+    for row, stress in zip(axes, stresses):
+        if half_width(X, [stress]) < _BESIDE:  # there is room below the pressure
+            _insets(row, columns)
+            break
     lettered(axes.flat, [column.title for column in columns])
     figure.align_ylabels(axes[:, 0])
     legend.put(figure)
@@ -117,26 +121,35 @@ def _top(columns: Sequence[Column], stresses: Sequence[Stress]) -> float:
     return 0.2 if len(columns) * len(stresses) > 1 or columns[0].title else 0.08
 
 
-def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -> NDArray:
-    """Draw the states of a panel; what sets its limits, (curves, points)."""
+def _ranges(X: NDArray, stress: Stress, columns: Sequence[Column]) -> list[tuple[float, float]]:
+    """Limits of each column: the same for all, unless some would hardly be seen then."""
+    values = next(iter(stress.values.values()))
+    every = [limits(X, values[[curve.state for curve in column.curves]]) for column in columns]
+    low, high = min(y[0] for y in every), max(y[1] for y in every)
+    if (high - low) > _APART * min(y[1] - y[0] for y in every):
+        return every
+    return [(low, high)] * len(every)
+
+
+def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -> None:
     exact, found = stress.values.get(CLOSED_FORM), stress.values.get(FEM)
-    drawn = []
+    lines = exact if exact is not None else found
+    assert lines is not None
     for n, curve in enumerate(column.curves):
-        lines = exact if exact is not None else found
-        assert lines is not None
-        drawn.append(lines[curve.state])
         for part in parts(X):
-            axis.plot(X[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line)
+            axis.plot(
+                X[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
+            )
         if exact is not None and found is not None:
             # Those of one curve stand between those of the others.
-            step = 2.0 * half / _MARKERS
-            wanted = -half + step * (np.arange(_MARKERS) + (n + 0.5) / len(column.curves))
+            count = max(7, _MARKERS // len(column.curves))
+            step = 2.0 * half / count
+            wanted = -half + step * (np.arange(count) + (n + 0.5) / len(column.curves))
             pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
             axis.plot(
                 X[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
                 markerfacecolor="none",
             )  # fmt: skip
-    return np.array(drawn)
 
 
 def half_width(X: NDArray, stresses: Sequence[Stress]) -> float:

@@ -29,6 +29,8 @@ def unit(name: str) -> str:
     """A unit in TeX, with the space before it; nothing for what has none."""
     if name in ("1", "", "none"):
         return ""
+    if "(" in name:  # a quantity, as N/(2a) is
+        return rf"\,{name}"
     over = re.fullmatch(r"1/(\w+)", name)
     return rf"\,\mathrm{{{over[1]}^{{-1}}}}" if over else rf"\,\mathrm{{{name}}}"
 

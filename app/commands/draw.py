@@ -58,18 +58,22 @@ def plot(
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
     from galinx.app.pictures import choice
+    from galinx.app.pictures.files import Files
+    from galinx.app.results.drawings import write
     from galinx.app.results.result import load
 
-    wanted = {
-        "figures": choice.words(figure), "states": choice.numbers(states),
-        "quantities": choice.words(quantity), "method": method, "x": x, "y": choice.words(y), "by": by,
-        "size": choice.size(size),
-    }  # fmt: skip
+    wanted = choice.Choice(
+        figures=choice.words(figure), states=choice.numbers(states), quantities=choice.words(quantity),
+        method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
+    )  # fmt: skip
+    files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
     result = load(archive)
-    result.inputs = options.inputs(archive)
     if ranks.is_root():
-        for line in result.plot(to, archive.stem, overwrite, choice.words(formats), dpi, **wanted):
-            say(line, 4)
+        written = write(result.data, result.scene, wanted, files)
+        for one, after in zip(written, [*written[1:], None]):
+            print(f"{one.noun}: {one.path}")
+            if one.left_out and (after is None or after.left_out != one.left_out):
+                say(f"  {one.left_out}", 2)
     return errors.GOOD
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from galinx.app.errors import BadInput
 from galinx.app.pictures.drawing import Drawing
@@ -13,6 +14,20 @@ from galinx.postprocess.target import Folder, Kind, Target
 
 #: Dots per inch that a file may have.
 _DPI = range(30, 2401)
+
+
+class Written(NamedTuple):
+    """A file that was written.
+
+    Attributes:
+        path: its name.
+        noun: what it is.
+        left_out: which states it does not show and how to get them.
+    """
+
+    path: Path
+    noun: str
+    left_out: str
 
 
 @dataclass(frozen=True)
@@ -89,20 +104,15 @@ class Files:
 
     def write(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
-    ) -> list[str]:
-        """Write all figures and the film, if one is wanted; none where one of them cannot be written.
-
-        Returns:
-            A line for each, with what it leaves out.
-        """
+    ) -> list[Written]:
+        """Write all figures and the film, if one is wanted; none where one of them cannot be written."""
         folder = None if self.one else Folder(self.to, self.overwrite, self.inputs)
         files, said = [], []
         for name, left_out, content in self._contents(drawings, made):
             for ending in self.endings(name):
                 target = self.target(name, ending, folder)
                 files.append((target, content(ending)))
-                said.append(f"{_noun(name)}: {target.path}")
-            said += [f"  {left_out}"] * bool(left_out)
+                said.append(Written(target.path, _noun(name), left_out))
         canvas.write(files)
         return said
 

@@ -24,8 +24,8 @@ _SHOWN = {
     "von_mises": ("von Mises", r"\sigma_{\mathrm{vM}}"),
     "max_shear": ("largest shear", r"\tau_{\mathrm{max}}"),
 }
-#: Columns of states on a page.
-_STATES = 2
+#: Columns of states on a page, and the least width for one with its difference [in].
+_STATES, _LEAST = 2, 1.6
 
 
 class Fields:
@@ -95,23 +95,29 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     some = list(choice.states) or _states(told)
     alone = len(names) == len(some) == 1
     apart = told.varied(some) or ([C] if C in told.varied() or alone else [])
-    method = fields.methods[0]
-    shown, differences, largest = [], [], 0.0
-    for name in names:
-        values = np.array([fields.values(name, method, i) for i in some])
-        shown.append(Map(fields.label(name, len(names) == 1), values, bool(values.min() < 0.0)))
-        if len(fields.methods) > 1:
-            others = np.array([fields.values(name, fields.methods[1], i) for i in some])
-            off = (others - values) / np.abs(values).max()
-            largest = max(largest, float(np.abs(off).max()))
-            differences += [off] * (len(names) > 1)
-    width = (choice.size.width if choice.size else COLUMN if len(some) == 1 else PAGE) - 1.0
-    columns = len(some) * (2 if differences else 1)
-    titles = [folded(told.label(i, apart), int(width / columns / 0.062)) for i in some]
+    width = choice.size.width if choice.size else COLUMN if len(some) == 1 else PAGE
+    shown, differences = _maps(fields, names, some)
+    largest = max((float(np.abs(off).max()) for off in differences), default=0.0)
+    columns = 2 * len(some)
+    if len(names) == 1 or width < columns * _LEAST:
+        differences, columns = [], len(some)
+    titles = [folded(told.label(i, apart), int((width - 1.0) / columns / 0.062)) for i in some]
     figure = maps_figure(X, Y, shown, titles, differences, choice.size)
-    caption = _caption(told, some, METHODS[method], largest)
+    caption = _caption(told, some, METHODS[fields.methods[0]], largest)
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
     return Drawing("inside", caption, figure, True, not_shown(told, some, how, choice.states))
+
+
+def _maps(fields: Fields, names: list[str], some: list[int]) -> tuple[list[Map], list[NDArray]]:
+    """What is mapped, and where both methods are known their differences over the largest values."""
+    shown, differences = [], []
+    for name in names:
+        values, *others = (
+            np.array([fields.values(name, method, i) for i in some]) for method in fields.methods
+        )
+        shown.append(Map(fields.label(name, len(names) == 1), values, bool(values.min() < 0.0)))
+        differences += [(other - values) / np.abs(values).max() for other in others]
+    return shown, differences
 
 
 def _caption(told: Told, some: list[int], method: str, largest: float) -> str:

@@ -8,7 +8,7 @@ from galinx.app.errors import BadInput
 from galinx.app.pictures import film, friction, inside, numerics, surface, sweep
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
-from galinx.app.pictures.files import FILM, Files
+from galinx.app.pictures.files import FILM, Files, Written
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.canvas import TooSmall
@@ -78,11 +78,8 @@ def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[D
                 raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
 
 
-def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[str]:
+def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Written]:
     """Write what :func:`of_archive` draws, and the film if it is wanted.
-
-    Returns:
-        Lines that name the files, and the states that a figure does not show.
 
     Raises:
         BadInput: what is wanted is not there, or cannot be written so.

@@ -76,8 +76,8 @@ class Result:
     def plot(
         self, to: Path | str = ".", name: str = "galinx", overwrite: bool = False,
         formats: tuple[str, ...] = (), dpi: int = 0, **options: Any,
-    ) -> list[str]:  # fmt: skip
-        """Write figures into a folder, which is made, or one into a file.
+    ) -> list[Path]:  # fmt: skip
+        """Write figures into a folder, which is made, or one into a file; their paths.
 
         Args:
             to: a folder, or a file whose ending is its format.
@@ -86,9 +86,6 @@ class Result:
             formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
             dpi: dots per inch of what is made of pixels.
             options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
-
-        Returns:
-            Lines that name the files, and the states that a figure does not show.
 
         Raises:
             BadInput: what is wanted is not there, or there is no such format.
@@ -100,7 +97,7 @@ class Result:
         from galinx.app.results.drawings import write
 
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
-        return write(self.data, self.scene, Choice(**options), files)
+        return [one.path for one in write(self.data, self.scene, Choice(**options), files)]
 
     def report(self, path: Path | str, overwrite: bool = False) -> None:
         """Write a self-contained HTML page.

@@ -72,10 +72,10 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
     wide = (size.width - beside) / columns
     tall = wide * high if size.height is None else (size.height - above) / rows
     if min(wide, tall) < _LEAST:
-        raise TooSmall(
-            f"expected at least {beside + columns * _LEAST:.1f} in x {above + rows * _LEAST:.1f} in for "
-            f"{rows} x {columns} panels"
-        )
+        needed = f"{beside + columns * _LEAST / min(high, 1.0):.1f} in"
+        if size.height is not None:
+            needed = f"{beside + columns * _LEAST:.1f} in x {above + rows * _LEAST:.1f} in"
+        raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
     height = above + rows * tall
     figure = Figure((size.width, height))
     FigureCanvasAgg(figure)

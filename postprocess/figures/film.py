@@ -24,7 +24,7 @@ from galinx.postprocess.target import GIF, MP4, Kind
 FORMATS: dict[str, Kind] = {"mp4": MP4, "gif": GIF}
 
 #: Frames a second, and dots per inch, which screens show.
-RATE, DPI = 12, 160
+RATE, DPI = 8, 160
 
 
 @dataclass(frozen=True)
@@ -66,13 +66,11 @@ def strokes_film(
         size: of the figure.
     """
     count = 1 + len(stresses) + len(mapped)
-    figure, axes = panels(
-        1,
-        count,
-        size or Size(PAGE),
-        0.85,
-        Room(0.48, 0.62 if mapped else 0.1, 0.38, 0.2, 1.05 if mapped else 0.62, 0.4),
-    )
+    size = size or Size(PAGE)
+    room = Room(0.48, 0.1, 0.38, 0.2, 0.62, 0.4)
+    if mapped:  # beside each stands the bar of its colours
+        room = room._replace(right=0.62, across=0.95)
+    figure, axes = panels(1, count, size, 0.85, room)
     loops.draw(axes[0, 0], loops.Panel("", [loop]))
     axes[0, 0].set(xlabel=loops.X_LABEL, ylabel=loops.F_LABEL)
     dot = axes[0, 0].plot(*places[0], "o", color="black", markersize=5, zorder=9)[0]
@@ -125,7 +123,7 @@ def content(film: Film, ending: str, dpi: int = DPI) -> bytes:
     for n in range(film.frames):
         film.show(n)
         canvas.draw()
-        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB").quantize(128))
+        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB").quantize())
     data = BytesIO()
     frames[0].save(
         data, "GIF", save_all=True, append_images=frames[1:], duration=1000 // RATE, loop=0,

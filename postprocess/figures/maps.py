@@ -17,6 +17,9 @@ from galinx.postprocess.figures.style import COLUMN, PAGE, SMALL, styled
 #: rest.
 _SHOWN = 0.985
 
+#: Room that a bar of colours takes [in].
+_BAR = 0.7
+
 #: Colours of differences begin where so many of them lie below.
 _LEAST = 0.02
 
@@ -55,15 +58,17 @@ def maps_figure(
         size: of the figure.
     """
     alone = len(titles) == 1 and len(maps) == 1
-    size = size or Size(COLUMN if len(titles) == 1 else PAGE)
+    # Two columns of many rows would be taller than a page.
+    usual = COLUMN if len(titles) == 1 else PAGE if len(differences) or len(maps) < 3 else 0.7 * PAGE
+    size = size or Size(usual)
     columns = len(titles) + (len(differences[0]) if len(differences) else 0)
-    right = 0.62 + (0.66 if len(differences) else 0.0)
-    lines = 2 + max(title.count("\n") for title in titles) - (alone or len(differences) == 0)
+    right = _BAR + (_BAR if len(differences) else 0.0)
+    lines = max(title.count("\n") for title in titles) + (3 if len(differences) else 1)
     room = Room(0.45, right, 0.38, 0.09 + 0.145 * lines, 0.12, 0.26)
     # The first column of differences stands beside the bars of the stresses.
     figure, axes = panels(len(maps), columns, size, (Y[-1] - Y[0]) / (X[-1] - X[0]), room)
     if len(differences):
-        _make_way(axes[:, len(titles) :], 0.66 / size.width)
+        _make_way(axes[:, len(titles) :], _BAR / size.width)
     grid = _Grid(X, Y)
     for shown, row in zip(maps, axes):
         limit, extend = _limits(shown)
@@ -86,7 +91,7 @@ def maps_figure(
 
 def _name(axes: NDArray, titles: Sequence[str]) -> None:
     apart = axes.shape[1] > len(titles)
-    told = [*titles, *[f"difference, {title}" for title in titles[: axes.shape[1] - len(titles)]]]
+    told = [*titles, *[f"difference at\n{title}" for title in titles[: axes.shape[1] - len(titles)]]]
     lettered(axes.flat, [] if apart else titles)
     for axis, title in zip(axes[0], told if apart else []):
         axis.set_title(f"{title}\n{axis.get_title(loc='left')}")

@@ -27,7 +27,7 @@ def mesh_figure(
     size = size or Size(PAGE)
     columns = max(1, min(len(zooms), int(size.width / 2.0)))
     rows = -(-len(zooms) // columns)
-    figure, axes = panels(rows, columns, size, 0.65, Room(0.48, 0.2, 0.38, 0.2, 0.6, 0.55))
+    figure, axes = panels(rows, columns, size, 0.65, Room(0.55, 0.2, 0.38, 0.2, 0.6, 0.55))
     for n, (axis, half) in enumerate(zip(axes.flat, zooms)):
         centre = (0.0 if n == 0 else 1.0, 0.0)
         # Coordinates from the panel's centre: far-away points would lose the picture's digits.

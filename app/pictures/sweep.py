@@ -19,14 +19,11 @@ from galinx.postprocess.quantities import Quantity, column
 from galinx.postprocess.quantities.quantity import FEM, STATE
 from galinx.postprocess.quantities.states import FRICTION
 
-#: Values of a parameter that make a curve, and curves that can be told apart.
-_VALUES, _CURVES = 3, 6
+#: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
+_VALUES, _CURVES, _PANELS = 3, 6, 12
 
 #: Relative change below which numbers count as constant or, up to a factor, as those of another column.
 _SAME = 1e-5
-
-#: Name of the friction coefficient.
-_F = FRICTION.path.rpartition("/")[2]
 
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
@@ -71,6 +68,7 @@ class Sweep:
         fixed: what else differs between states, and where it is looked at.
         drawn: names of columns.
         same: names of those that show nothing else, or no change.
+        more: names of those for which a page has no room.
     """
 
     over: Parameter
@@ -80,6 +78,7 @@ class Sweep:
     fixed: dict[str, Any]
     drawn: list[str]
     same: list[str]
+    more: list[str]
 
     @property
     def states(self) -> NDArray[np.int64]:
@@ -120,7 +119,9 @@ def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     if sweep.same:
         caption += f" Not drawn, being constant or the same up to a factor: {', '.join(sweep.same)}."
     left_out = not_shown(told, sweep.states.tolist(), "--states, --x and --by", choice.states)
-    return Drawing("parameters", caption, figure, left_out=left_out)
+    if sweep.more:
+        left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
+    return Drawing("parameters", caption, figure, left_out=left_out.strip())
 
 
 def _some(told: Told, choice: Choice) -> NDArray[np.int64]:
@@ -134,8 +135,19 @@ def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
     free = [name, by] if name in told.parameters else [by, *told.varied()]
     fixed = told.fixed([one for one in told.varied(some) if one not in free], some)
     groups = _groups(told, by, told.where(some, **fixed))
-    drawn, same = _worth_it(known, [states for _, states in groups], choice.y, name)
-    return Sweep(over, x, by, groups, fixed, drawn, same)
+    some = np.concatenate([states for _, states in groups])
+    same: list[str] = []
+    if choice.y:
+        drawn = [one_of("--y", one, known) for one in choice.y]
+    else:
+        # Along strokes friction is drawn as a loop.
+        elsewhere = [x] if name != PLACE else [x, data[FRICTION.path]]
+        numbers = {one: column.best[some] for one, column in known.items() if one != name}
+        order = sorted(numbers, key=lambda one: -known[one].methods)
+        changing = {one for one in numbers if any(_varies(known[one].best[of]) for _, of in groups)}
+        drawn, same = _apart(numbers, order, changing, [values[some] for values in elsewhere])
+    most = len(choice.y) or _PANELS
+    return Sweep(over, x, by, groups, fixed, drawn[:most], same, drawn[most:])
 
 
 def _columns(data: dict[str, Any], method: str) -> dict[str, Column]:
@@ -213,27 +225,16 @@ def _line(column: Column, label: str, x: NDArray, states: NDArray) -> Line:
     return Line(label, x[order], exact, found)
 
 
-def _worth_it(
-    known: dict[str, Column], groups: Sequence[NDArray], wanted: Sequence[str], x: str
+def _apart(
+    numbers: dict[str, NDArray], order: Sequence[str], changing: set[str], seen: list[NDArray]
 ) -> tuple[list[str], list[str]]:
-    """Names that are drawn, and those that would show the same or nothing."""
-    if wanted:
-        return [one_of("--y", name, known) for name in wanted], []
-    states = np.concatenate(list(groups))
-    # Along strokes friction is drawn as a loop.
-    elsewhere = [_F] if x == PLACE and _F in known else []
+    """Names that show something, in the order of ``numbers``, and those that would show it again."""
     drawn: list[str] = []
-    same = []
-    others = [name for name in known if name not in (x, *elsewhere)]
-    for name in sorted(others, key=lambda name: -known[name].methods):
-        values = known[name].best
-        twins = (known[other].best[states] for other in (*elsewhere, *drawn))
-        twin = any(_proportional(values[states], other) for other in twins)
-        if twin or not any(_varies(values[some]) for some in groups):
-            same.append(name)
-        else:
+    for name in order:
+        twins = [*seen, *(numbers[other] for other in drawn)]
+        if name in changing and not any(_proportional(numbers[name], other) for other in twins):
             drawn.append(name)
-    return [name for name in known if name in drawn], same
+    return [name for name in numbers if name in drawn], [name for name in numbers if name not in drawn]
 
 
 def _varies(values: NDArray) -> bool:

@@ -83,7 +83,7 @@ def strokes_film(
 
     def show(frame: int) -> None:
         dot.set_data([places[frame][0]], [places[frame][1]])
-        axes[0, 0].set_title(titles[frame])
+        axes[0, 0].set_title(titles[frame], loc="left")
         for update in updates:
             update(frame)
 

@@ -52,7 +52,7 @@ _STYLE = {
     "ytick.major.size": 2.5,
     "xtick.minor.size": 1.5,
     "ytick.minor.size": 1.5,
-    "xtick.major.pad": 2.5,
+    "xtick.major.pad": 4.0,
     "ytick.major.pad": 2.5,
     "lines.linewidth": 1.0,
     "lines.markersize": 3.2,

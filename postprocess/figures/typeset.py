@@ -13,10 +13,10 @@ _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 def number(value: float, digits: int = 4) -> str:
     """A number in TeX, without dollars: ``4.786 \\times 10^{-7}``."""
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    if value == 0.0 or _SMALL <= abs(value) < _LARGE:
-        plain = f"{float(f'{mantissa}e{exponent}'):f}".rstrip("0").rstrip(".")
-        whole, dot, rest = plain.partition(".")
+    shown = f"{value:.{digits - 1}e}"
+    mantissa, exponent = shown.split("e")
+    if float(shown) == 0.0 or _SMALL <= abs(float(shown)) < _LARGE:
+        whole, dot, rest = f"{float(shown):f}".rstrip("0").rstrip(".").partition(".")
         if len(whole.lstrip("-")) > 4:
             whole = f"{int(whole):,}".replace(",", r"\,")
         return whole + dot + rest

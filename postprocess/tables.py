@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.page.symbols import plain
 from galinx.postprocess.quantities import Quantity, validity, yielding
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM

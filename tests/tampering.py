@@ -68,5 +68,5 @@ def texts(name, data):
 def numbers(name, data):
     """The same, of numbers as archives have them: with checksums where there can be some."""
     data = np.asarray(data)
-    chunks = tuple(max(1, n) for n in data.shape) or None
+    chunks = data.shape if data.shape and data.size else None
     return made(name, data, fletcher32=bool(chunks), chunks=chunks)

@@ -179,7 +179,7 @@ class Job:
             return first["status"]
         if "status" in told:
             return told["status"]
-        if self._ranks or self._cause:
+        if self._ranks or self._cause or self._mpirun.returncode < 0:
             stop.complain(f"{self._cause or 'mpirun was killed'}; {told.get('left', stop.NOTHING)}")
         else:
             sys.stderr.write(os.pread(self._said, _LARGEST, 0).decode(errors="replace"))

@@ -24,7 +24,9 @@ from galinx.postprocess.quantities.runs import LINE
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 FLIPS, TAMPERED, WITHOUT_SEAL = (5000, 2000, 300) if THOROUGH else (60, 40, 6)
 #: Those that read all of an archive come first.
-COMMANDS = (("check",), ("report",), ("plot",), ("show",), ("show", "--json"), ("fields",))
+COMMANDS = (
+    ("check",), ("report",), ("plot",), ("csv",), ("show",), ("show", "--json"), ("fields",),
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

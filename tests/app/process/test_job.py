@@ -35,6 +35,14 @@ def test_a_rank_tells_how_its_job_ends():
     assert job(sys.executable, "-c", RANK) == (errors.GOOD, "")
 
 
+def test_an_mpirun_that_is_killed_before_its_ranks_come_is_said():
+    assert job("sh", "-c", "kill -KILL $$") == (
+        errors.FAILURE, "error: mpirun was killed; nothing was written\n"
+    )  # fmt: skip
+    status, said = job("sh", "-c", "echo no slots; exit 1")
+    assert status == errors.FAILURE and said.startswith("no slots\nerror: mpirun could not start")
+
+
 def test_another_user_is_no_rank(stranger):
     status, said = job(*stranger, sys.executable, "-c", RANK)
     assert status == errors.FAILURE and "mpirun could not start the ranks" in said

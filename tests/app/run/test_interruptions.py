@@ -77,6 +77,8 @@ def started(*arguments):
     process = subprocess.Popen(
         [str(HOME / "run.sh"), *map(str, arguments)], env=clean_environment(), text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+        # Tests that run in the background ignore SIGINT, and what is ignored stays ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     try:
         yield process

@@ -16,12 +16,12 @@ STATE = 1e-4
 _STROKE, _QUANTITY, _STATE, _NUMBER = 3e-5, 2.5e-5, 2.2e-6, 1.3e-7
 #: Seconds of a point inside: to find its cell, gradients of a state there, potentials of a state; with a
 #: pressure of the user's own gradients and potentials of each of its pieces.
-_FOUND, _GRADIENT, _POTENTIAL = 2.2e-6, 1.1e-6, 4.5e-7
+_FOUND, _GRADIENT, _POTENTIAL = 2.6e-6, 1.3e-6, 7.5e-7
 _GRADIENTS_OF_PIECE, _POTENTIAL_OF_PIECE = 4e-6, 9e-7
 #: Bytes of a number of the states that are treated together, and of one in an archive.
-_HELD, _ARCHIVED = 24, 8
+_HELD, _ARCHIVED = 18, 8
 #: Bytes of a program without finite elements, and of a state's friction.
-_PROGRAM, _FRICTION = 110e6, 300.0
+_PROGRAM, _FRICTION = 130e6, 300.0
 #: Bytes of the libraries, and cells that are condensed at once.
 _LIBRARIES, _AT_ONCE = 170e6, 64
 #: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.

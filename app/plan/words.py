@@ -52,7 +52,8 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
 def expense(plan: Plan) -> str:
     """Estimated time and memory of a plan, and the size of its archive."""
     together = plan.chunk * plan.numbers
-    archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers))}"
+    positions = sum(len(values) for values in plan.positions.values())
+    archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers + positions))}"
     if not plan.fem:
         seconds = cost.START_WITHOUT_FEM + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers

@@ -1,6 +1,7 @@
 """What is asked of a mesh's cells: are they sound, and where are their edges?"""
 
 import numpy as np
+from numpy.polynomial import Legendre
 from numpy.typing import NDArray
 
 from galinx.meshes.kind import MeshKind
@@ -33,3 +34,19 @@ def edges(kind: MeshKind, mesh: QuadMesh, points: int = 17) -> NDArray[np.float6
     t = np.linspace(0.0, 1.0, points)[:, None]
     lines = (1.0 - t) * mesh.points[first][:, None] + t * mesh.points[last][:, None]
     return kind.chart.to_physical(lines.reshape(-1, 2)).reshape(-1, points, 2)
+
+
+def nodes(kind: MeshKind, mesh: QuadMesh, degree: int) -> NDArray[np.float64]:
+    """Where the unknowns of a degree are in the half-plane over a, those of neighbours twice, (n, 2).
+
+    Args:
+        kind, mesh: the mesh.
+        degree: polynomial degree; nodes are those of Gauss, Lobatto and Legendre.
+    """
+    inner = Legendre.basis(degree).deriv().roots().real
+    t = (1.0 + np.array([-1.0, *inner, 1.0])) / 2.0
+    s, t = (z.ravel()[:, None] for z in np.meshgrid(t, t))
+    corners = mesh.points[mesh.cells][:, :, None]
+    shapes = (1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t
+    points = sum(shape * corners[:, n] for n, shape in enumerate(shapes))
+    return kind.chart.to_physical(np.reshape(points, (-1, 2)))

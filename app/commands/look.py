@@ -1,4 +1,4 @@
-"""Commands that look at archives: show, check, report, plot, fields."""
+"""Commands that look at archives: show, check, report, fields."""
 
 import json
 from pathlib import Path
@@ -73,22 +73,6 @@ def report(archive: Path, output: Path | None, overwrite: bool) -> int:
 
 @click.command()
 @options.archive
-@options.folder(".")
-@options.overwrite
-def plot(archive: Path, folder: Path, overwrite: bool) -> int:
-    """Draw what ARCHIVE holds, each figure as PDF and PNG.
-
-    Example: ./run.sh plot tables.h5 -o figures
-    """
-    result = _loaded(archive)
-    if ranks.is_root():
-        for path in result.plot(folder, archive.stem, overwrite):
-            print(f"figure: {path}")
-    return errors.GOOD
-
-
-@click.command()
-@options.archive
 @click.option("--state", type=int, help="Number of the state, see show.  [default: 0]")
 @click.option("--states", help="Several, as 0,4,7 or 0-5, as a series over their numbers.")
 @click.option(
@@ -156,4 +140,4 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     }
 
 
-COMMANDS: tuple[Any, ...] = (show, check, report, plot, fields)
+COMMANDS: tuple[Any, ...] = (show, check, report, fields)

@@ -63,7 +63,7 @@ class Report:
     def add(self, drawing: Drawing) -> None:
         """Take a figure in; it can be saved elsewhere afterwards."""
         source = in_a_page(drawing.figure, drawing.pixels)
-        self._pictures.append({"source": source, "caption": drawing.caption, "pixels": drawing.pixels})
+        self._pictures.append({"source": source, "caption": drawing.told, "pixels": drawing.pixels})
 
     def text(self) -> str:
         """The page."""

@@ -13,7 +13,7 @@ from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.target import FIELDS, PAGE, Folder, Target
+from galinx.postprocess.target import FIELDS, PAGE, Target
 
 
 class Result:
@@ -70,52 +70,67 @@ class Result:
 
         return over_parameters(self.dataset)
 
-    def drawings(self) -> Iterator[Any]:
-        """Every figure that the result allows, as :class:`galinx.app.results.drawings.Drawing`."""
+    def drawings(self, **options: Any) -> Iterator[Any]:
+        """Figures of the result, as :class:`galinx.app.pictures.drawing.Drawing`.
+
+        Args:
+            options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
+
+        Raises:
+            BadInput: what is wanted is not there.
+        """
+        from galinx.app.pictures.choice import Choice
         from galinx.app.results.drawings import of_archive
 
-        return of_archive(self.data, self.scene)
+        return of_archive(self.data, self.scene, Choice(**options))
 
-    def figure(self, name: str = "") -> Any:
+    def figure(self, name: str = "", **options: Any) -> Any:
         """One of the figures, as a matplotlib figure, which notebooks show.
 
         Args:
             name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
                 friction where there are no stresses.
+            options: what is drawn, as in :meth:`drawings`.
 
         Raises:
             BadInput: the result has no such figure.
         """
+        from galinx.app.results.drawings import names
         from galinx.postprocess.figures.notebook import shown
 
-        found = {drawing.name: drawing.figure for drawing in self.drawings()}
-        chosen = name or ("surface" if "surface" in found else "friction")
-        if chosen not in found:
-            from galinx.app.errors import BadInput
-            from galinx.app.scene.excerpt import excerpt, nearest
-
-            raise BadInput(
-                f"figure {excerpt(name)}: the result has none of that name{nearest(name, found)}"
-            )
-        return shown(found[chosen])
+        usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
+        (drawing,) = self.drawings(figures=(name or usual,), **options)
+        return shown(drawing.figure)
 
     def plot(
-        self, folder: Path | str | None = None, name: str = "galinx", overwrite: bool = False
-    ) -> Any:
-        """Write every figure as PDF and PNG into a folder, which is made; their paths.
+        self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
+        formats: tuple[str, ...] = (), dpi: int = 0, **options: Any,
+    ) -> Any:  # fmt: skip
+        """Write figures into a folder, which is made, or one into a file; their paths.
 
-        Without a folder nothing is written, and the figure is returned that :meth:`figure` gives.
+        Without a place nothing is written, and the figure is returned that :meth:`figure` gives.
+
+        Args:
+            to: a folder, or a file whose ending is its format.
+            name: what names in a folder begin with.
+            overwrite: files that are no figures of galinx are replaced, too.
+            formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
+            dpi: dots per inch of what is made of pixels.
+            options: what is drawn, as in :meth:`drawings`.
 
         Raises:
+            BadInput: what is wanted is not there, or there is no such format.
             Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        if folder is None:
-            return self.figure()
-        from galinx.postprocess.figures.canvas import save
+        if to is None:
+            return self.figure(**options)
+        from galinx.app.pictures.choice import Choice
+        from galinx.app.pictures.files import Files
+        from galinx.app.results.drawings import write
 
-        figures = ((f"{name}_{drawing.name}", drawing.figure) for drawing in self.drawings())
-        return save(figures, Folder(Path(folder), overwrite, self.inputs))
+        files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
+        return [one.path for one in write(self.data, self.scene, Choice(**options), files)]
 
     def report(self, path: Path | str, overwrite: bool = False) -> None:
         """Write a self-contained HTML page.

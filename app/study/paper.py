@@ -32,8 +32,9 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     if not ranks.is_root():
         compute(study), compute(inside)
         return True  # the verdict is rank 0's
-    from galinx.app.results.drawings import inside as draw_inside
-    from galinx.app.results.drawings import mesh
+    from galinx.app.pictures.choice import Choice
+    from galinx.app.pictures.inside import inside as draw_inside
+    from galinx.app.pictures.numerics import mesh
     from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
@@ -47,8 +48,9 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)
-    figures = []
-    for drawing in (*of_study(data), draw_inside(below, inside), mesh(study)):
+    figures, plain = [], Choice()
+    drawings = (*of_study(data, study), draw_inside(below, inside, plain), mesh(data, study, plain))
+    for drawing in drawings:
         progress.say(f"figure: {drawing.name}")
         report.add(drawing)
         figures.append((drawing.name, drawing.figure))

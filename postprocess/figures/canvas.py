@@ -1,64 +1,198 @@
-"""Style of all figures, and how they become files or text."""
+"""Sheets of panels in inches, and how they become files or text."""
 
 from base64 import b64encode
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from io import BytesIO
-from pathlib import Path
+from math import ceil
+from typing import Any, NamedTuple
 
-import matplotlib
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from galinx.postprocess.target import PDF, PNG, Folder
+from galinx.postprocess.figures.style import DPI, GREY, SMALL, Look, styled
+from galinx.postprocess.figures.typeset import plain
+from galinx.postprocess.target import PDF, PNG, SVG, Folder, Kind, Target
 
-#: Okabe and Ito's colours, told apart by colour-blind readers.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+#: What in a file says who made it, and the kind of file, by the format's ending.
+FORMATS: dict[str, tuple[str, Kind]] = {
+    "pdf": ("Creator", PDF),
+    "png": ("Software", PNG),
+    "svg": ("Creator", SVG),
+}
 
-plt.rcParams.update(
-    {
-        "font.size": 9,
-        "axes.grid": True,
-        "grid.alpha": 0.25,
-        "lines.linewidth": 1.1,
-        "pdf.fonttype": 42,  # text stays text: journals ask for it
-        "svg.hashsalt": "galinx",
-    }
-)
+#: Formats where none is asked for: text that stays text, and pixels for everything else.
+USUAL = ("pdf", "png")
 
+#: Least size of a panel in which something can be seen [in].
+_LEAST = 0.35
 
-#: Ending, kind of file, and what in one says who made it.
-_SAVED = (("pdf", PDF, "Creator"), ("png", PNG, "Software"))
+#: About how wide a letter of a legend is, what stands before and after its text, and a line [in].
+_LETTER, _BESIDE, _LINE = 0.048, 0.62, 0.155
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> list[Path]:
-    """Write figures as PDF and PNG and close them; none where one of them may not be written.
+class Size(NamedTuple):
+    """Of a figure [in]; without a height the figure takes what it needs."""
+
+    width: float
+    height: float | None = None
+
+
+class Room(NamedTuple):
+    """What is left free around panels and between them [in]."""
+
+    left: float = 0.5
+    right: float = 0.08
+    bottom: float = 0.4
+    top: float = 0.2
+    across: float = 0.5
+    down: float = 0.45
+
+
+class TooSmall(ValueError):
+    """A figure does not fit on the size that is asked for."""
+
+
+def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tuple[Figure, NDArray]:
+    """A figure with a grid of axes, (rows, columns).
 
     Args:
-        figures: by name.
-        folder: where they go.
+        rows, columns: of the grid.
+        size: of the figure.
+        high: height of a panel over its width where ``size`` has no height.
+        room: around and between.
+
+    Raises:
+        TooSmall: nothing could be seen; the message says how large the figure has to be.
+    """
+    beside = room.left + room.right + (columns - 1) * room.across
+    above = room.bottom + room.top + (rows - 1) * room.down
+    wide = (size.width - beside) / columns
+    tall = wide * high if size.height is None else (size.height - above) / rows
+    if min(wide, tall) < _LEAST:
+        needed = f"{beside + columns * _LEAST / min(high, 1.0):.1f} in"
+        if size.height is not None:
+            needed = f"{beside + columns * _LEAST:.1f} in x {above + rows * _LEAST:.1f} in"
+        raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
+    height = above + rows * tall
+    figure = Figure((size.width, height))
+    FigureCanvasAgg(figure)
+    place = {
+        "left": room.left / size.width, "right": 1.0 - room.right / size.width,
+        "bottom": room.bottom / height, "top": 1.0 - room.top / height,
+        "wspace": room.across / wide, "hspace": room.down / tall,
+    }  # fmt: skip
+    return figure, figure.subplots(rows, columns, squeeze=False, gridspec_kw=place)
+
+
+def lettered(axes: Iterable[Axes], titles: Sequence[str] = ()) -> None:
+    """Give panels their letters, each before its title; a panel alone needs none."""
+    axes = list(axes)
+    told = [*titles, *[""] * (len(axes) - len(titles))]
+    for n, (axis, title) in enumerate(zip(axes, told)):
+        letter = f"({chr(97 + n)})  " if len(axes) > 1 else ""
+        if letter or title:
+            axis.set_title(letter + title)
+
+
+class Legend:
+    """A legend below all panels, which meets no curve.
+
+    Args:
+        handles: lines with labels.
+        width: of the figure [in].
+    """
+
+    def __init__(self, handles: Sequence[Line2D], width: float) -> None:
+        self._handles = handles
+        widths = [len(plain(str(handle.get_label()))) * _LETTER + _BESIDE for handle in handles]
+        rows = next((n for n in range(1, len(widths)) if _wide(widths, n) < width - 0.1), len(widths))
+        self._columns = ceil(len(handles) / max(1, rows))
+        #: Room that it needs [in].
+        self.height = rows * _LINE + 0.08 if handles else 0.0
+
+    def put(self, figure: Figure) -> None:
+        """Draw it at the foot of a figure."""
+        if self._handles:
+            figure.legend(
+                handles=self._handles, ncols=self._columns, loc="lower center", borderaxespad=0.15,
+                columnspacing=1.4, labelspacing=0.3, fontsize=SMALL,
+            )  # fmt: skip
+
+
+def _wide(widths: Sequence[float], rows: int) -> float:
+    """Of a legend that is filled column by column."""
+    return sum(max(widths[n : n + rows]) for n in range(0, len(widths), rows))
+
+
+def handle(look: Look, label: str, **style: Any) -> Line2D:
+    """A line of a legend, for which curves have this look."""
+    return Line2D([], [], **({"color": look.colour, "linestyle": look.line, "label": label} | style))
+
+
+def of_methods(exact: bool, found: bool) -> list[Line2D]:
+    """What lines and markers stand for, where there are both."""
+    if not (exact and found):
+        return []
+    return [
+        Line2D([], [], color=GREY, label="lines: closed form"),
+        Line2D(
+            [], [], color=GREY, linestyle="none", marker="o", markerfacecolor="none",
+            label="markers: finite elements",
+        ),
+    ]  # fmt: skip
+
+
+@styled
+def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
+    """A figure as the bytes of a file.
+
+    Args:
+        figure: which.
+        ending: one of ``FORMATS``.
+        dpi: dots per inch of what is made of pixels.
+    """
+    says, _ = FORMATS[ending]
+    data = BytesIO()  # matplotlib leaves half of a figure on a full disk
+    # Without a date a figure that is drawn again is the same file.
+    metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
+    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata)
+    return data.getvalue()
+
+
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
+    """Write figures by name into a folder in the usual formats; none where one may not be written.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    drawn = []
-    for name, figure in figures:
-        for ending, kind, says in _SAVED:
-            target, data = folder.target(f"{name}.{ending}", kind), BytesIO()
-            # In memory: matplotlib leaves half of a figure on a full disk.
-            figure.savefig(data, format=ending, dpi=160, metadata={says: "galinx"})
-            drawn.append((target, data.getvalue()))
-        plt.close(figure)
-    for target, content in drawn:
-        target.write(content)
-    return [target.path for target, _ in drawn]
+    write(
+        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
+        for name, figure in figures
+        for ending in USUAL
+    )
 
 
+def write(files: Iterable[tuple[Target, bytes]]) -> None:
+    """Write files; none where one of them cannot be made.
+
+    Args:
+        files: each with its bytes, which are all made before the first is written.
+
+    Raises:
+        Occupied: something is there that may not be replaced.
+        UnwritableArchive: the file system refused.
+    """
+    for target, data in list(files):
+        target.write(data)
+
+
+@styled
 def in_a_page(figure: Figure, pixels: bool) -> str:
-    """A figure as a data URI for a page; closes it.
+    """A figure as a data URI for a page.
 
     Args:
         figure: what to show.
@@ -66,9 +200,8 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
     """
     data = BytesIO()
     if pixels:
-        figure.savefig(data, format="png", dpi=130)
+        figure.savefig(data, format="png", dpi=160)
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
-    plt.close(figure)
     kind = "png" if pixels else "svg+xml"
     return f"data:image/{kind};base64,{b64encode(data.getvalue()).decode()}"

@@ -1,13 +1,24 @@
-"""Friction loops."""
+"""Friction loops: each stroke with its line, its direction and its name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import ceil
+from typing import Any
 
-from matplotlib import pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import COLOURS
+from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, panels
+from galinx.postprocess.figures.style import COLUMN, GREY, LINES, PAGE, SMALL, Look, looks, styled
+
+#: Axes of a loop.
+X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
+
+#: Points of a stroke between its name and its arrow, over all its points, and strokes nearer than this
+#: share of the axes, which one name serves.
+_APART, _SAME = 0.2, 0.012
 
 
 @dataclass(frozen=True)
@@ -17,22 +28,122 @@ class Loop:
     Attributes:
         label: names it in a legend.
         X_over_L, f: position over the pre-sliding displacement and friction coefficient, (n,).
+        strokes: their names, each of as many points.
     """
 
     label: str
     X_over_L: NDArray
     f: NDArray
+    strokes: Sequence[str]
+
+    def along(self) -> Iterator[tuple[str, NDArray, NDArray]]:
+        """Name, positions and friction coefficient of each stroke."""
+        count = len(self.strokes)
+        return zip(self.strokes, self.X_over_L.reshape(count, -1), self.f.reshape(count, -1))
 
 
-def loops_figure(panels: Sequence[tuple[str, Sequence[Loop]]]) -> Figure:
-    """Friction loops side by side: each panel a title and its loops."""
-    figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels) + 0.8, 3.1), squeeze=False)
-    for axis, (title, loops) in zip(axes[0], panels):
-        for n, loop in enumerate(loops):
-            axis.plot(loop.X_over_L, loop.f, color=COLOURS[n % 8], label=loop.label)
-        axis.set_title(title, fontsize=9)
-        axis.set_xlabel("$X/L$ (dimensionless)")
-        axis.legend(fontsize=7, frameon=False)
-    axes[0, 0].set_ylabel("$f = F/N$ (dimensionless)")
-    figure.tight_layout()
+@dataclass(frozen=True)
+class Panel:
+    """Loops that are drawn in one panel; ``ordered``: they follow a number."""
+
+    title: str
+    loops: Sequence[Loop]
+    ordered: bool = False
+
+
+@styled
+def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
+    """Friction loops side by side.
+
+    A loop alone has a colour and a name for every stroke; of several each has its colour, and strokes
+    are told apart by their lines.
+    """
+    size = size or Size(COLUMN if len(shown) == 1 else PAGE)
+    columns = max(1, min(len(shown), int(size.width / 2.0)))
+    rows = ceil(len(shown) / columns)
+    entries = [_entries(panel) for panel in shown]
+    common = len({tuple(map(str, (one.get_label() for one in some))) for some in entries}) == 1
+    strokes = _of_strokes(shown)
+    foot = Legend([*(entries[0] if common else []), *strokes], size.width)
+    below = 0.0 if common else max(map(len, entries)) * 0.15 + 0.05
+    above = 0.2 if len(shown) > 1 or shown[0].title else 0.08
+    room = Room(0.48, 0.1, 0.38 + below + foot.height, above, 0.35, 0.55 + below)
+    figure, axes = panels(rows, columns, size, 0.62 if columns == 2 else 0.78, room)
+    for axis in axes.flat[len(shown) :]:
+        axis.remove()
+    for n, (axis, panel) in enumerate(zip(axes.flat, shown)):
+        draw(axis, panel)
+        axis.set_xlabel(X_LABEL)
+        if n % columns == 0:
+            axis.set_ylabel(F_LABEL)
+        if not common:
+            lowered = -(0.38 / (axis.get_position().height * figure.get_figheight()))
+            axis.legend(
+                handles=entries[n], loc="upper center", bbox_to_anchor=(0.5, lowered), borderaxespad=0.0,
+                labelspacing=0.2,
+            )  # fmt: skip
+    lettered(axes.flat[: len(shown)], [panel.title for panel in shown])
+    foot.put(figure)
     return figure
+
+
+def _entries(panel: Panel) -> list[Any]:
+    if len(panel.loops) == 1:
+        return []
+    found = zip(panel.loops, looks(len(panel.loops), panel.ordered))
+    return [handle(look, loop.label, linestyle="-") for loop, look in found]
+
+
+def _of_strokes(shown: Sequence[Panel]) -> list[Any]:
+    """What the lines stand for where colours stand for loops."""
+    several = [panel for panel in shown if len(panel.loops) > 1]
+    names = several[0].loops[0].strokes if several else ()
+    return [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(names)]
+
+
+def draw(axis: Axes, panel: Panel) -> None:
+    """Draw the loops of a panel, without names of its axes."""
+    alone = len(panel.loops) == 1
+    f = np.array([loop.f for loop in panel.loops])
+    low, high = min(0.0, f.min()), max(0.0, f.max())
+    margin = 0.06 * (high - low) or 1.0
+    axis.set(xlim=(-0.03, 1.03), ylim=(low - margin, high + margin))
+    axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
+    for k, (loop, look) in enumerate(zip(panel.loops, looks(len(panel.loops), panel.ordered))):
+        strokes = list(loop.along())
+        for n, (stroke_look, (_, X, values)) in enumerate(zip(looks(len(strokes)), strokes)):
+            colour = stroke_look.colour if alone else look.colour
+            axis.plot(X, values, color=colour, linestyle=LINES[n % len(LINES)])
+            at = _freest(axis, strokes, n) if alone else int(len(X) * (0.25 + 0.5 * k / len(panel.loops)))
+            if at is not None:
+                _point(axis, X, values, at, colour, strokes[n][0] if alone else "")
+
+
+def _freest(axis: Axes, strokes: Sequence[tuple[str, NDArray, NDArray]], n: int) -> int | None:
+    """Where on a stroke no other is near; None where another stroke is the same all along."""
+    _, X, f = strokes[n]
+    others = [np.column_stack(other[1:]) for m, other in enumerate(strokes) if m != n]
+    if not others:
+        return len(X) // 2
+    scale = np.array([np.ptp(axis.get_xlim()), np.ptp(axis.get_ylim())])
+    own = np.column_stack([X, f])
+    gaps = ((own[:, None] - np.concatenate(others)[None]) / scale).reshape(len(own), -1, 2)
+    nearest = np.hypot(gaps[..., 0], gaps[..., 1]).min(axis=1)
+    inner = slice(len(X) // 6, len(X) - len(X) // 3)
+    at = inner.start + int(np.argmax(nearest[inner]))
+    earlier = n and nearest[at] < _SAME
+    return None if earlier else at
+
+
+def _point(axis: Axes, X: NDArray, f: NDArray, at: int, colour: Any, name: str) -> None:
+    """An arrow along a stroke, and its name."""
+    ahead = min(at + int(_APART * len(X)) * bool(name), len(X) - 3)
+    axis.annotate(
+        "", (X[ahead + 1], f[ahead + 1]), (X[ahead], f[ahead]),
+        arrowprops={
+            "arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9,
+        },
+    )  # fmt: skip
+    if name:
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        axis.text(X[at], f[at], name, color=colour, fontsize=SMALL, ha="center", va="center", bbox=box)

@@ -1,35 +1,53 @@
-"""Pictures of meshes."""
+"""Pictures of meshes: cells, and the nodes that carry the unknowns."""
 
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import COLOURS
+from galinx.postprocess.figures.canvas import Room, Size, lettered, panels
+from galinx.postprocess.figures.style import COLOURS, PAGE, styled
+
+#: Nodes nearer to each other than this share of a panel print as one.
+_DOT = 1.0 / 500.0
 
 
-def mesh_figure(edges: NDArray, zooms: tuple[float, ...] = (4.0, 0.5, 0.01)) -> Figure:
+@styled
+def mesh_figure(
+    edges: NDArray, nodes: NDArray, size: Size | None = None, zooms: tuple[float, ...] = (4.0, 0.5, 0.01)
+) -> Figure:
     """A mesh below the punch, then nearer and nearer to the edge X = a.
 
     Args:
         edges: polylines of the cells' edges over a, (edges, points, 2).
+        nodes: where its unknowns are, over a, (n, 2).
+        size: of the figure.
         zooms: half-widths of the panels over a; the first is centred on the punch.
     """
-    figure, axes = plt.subplots(1, len(zooms), figsize=(3.3 * len(zooms), 2.5))
-    for n, (axis, half) in enumerate(zip(axes, zooms)):
-        centre = 0.0 if n == 0 else 1.0
-        near = np.abs(edges - (centre, 0.0)).min(axis=1).max(axis=1) < 2.0 * half
+    size = size or Size(PAGE)
+    columns = max(1, min(len(zooms), int(size.width / 2.0)))
+    rows = -(-len(zooms) // columns)
+    figure, axes = panels(rows, columns, size, 0.65, Room(0.55, 0.2, 0.38, 0.2, 0.6, 0.55))
+    for n, (axis, half) in enumerate(zip(axes.flat, zooms)):
+        centre = (0.0 if n == 0 else 1.0, 0.0)
         # Coordinates from the panel's centre: far-away points would lose the picture's digits.
-        axis.add_collection(LineCollection(edges[near] - (centre, 0.0), colors="#666666", linewidths=0.5))
-        axis.plot([-1.0 - centre, 1.0 - centre], [0.0, 0.0], color=COLOURS[1], linewidth=2.5)
-        axis.set_xlim(-half, half)
-        axis.set_ylim(-1.2 * half, 0.1 * half)
-        axis.set_aspect("equal")
-        axis.grid(False)
+        lines, dots = edges - centre, nodes - centre
+        near = np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half
+        axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
+        seen = dots[np.abs(dots).max(axis=1) < 1.5 * half]
+        printed = np.unique(np.round(seen / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
+        axis.plot(
+            *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
+            color=COLOURS[0], rasterized=True,
+        )  # fmt: skip
+        punch = np.clip([-1.0 - centre[0], 1.0 - centre[0]], -half, half)
+        axis.fill_between(punch, 0.0, 0.12 * half, color=COLOURS[1], linewidth=0.0)
+        axis.set(xlim=(-half, half), ylim=(-1.18 * half, 0.12 * half))
         axis.set_xlabel("$X/a$" if n == 0 else "$X/a - 1$")
-        axis.tick_params(labelsize=7)
+        axis.set_ylabel("$Y/a$")
         axis.locator_params(nbins=5)
-    axes[0].set_ylabel("$Y/a$ (dimensionless)")
-    figure.tight_layout()
+    for axis in axes.flat[len(zooms) :]:
+        axis.remove()
+    titles = ["under the punch", *[f"{zooms[0] / half:.0f} times larger" for half in zooms[1:]]]
+    lettered(axes.flat[: len(zooms)], titles)
     return figure

@@ -1,23 +1,63 @@
 """Stresses along the surface: finite elements as markers on closed-form lines."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import COLOURS, MARKERS
+from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, of_methods, panels
 from galinx.postprocess.figures.loops import Loop
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, SMALL, Look, styled
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
-from galinx.postprocess.quantities.states import FRICTION, POSITION
-from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 from galinx.solvers.contact import from_edge, under_punch
 
-_STRESSES = ((PRESSURE, r"$\sigma_{YY}/(N/2a)$"), (IN_PLANE, r"$\sigma_{XX}/(N/2a)$"))
+#: Positions that are shown of what is there all along the surface, and under the punch alone [a].
+_BESIDE, _UNDER = 2.0, 1.04
+#: Distance over a from an edge within which stresses may run out of the picture.
+_EDGE = 0.09
+#: Columns whose ranges differ more have limits of their own.
+_APART = 4.0
+#: Size of an inset, of the names of its axes, and where it may begin, all over that of the panel.
+_INSET, _NAMES = (0.27, 0.31), (0.07, 0.12)
+_CORNERS = ((0.37, 0.18), (0.075, 0.13), (0.7, 0.13), (0.075, 0.64), (0.7, 0.64))
+#: Markers in a panel.
+_MARKERS = 36
+
+
+@dataclass(frozen=True)
+class Stress:
+    """A stress along the surface.
+
+    Attributes:
+        label: of its axis.
+        values: by method, (states, points).
+    """
+
+    label: str
+    values: Mapping[str, NDArray]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A state, its name and its look."""
+
+    state: int
+    label: str
+    look: Look
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where on a friction loop a state sits."""
+
+    loop: Loop
+    X_over_L: float
+    f: float
 
 
 @dataclass(frozen=True)
@@ -26,98 +66,158 @@ class Column:
 
     Attributes:
         title: of the column.
-        states: their indices.
-        labels: of the states.
-        loops: the friction loop that each sits on; none draws no inset.
+        curves: of the states.
+        places: where on its loop each state sits; none draws no inset.
     """
 
     title: str
-    states: Sequence[int]
-    labels: Sequence[str]
-    loops: Sequence[Loop] = ()
+    curves: Sequence[Curve]
+    places: Sequence[Place] = ()
 
 
-def surface_figure(data: dict[str, Any], columns: Sequence[Column]) -> Figure:
-    """σ_YY and σ_XX along the surface: two rows, one column for each group of states.
+@styled
+def surface_figure(
+    X: NDArray, stresses: Sequence[Stress], columns: Sequence[Column], size: Size | None = None
+) -> Figure:
+    """Stresses along the surface: a row for each, one column for each group of states.
 
     Args:
-        data: an archive with surface stresses.
-        columns: what to draw.
+        X: positions over a, (points,).
+        stresses: what to draw.
+        columns: of which states.
+        size: of the figure.
     """
-    figure, axes = plt.subplots(
-        2, len(columns), figsize=(3.6 * len(columns) + 0.6, 5.2), sharex=True, squeeze=False
-    )
-    for column, shown in enumerate(columns):
-        for row, (stress, label) in enumerate(_STRESSES):
-            axis = axes[row, column]
-            values = [_draw(axis, data, i, stress, n) for n, i in enumerate(shown.states)]
-            axis.set_ylim(*_limits(data[SURFACE_X.path], np.array(values)))
-            axis.set_xlim(-2.0, 2.0)
-            if column == 0:
-                axis.set_ylabel(label)
-        axes[0, column].set_title(shown.title, fontsize=9)
-        axes[1, column].set_xlabel("$X/a$")
-        if shown.loops:
-            _inset(axes[0, column], data, shown)
-    handles = [
-        plt.Line2D([], [], color=COLOURS[n % 8], marker=MARKERS[n % 8], markersize=3, label=text)
-        for n, text in enumerate(columns[0].labels)
-    ]
-    figure.legend(handles=handles, ncols=3, loc="lower center", frameon=False, fontsize=8)
-    figure.text(
-        0.5, 0.985, "lines: closed form    markers: finite elements    all axes dimensionless",
-        ha="center", va="top", fontsize=7,
-    )  # fmt: skip
-    figure.tight_layout(rect=(0.0, 0.05 * ((len(handles) + 2) // 3), 1.0, 0.97))
+    size = size or Size(COLUMN if len(columns) == 1 else PAGE)
+    curves = {curve.label: curve for column in columns for curve in column.curves}
+    methods = {method for stress in stresses for method in stress.values}
+    named = [handle(curve.look, label) for label, curve in curves.items() if len(curves) > 1 and label]
+    legend = Legend([*named, *of_methods(CLOSED_FORM in methods, FEM in methods)], size.width)
+    ranges = [_ranges(X, stress, columns) for stress in stresses]
+    apart = any(len(set(row)) > 1 for row in ranges)
+    room = Room(0.55, 0.1, 0.38 + legend.height, _top(columns, stresses), 0.42 if apart else 0.2, 0.52)
+    figure, axes = panels(len(stresses), len(columns), size, 0.6, room)
+    for row, stress, limits_ in zip(axes, stresses, ranges):
+        half = half_width(X, [stress])
+        for axis, column, y in zip(row, columns, limits_):
+            _draw(axis, X, stress, column, half)
+            axis.set(xlim=(-half, half), ylim=y, xlabel="position on the surface $X/a$")
+            axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
+            axis.xaxis.set_minor_locator(MultipleLocator(0.25))
+            if half == _BESIDE:
+                axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
+            axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
+            if axis is not row[0] and not apart:
+                axis.set_yticklabels([])
+        row[0].set_ylabel(stress.label)
+    for row, stress in zip(axes, stresses):
+        if half_width(X, [stress]) < _BESIDE:  # there is room below the pressure
+            _insets(row, columns)
+            break
+    lettered(axes.flat, [column.title for column in columns])
+    figure.align_ylabels(axes[:, 0])
+    legend.put(figure)
     return figure
 
 
-def _draw(
-    axis: plt.Axes, data: dict[str, Any], state: int, stress: dict[str, Quantity], n: int
-) -> NDArray:
-    X, drawn = data[SURFACE_X.path], []
+def _top(columns: Sequence[Column], stresses: Sequence[Stress]) -> float:
+    """Room for titles and letters [in]."""
+    return 0.2 if len(columns) * len(stresses) > 1 or columns[0].title else 0.08
+
+
+def _ranges(X: NDArray, stress: Stress, columns: Sequence[Column]) -> list[tuple[float, float]]:
+    """Limits of each column: the same for all, unless some would hardly be seen then."""
+    values = next(iter(stress.values.values()))
+    every = [limits(X, values[[curve.state for curve in column.curves]]) for column in columns]
+    low, high = min(y[0] for y in every), max(y[1] for y in every)
+    if (high - low) > _APART * min(y[1] - y[0] for y in every):
+        return every
+    return [(low, high)] * len(every)
+
+
+def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -> None:
+    exact, found = stress.values.get(CLOSED_FORM), stress.values.get(FEM)
+    lines = exact if exact is not None else found
+    assert lines is not None
+    for n, curve in enumerate(column.curves):
+        for part in parts(X):
+            axis.plot(
+                X[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
+            )
+        if exact is not None and found is not None:
+            # Those of one curve stand between those of the others.
+            count = max(7, _MARKERS // len(column.curves))
+            step = 2.0 * half / count
+            wanted = -half + step * (np.arange(count) + (n + 0.5) / len(column.curves))
+            pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+            axis.plot(
+                X[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
+                markerfacecolor="none",
+            )  # fmt: skip
+
+
+def half_width(X: NDArray, stresses: Sequence[Stress]) -> float:
+    """How far stresses are shown: there may be none beside the punch."""
+    values = (one for stress in stresses for one in stress.values.values())
+    return _UNDER if all(np.isnan(one[:, ~under_punch(X)]).all() for one in values) else _BESIDE
+
+
+def parts(X: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Positions beside, under and beside the punch: a line across an edge would be a lie."""
     beside = ~under_punch(X)
-    exact, found = (data.get(stress[method].path) for method in (CLOSED_FORM, FEM))
-    for part in (
-        beside & (X < 0.0),
-        under_punch(X),
-        beside & (X > 0.0),
-    ):  # a line across an edge would be a lie
-        if exact is not None:
-            drawn.append(exact[state])
-            axis.plot(X[part], exact[state][part], color=COLOURS[n % 8])
-    if found is not None:
-        drawn.append(found[state])
-        wanted = np.linspace(-1.95, 1.95, 40) + 0.04 * n / 8.0
-        pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
-        style = {} if exact is not None else {"linestyle": ":"}
-        axis.plot(
-            X[pick], found[state][pick], MARKERS[n % 8], color=COLOURS[n % 8], markersize=3,
-            markerfacecolor="none", markeredgewidth=0.7, **style,
-        )  # fmt: skip
-    return drawn[0]
+    return beside & (X < 0.0), under_punch(X), beside & (X > 0.0)
 
 
-def _limits(X: NDArray, values: NDArray) -> tuple[float, float]:
+def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for the regular part; the singular ends run out of the picture."""
-    regular = values[:, from_edge(X) > 0.06]
+    regular = values[:, from_edge(X) > _EDGE]
     low, high = np.nanmin(regular), np.nanmax(regular)
+    if 0.0 < -high < 0.2 * (high - low):  # zero is near
+        high = 0.0
     margin = 0.08 * (high - low) or 1.0
     return low - margin, high + margin
 
 
-def _inset(axis: plt.Axes, data: dict[str, Any], column: Column) -> None:
-    """Where on its loop each state sits; a loop that all share is grey."""
-    inset = axis.inset_axes((0.37, 0.14, 0.28, 0.32))
-    shared = all(loop is column.loops[0] for loop in column.loops)
-    for n, (i, loop) in enumerate(zip(column.states, column.loops)):
-        colour = "#888888" if shared else COLOURS[n % 8]
+def _insets(row: Sequence[Axes], columns: Sequence[Column]) -> None:
+    """Where on its loop each state sits, once where that is the same in all columns."""
+    same = all(_sits(column) == _sits(columns[0]) for column in columns)
+    for axis, column in list(zip(row, columns))[: 1 if same else None]:
+        if column.places:
+            _inset(axis, column)
+
+
+def _sits(column: Column) -> list[Any]:
+    return [(place.X_over_L, place.f, id(place.loop)) for place in column.places]
+
+
+def _free(axis: Axes) -> tuple[float, float] | None:
+    """Where no curve runs through an inset and the names of its axes, over the panel's size."""
+    to_panel = axis.transData + axis.transAxes.inverted()
+    points = np.concatenate([to_panel.transform(line.get_xydata()) for line in axis.lines])
+    points = points[np.isfinite(points).all(axis=1)]
+    for corner in _CORNERS:
+        first, last = np.array(corner) - _NAMES, np.array(corner) + _INSET + 0.02
+        if not ((first <= points) & (points <= last)).all(axis=1).any():
+            return corner
+    return None
+
+
+def _inset(axis: Axes, column: Column) -> None:
+    """A loop that all share is grey. Its axes have names and no numbers: it shows places, not values.
+
+    Where curves leave it no room there is none.
+    """
+    corner = _free(axis)
+    if corner is None:
+        return
+    inset = axis.inset_axes((*corner, *_INSET))
+    shared = all(place.loop is column.places[0].loop for place in column.places)
+    for n, (curve, place) in enumerate(zip(column.curves, column.places)):
         if n == 0 or not shared:
-            inset.plot(loop.X_over_L, loop.f, color=colour, linewidth=0.7)
-        inset.plot(
-            data[POSITION.path][i], data[FRICTION.path][i], MARKERS[n % 8], color=COLOURS[n % 8],
-            markersize=4,
-        )  # fmt: skip
-    inset.tick_params(labelsize=5, length=2, pad=1)
-    inset.set_xlabel("$X/L$", fontsize=6, labelpad=0)
-    inset.set_ylabel("$f$", fontsize=6, labelpad=0)
+            colour = GREY if shared else curve.look.colour
+            inset.plot(place.loop.X_over_L, place.loop.f, color=colour, linewidth=0.6)
+        inset.plot(place.X_over_L, place.f, curve.look.marker, color=curve.look.colour, markersize=4)
+    inset.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
+    inset.set(xticks=[], yticks=[])
+    inset.margins(0.08, 0.12)
+    inset.set_xlabel("$X/L$", fontsize=SMALL, labelpad=1.0)
+    inset.set_ylabel("$f$", fontsize=SMALL, labelpad=1.0, rotation=0, va="center", ha="right")

@@ -53,6 +53,7 @@ class Quantity:
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
         whole: are its numbers integers? None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
+        accuracy: does it say how good other numbers are, and nothing of the contact?
     """
 
     path: str
@@ -70,6 +71,7 @@ class Quantity:
     symbol: str = ""
     whole: bool = False
     range: Range = Range()
+    accuracy: bool = False
 
     @property
     def type(self) -> str:

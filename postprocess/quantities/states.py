@@ -83,7 +83,7 @@ FITTED_BETA = Quantity(
 )  # fmt: skip
 NORMAL_FORCE = Quantity(
     "states/fem/normal_force", "N/m", "resultant of the nodal normal forces under the punch", (STATE,),
-    lambda s, body: s.normal_force * body.force, FEM, compared=("force balance",),
+    lambda s, body: s.normal_force * body.force, FEM, compared=("force balance",), accuracy=True,
 )  # fmt: skip
 TANGENTIAL_FORCE = Quantity(
     "states/fem/tangential_force", "N/m", "resultant of the nodal tangential forces under the punch",
@@ -97,12 +97,13 @@ ESTIMATE = Quantity(
     "states/fem/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
-    range=_NOT_NEGATIVE,
+    range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 RESULTANT = Quantity(
     "states/closed_form/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
     lambda s, body: s.normal_force * body.force, CLOSED_FORM, OWN_PRESSURE, compared=("resultant",),
+    accuracy=True,
 )  # fmt: skip
 
 
@@ -118,13 +119,13 @@ TRUE_ERROR = Quantity(
     "states/fem/true_error", "1", "relative error of K_I against the closed form, larger end", (STATE,),
     method=FEM, mode=_CONTACT, of_data=K_I_error,
     needs=tuple(row.path for side in (K_I_LEFT, K_I_RIGHT) for row in side.values()),
-    range=_NOT_NEGATIVE,
+    range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",
     (STATE,), lambda s, _: flatness(s.surface), FEM, asked_by="surface",
-    compared=("slope under the punch",), range=_NOT_NEGATIVE,
+    compared=("slope under the punch",), range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

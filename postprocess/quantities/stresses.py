@@ -15,7 +15,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.postprocess.stresses import principal, von_mises
+from galinx.postprocess.stresses import away_from_edges, principal, von_mises
 from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
@@ -52,19 +52,36 @@ IN_PLANE = {
     ),
 }  # fmt: skip
 
+
+def _extreme(method: str, end: str, of: Callable[[Any], NDArray], what: str) -> Quantity:
+    return Quantity(
+        f"states/{method}/sigma_XX_{end}", "N/(2a)",
+        f"{what} in-plane stress on the surface, further than 0.01 a from the edges", (STATE,),
+        lambda s, _: of(away_from_edges(s.surface.places.X, s.surface.σ_XX)), method, asked_by=ON_SURFACE,
+    )  # fmt: skip
+
+
+_METHODS = (CLOSED_FORM, FEM)
+HIGHEST = {
+    method: _extreme(method, "max", lambda values: values.max(axis=1), "highest") for method in _METHODS
+}
+LOWEST = {
+    method: _extreme(method, "min", lambda values: values.min(axis=1), "lowest") for method in _METHODS
+}
+
 ESTIMATE_IN_PLANE = Quantity(
     "states/fem/estimate_sigma_XX", "1",
     "estimated error of sigma_XX on the surface over the larger of itself and its largest value further "
     "than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[ON_SURFACE], FEM, asked_by=ON_SURFACE,
-    compared=("estimate of sigma_XX",), range=Range(at_least=0.0),
+    compared=("estimate of sigma_XX",), range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 ESTIMATE_INSIDE = Quantity(
     "states/fem/estimate_inside", "1",
     "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
     "from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
-    range=Range(at_least=0.0),
+    range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 
 INSIDE_X = Quantity(

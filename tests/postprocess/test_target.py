@@ -5,6 +5,7 @@ import socket
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from support import at_once, full_disk
 
 from galinx import compute, load, template
@@ -13,9 +14,23 @@ from galinx.app.console.sheets import new_console, print_sheet
 from galinx.app.results.csv import pieces
 from galinx.app.results.paraview import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
+from galinx.postprocess.figures import film
 from galinx.postprocess.hdf5 import vtkhdf
 from galinx.postprocess.tables import Sheet
-from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PDF, PNG, TABLE, TABLES, Folder, Target
+from galinx.postprocess.target import (
+    ARCHIVE,
+    FIELDS,
+    GIF,
+    LOG,
+    PAGE,
+    PDF,
+    PNG,
+    SVG,
+    TABLE,
+    TABLES,
+    Folder,
+    Target,
+)  # fmt: skip
 
 FOREIGN = b"precious"
 
@@ -27,7 +42,9 @@ def made(tmp_path_factory):
     result = compute(template("table1", {"title": "galinx VTKHDF Table 1 %PDF-"}))
     result.save(folder / "a.h5")
     result.report(folder / "a.html")
-    pdf, png = result.plot(folder, "a")[:2]
+    pdf, png, svg = result.plot(folder, "a", formats=("pdf", "png", "svg"))[:3]
+    picture = Figure()
+    (folder / "a.gif").write_bytes(film.content(film.Film(picture, 2, picture.suptitle), "gif", 30))
     square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
     vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
@@ -36,8 +53,8 @@ def made(tmp_path_factory):
         file.writelines(pieces(folder / "a.h5"))
     with Progress(log=folder / "a.log") as progress:
         progress.note("scene: a.toml")
-    paths = {ARCHIVE: folder / "a.h5", PAGE: folder / "a.html", PDF: pdf, PNG: png}
-    paths |= {TABLE: folder / "a.csv", TABLES: folder / "tables.txt"}
+    paths = {ARCHIVE: folder / "a.h5", PAGE: folder / "a.html", PDF: pdf, PNG: png, SVG: svg}
+    paths |= {GIF: folder / "a.gif", TABLE: folder / "a.csv", TABLES: folder / "tables.txt"}
     return paths | {FIELDS: folder / "a.hdf", LOG: folder / "a.log"}
 
 

@@ -1,35 +1,197 @@
-"""What the figures of a result show."""
-
-import re
+"""What the figures of a result show, and whether they can be read in print."""
 
 import numpy as np
 import pytest
+from legible import LEAST, faults
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+from support import computed
 
-from galinx.app.results.drawings import of_archive
+from galinx.app.pictures.choice import size
+from galinx.app.study.drawings import of_study
+from galinx.postprocess.figures.canvas import Room, Size, TooSmall, content, panels
+from galinx.postprocess.figures.style import DPI
+
+CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
 
-def test_every_figure_shows_what_it_says(map_run):
-    drawings = {drawing.name: drawing.figure for drawing in of_archive(map_run.data, map_run.scene)}
+@pytest.fixture(scope="module")
+def sweep_run():
+    """Five speeds by the closed form, the map of one of them."""
+    return computed("high_speed", CLOSED_FORM)
+
+
+@pytest.fixture(scope="module")
+def study_run():
+    """The study by the closed form."""
+    return computed("study", CLOSED_FORM)
+
+
+@pytest.fixture
+def drawings(map_run):
+    """Every figure of one result, by name."""
+    return {drawing.name: drawing for drawing in map_run.drawings()}
+
+
+def legible(drawings):
+    found = [f"{drawing.name}: {fault}" for drawing in drawings for fault in faults(drawing.figure)]
+    assert not found, "\n".join(found)
+
+
+def test_every_figure_shows_what_it_says(map_run, drawings):
     assert list(drawings) == ["friction", "surface", "inside", "degrees", "mesh"]
-    loop = drawings["friction"].axes[0].lines[0]
-    assert loop.get_ydata()[0] == 0.0 and loop.get_ydata().max() == pytest.approx(
-        map_run.data["states/f"].max(), abs=0.05
-    )
-    panels = drawings["surface"].axes
-    assert len(panels) == 4  # two speeds, two stresses; the insets are their children
-    *exact, markers = panels[0].lines[:4]  # beside, under and beside the punch
-    assert [line.get_marker() for line in exact] == 3 * ["None"] and markers.get_marker() == "o"
+    strokes = [line for line in drawings["friction"].figure.axes[0].lines if len(line.get_xdata()) > 2]
+    f = np.concatenate([line.get_ydata() for line in strokes])
+    assert f[0] == 0.0 and f.max() == pytest.approx(map_run.data["states/f"].max(), abs=0.05)
+    panels = drawings["surface"].figure.axes
+    assert len(panels) == 4  # two speeds, two stresses; the inset is a child
     (inset,) = panels[0].child_axes
-    places = [line.get_xdata()[0] for line in inset.lines[1:]]
-    assert places == map_run.data["states/X_over_L"][:6].tolist()
-    maps = [image for axis in drawings["inside"].axes for image in axis.images]
-    assert len(maps) == 30  # five stresses; two speeds by closed form, finite elements, difference
+    assert not panels[1].child_axes  # the same loop and places are not drawn twice
+    places = {float(line.get_xdata()[0]) for line in inset.lines if len(line.get_xdata()) == 1}
+    assert places == {0.2, 0.8}
+    maps = [image for axis in drawings["inside"].figure.axes for image in axis.images]
+    # Five stresses at two speeds once each, and how far both methods are apart; the bars are no maps.
+    assert len(maps) == 20
     np.testing.assert_array_equal(
-        maps[1].get_array(), map_run.data["interior/closed_form/sigma_YY"][0].reshape(20, 21)
+        maps[4].get_array(), map_run.data["interior/closed_form/sigma_YY"][1].reshape(20, 21)
     )
-    degrees = [line for line in drawings["degrees"].axes[0].lines if line.get_marker() == "x"]
+    degrees = [line for line in drawings["degrees"].figure.axes[0].lines if line.get_marker() == "x"]
     assert degrees[0].get_ydata()[0] == map_run.data["states/fem/true_error"][:6].max()
-    for figure in drawings.values():
-        for axis in figure.axes:
-            label = axis.get_xlabel() + axis.get_ylabel()
-            assert not label or re.search(r"dimensionless|/a|sigma|\$f\$", label), label
+
+
+def test_the_mesh_shows_every_node_that_is_apart_in_print(map_run, drawings):
+    panel = drawings["mesh"].figure.axes[0]
+    (dots,) = [line for line in panel.lines if line.get_marker() == "."]
+    degree = int(map_run.data["run/fem/degree"].max())
+    inside = np.abs(dots.get_xydata()).max(axis=1) < 4.0
+    assert f"degree {degree}" in drawings["mesh"].caption
+    assert inside.sum() > 10 * degree  # of cells that are an eighth of the panel
+
+
+def test_finite_elements_are_markers_on_closed_form_lines(drawings):
+    """Equal things are not drawn twice."""
+    for panel in drawings["surface"].figure.axes:
+        lines = [line for line in panel.lines if line.get_linestyle() not in ("None", "")]
+        assert all(line.get_marker() in ("None", "") for line in lines)
+        markers = [line for line in panel.lines if line.get_marker() not in ("None", "")]
+        assert len(markers) == 6 and all(line.get_linestyle() in ("None", "") for line in markers)
+
+
+def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run):
+    for run in (map_run, sweep_run):
+        legible(run.drawings())
+        legible(run.drawings(size=size("3.5in")))
+
+
+def test_an_inset_goes_where_no_curve_is():
+    load = {"solve.mode": "traction", "solve.pressure": [[-1, 0], [0.3, -2], [1, 0]]}
+    run = computed("traction", load | CLOSED_FORM)
+    (drawing,) = run.drawings(figures=("surface",))
+    assert drawing.figure.axes[0].child_axes and "Insets" in drawing.caption
+    assert "without bound" not in drawing.caption
+    legible([drawing])
+    everywhere = {"solve.pressure": [[-1, -1], *([x / 20, -1 - x % 2] for x in range(-19, 20)), [1, -1]]}
+    (drawing,) = computed("traction", load | everywhere | CLOSED_FORM).drawings(figures=("surface",))
+    assert not drawing.figure.axes[0].child_axes and "Insets" not in drawing.caption
+
+
+def test_the_studys_figures_are_legible(study_run):
+    shown = list(of_study(study_run.data, study_run.scene))
+    assert [drawing.name for drawing in shown] == [f"fig{n}" for n in (2, 5, 6, 7, 8, 9, 10)]
+    legible(shown)
+    widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
+    assert widths == {3.5, 7.0}
+
+
+def test_what_is_not_legible_is_found():
+    figure = Figure((3.5, 2.0))
+    axis = figure.subplots()
+    axis.plot([0.0, 1.0], [0.0, 1.0], label="curve")
+    axis.plot([0.0, 0.5, 1.0], [1.0, 0.5, 0.0], label="other")
+    axis.legend(loc="center")
+    axis.set_xlabel("too small", fontsize=LEAST - 0.5)
+    axis.set_ylabel("an axis whose label is longer than the paper is high", fontsize=12)
+    axis.text(0.2, 0.2, "one"), axis.text(0.2, 0.2, "two")
+    said = "\n".join(faults(_drawable(figure)))
+    for words in ("6.5 pt", "is cut off", "'one' lies on 'two'", "on the curve", "on a panel"):
+        assert words in said
+
+
+def _drawable(figure):
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def test_strokes_are_told_apart_and_have_a_direction(drawings):
+    axis = drawings["friction"].figure.axes[0]
+    assert {text.get_text() for text in axis.texts if text.get_text()} == {"FM1", "BM1", "FM2"}
+    strokes = [line for line in axis.lines if len(line.get_xdata()) > 2]
+    assert len({line.get_color() for line in strokes}) == len(strokes) == 3
+    assert len({str(line._unscaled_dash_pattern) for line in strokes}) == 3
+    arrows = [text for text in axis.texts if isinstance(text, Annotation)]
+    ahead = {arrow.arrow_patch.get_edgecolor(): arrow.xy[0] > arrow.xyann[0] for arrow in arrows}
+    assert [ahead[to_rgba(line.get_color())] for line in strokes] == [True, False, True]
+
+
+def test_axes_have_names_and_panels_letters(drawings):
+    for name in ("friction", "surface", "degrees"):
+        for axis in drawings[name].figure.axes:
+            words = axis.get_xlabel()
+            assert sum(map(str.isalpha, words)) > 5 and " " in words, (name, words)
+    panels = drawings["surface"].figure.axes
+    assert [axis.get_title(loc="left")[:3] for axis in panels] == ["(a)", "(b)", "(c)", "(d)"]
+    labels = [axis.get_ylabel() for axis in panels if axis.get_ylabel()]
+    assert [label.split(" $")[0] for label in labels] == ["contact stress", "in-plane stress"]
+    assert r"4.786 \times 10^{-7}" in panels[0].get_title(loc="left")
+    assert r"0.0015\,\mathrm{m/s}" in panels[0].get_title(loc="left")
+
+
+def test_clipped_colours_have_arrows_on_their_bar(drawings):
+    axes = [axis for axis in drawings["inside"].figure.axes if axis.child_axes]
+    assert len(axes) == 5
+    for axis in axes:
+        (bar,) = [child._colorbar for child in axis.child_axes]
+        (image,) = axis.images
+        low, high = image.get_clim()
+        shown = image.get_array()
+        assert (shown.max() <= high or bar.extend in ("max", "both")) and high < np.inf
+        assert shown.min() >= low or bar.extend in ("min", "both")
+    assert {axis.child_axes[0]._colorbar.extend for axis in axes} >= {"min", "max"}
+
+
+def test_captions_are_plain_text(drawings, study_run):
+    told = [drawing.told for drawing in (*drawings.values(), *of_study(study_run.data, study_run.scene))]
+    assert all(len(text) > 40 and not set("$\\{}") & set(text) for text in told)
+
+
+def test_files_have_the_resolution_and_the_size_that_are_asked_for(drawings):
+    figure = drawings["friction"].figure
+    png = content(figure, "png")
+    width, height = (int.from_bytes(png[i : i + 4], "big") for i in (16, 20))
+    assert (width, height) == tuple(int(side * DPI) for side in figure.get_size_inches())
+    assert int.from_bytes(content(figure, "png", 600)[16:20], "big") == 2 * width
+    assert content(figure, "svg") == content(figure, "svg")  # without a date
+    assert content(figure, "pdf").startswith(b"%PDF")
+
+
+def test_style_is_left_as_it_was():
+    import matplotlib
+
+    from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
+
+    before = dict(matplotlib.rcParams)
+    loops_figure([Panel("", [Loop("", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])])])
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_panels_are_as_large_as_there_is_room():
+    room = Room(0.5, 0.1, 0.4, 0.2, 0.3, 0.5)
+    figure, axes = panels(2, 3, Size(7.0), 0.5, room)
+    place = axes[1, 2].get_position()
+    assert place.width * 7.0 == pytest.approx((7.0 - 0.6 - 0.6) / 3.0)
+    assert place.y0 * figure.get_figheight() == pytest.approx(0.4)
+    with pytest.raises(TooSmall, match=r"expected at least 2\.2 in x 1\.8 in for 2 x 3 panels"):
+        panels(2, 3, Size(2.0, 5.0), 0.5, room)

@@ -1,0 +1,80 @@
+"""Commands that draw what archives hold: plot."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from galinx.app import errors, ranks
+from galinx.app.commands import options
+from galinx.app.console.terminal import say
+
+
+@click.command()
+@options.archive
+@click.option(
+    "-o",
+    "to",
+    type=options.FILE,
+    default=Path("."),
+    show_default=True,
+    help="Folder, which is made, or a file: its ending is the format.",
+)
+@click.option(
+    "--figure",
+    default="",
+    metavar="NAMES",
+    help="friction, parameters, surface, inside, degrees, mesh, film; several as in surface,inside.",
+)
+@click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
+@click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")
+@click.option("--method", default="", metavar="NAME", help="closed_form or fem; default: both.")
+@click.option("--x", default="", metavar="NAME", help="What numbers of states are drawn over, as mu_c.")
+@click.option("--y", default="", metavar="NAMES", help="These numbers, as in K_I_left,v0.")
+@click.option("--by", default="", metavar="NAME", help="What tells their curves apart.")
+@click.option(
+    "--size", default="", metavar="SIZE", help="Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt."
+)
+@click.option(
+    "--dpi", type=int, default=0, metavar="NUMBER", help="Dots per inch; default: 300, of films 160."
+)
+@click.option(
+    "--format",
+    "formats",
+    default="",
+    metavar="NAMES",
+    help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
+)
+@options.overwrite
+def plot(
+    archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
+    by: str, size: str, dpi: int, formats: str, overwrite: bool,
+) -> int:  # fmt: skip
+    """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
+
+    What is not asked for is chosen by itself: the figures, the states on each, what numbers are drawn
+    over. States that a figure does not show are named.
+
+    Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
+    """
+    from galinx.app.pictures import choice
+    from galinx.app.pictures.files import Files
+    from galinx.app.results.drawings import write
+    from galinx.app.results.result import load
+
+    wanted = choice.Choice(
+        figures=choice.words(figure), states=tuple(options.numbers(states)) if states else (), quantities=choice.words(quantity),
+        method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
+    )  # fmt: skip
+    files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
+    result = load(archive)
+    if ranks.is_root():
+        written = write(result.data, result.scene, wanted, files)
+        for one, after in zip(written, [*written[1:], None]):
+            print(f"{one.noun}: {one.path}")
+            if one.left_out and (after is None or after.left_out != one.left_out):
+                say(f"  {one.left_out}", 2)
+    return errors.GOOD
+
+
+COMMANDS: tuple[Any, ...] = (plot,)

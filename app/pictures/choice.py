@@ -1,0 +1,99 @@
+"""What a user wants drawn, and how large: options of plot, checked against what an archive has."""
+
+import re
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Any
+
+from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import nearest, short
+from galinx.postprocess.figures.canvas import Size
+from galinx.postprocess.quantities.states import SPEED
+
+_INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
+_LENGTH = r"(\d+(?:\.\d*)?|\.\d+)\s*(in|cm|mm|pt)"
+_SIZE = re.compile(rf"\s*{_LENGTH}(?:\s*[x×]\s*{_LENGTH})?\s*")
+
+#: Widths and heights that paper and films have [in].
+_LEAST, _MOST = 1.5, 40.0
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is drawn; what is not given is chosen by itself.
+
+    Attributes:
+        figures: their names.
+        states: numbers of states.
+        quantities: names of quantities, as the columns of ``csv`` end.
+        method: of solution.
+        x, by: what curves are drawn over, and what tells them apart.
+        y: names of what is drawn over ``x``.
+        size: of every figure.
+    """
+
+    figures: tuple[str, ...] = ()
+    states: tuple[int, ...] = ()
+    quantities: tuple[str, ...] = ()
+    method: str = ""
+    x: str = ""
+    y: tuple[str, ...] = ()
+    by: str = ""
+    size: Size | None = None
+
+    @property
+    def given(self) -> set[str]:
+        """Options that say what is drawn."""
+        names = ("states", "quantities", "method", "x", "y", "by")
+        return {name for name in names if getattr(self, name)}
+
+    def check_states(self, data: dict[str, Any]) -> None:
+        """
+        Raises:
+            BadInput: the archive has no such state.
+        """
+        count = len(data[SPEED.path])
+        for state in self.states:
+            if not 0 <= state < count:
+                raise BadInput(
+                    f"--states: found {state}, expected numbers from 0 to {count - 1}; show lists them"
+                )
+
+
+def words(text: str) -> tuple[str, ...]:
+    """The words between commas."""
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
+def size(text: str) -> Size | None:
+    """``3.5in``, or with a height ``89mm x 60mm``.
+
+    Raises:
+        BadInput: it is no size, or one that no figure has.
+    """
+    if not text:
+        return None
+    found = _SIZE.fullmatch(text)
+    if not found:
+        raise BadInput(
+            f"--size: found {text!r}, expected a width or width x height in in, cm, mm or pt, as 3.5in "
+            "or 89mm x 60mm"
+        )
+    width, in_width, height, in_height = found.groups()
+    sides = [float(width) * _INCHES[in_width]]
+    sides += [float(height) * _INCHES[in_height]] if height else []
+    for side in sides:
+        if not _LEAST <= side <= _MOST:
+            raise BadInput(f"--size: found {text}, expected {_LEAST:g} to {_MOST:g} in")
+    return Size(*sides)
+
+
+def one_of(what: str, word: str, known: Collection[str]) -> str:
+    """A word that is known.
+
+    Raises:
+        BadInput: it is not; the message names the nearest, or all.
+    """
+    if word in known:
+        return word
+    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, known)}")

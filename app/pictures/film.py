@@ -1,0 +1,95 @@
+"""A film of the strokes of an archive: where friction is, and what that does to the stresses."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.errors import BadInput
+from galinx.app.pictures import inside, surface
+from galinx.app.pictures.choice import Choice
+from galinx.app.pictures.friction import Loops
+from galinx.app.pictures.told import PLACE, STROKE, Told, not_shown
+from galinx.app.scene.scene import Scene
+from galinx.postprocess.figures.film import Film, strokes_film
+from galinx.postprocess.figures.maps import Map
+from galinx.postprocess.figures.surface import Stress
+from galinx.postprocess.quantities.states import FRICTION
+from galinx.postprocess.quantities.stresses import SURFACE_X
+
+#: Pictures that move.
+_FRAMES = 4
+
+
+def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
+    """Are there enough states along the strokes, and something to show of them?"""
+    shown = surface.quantities(data, choice.method) or inside.has_map(data, choice.method)
+    return bool(shown) and len(_frames(Told(data, scene), choice)) >= _FRAMES
+
+
+def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]:
+    """The film, and what it leaves out.
+
+    Raises:
+        BadInput: there are too few states along the strokes.
+    """
+    loops = Loops(data, scene)
+    told = loops.told
+    frames = _frames(told, choice)
+    if len(frames) < _FRAMES:
+        raise BadInput(
+            f"a film needs at least {_FRAMES} states along strokes, found {len(frames)}; give "
+            "motion.X_over_L more places"
+        )
+    loop = loops.of(int(frames[0]))
+    if loop is None:
+        raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
+    stresses, fields = _shown(data, scene, choice, frames)
+    f = data[FRICTION.path]
+    made = strokes_film(
+        loop,
+        [(float(told.values(PLACE)[i]), float(f[i])) for i in frames],
+        [f"{told.label(int(i), [STROKE, PLACE])}, $f = {f[i]:.2f}$" for i in frames],
+        data.get(SURFACE_X.path, np.empty(0)),
+        stresses,
+        inside.Fields(data, scene).grid() if fields else None,
+        fields,
+        choice.size,
+    )
+    return made, not_shown(told, frames.tolist(), "--figure film --states", choice.states)
+
+
+def _shown(
+    data: dict[str, Any], scene: Scene, choice: Choice, frames: NDArray
+) -> tuple[list[Stress], list[Map]]:
+    """One method's stresses along the surface, or maps where there are none or one is wanted."""
+    known = surface.quantities(data, choice.method)
+    if known and set(choice.quantities) <= set(known):
+        return [
+            Stress(stress.label, {method: values[frames]})
+            for stress in surface.stresses(data, choice)
+            for method, values in list(stress.values.items())[:1]
+        ], []
+    fields = inside.Fields(data, scene, choice.method)
+    names = choice.quantities or ("sigma_XX", "von_mises")
+    made = []
+    for name in names:
+        values = np.array([fields.values(name, fields.methods[0], int(i)) for i in frames])
+        made.append(Map(fields.label(name, True), values, bool(values.min() < 0.0)))
+    return [], made
+
+
+def _frames(told: Told, choice: Choice) -> NDArray[np.int64]:
+    """States of one law and speed, in the order of travel."""
+    some = np.array(choice.states) if choice.states else told.all
+    rest = [name for name in told.varied(some) if name not in (STROKE, PLACE)]
+    if not choice.states:
+        some = told.where(some, **told.fixed(rest, some))
+    elif rest:
+        raise BadInput(f"--states: a film follows one law at one speed, found several {', '.join(rest)}")
+    strokes = list(dict.fromkeys(told.values(STROKE).tolist()))
+    order = [
+        (strokes.index(stroke), X if stroke.startswith("F") else -X)
+        for stroke, X in zip(told.values(STROKE)[some].tolist(), told.values(PLACE)[some].tolist())
+    ]
+    return some[sorted(range(len(some)), key=order.__getitem__)]

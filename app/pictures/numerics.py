@@ -1,0 +1,63 @@
+"""How an archive's finite elements were laid out, and how well they did."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.pictures.choice import Choice
+from galinx.app.pictures.drawing import Drawing, there
+from galinx.app.pictures.told import C, Told, spread
+from galinx.app.plan.plan import make_plan
+from galinx.app.scene.scene import Scene
+from galinx.meshes.cells import edges, nodes
+from galinx.postprocess.figures.lines import degrees_figure
+from galinx.postprocess.figures.mesh import mesh_figure
+from galinx.postprocess.quantities import Quantity, runs, states
+
+#: Speeds that can be told apart.
+_SPEEDS = 6
+
+
+def has_degrees(data: dict[str, Any]) -> bool:
+    """Does an archive say how its numbers settled?"""
+    return there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
+
+
+def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
+    """The mesh that finite elements used, and its nodes; it is laid out again, nothing is solved."""
+    fem = make_plan(scene).fem
+    assert fem
+    cells, degree = fem.kind.build(fem.refinement, fem.cuts), int(data[runs.RECORD["degree"].path].max())
+    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), choice.size)
+    caption = (
+        f"The {fem.mesh} mesh under the punch (orange) and, nearer and nearer, its edge X = a: lines are "
+        f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
+        f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
+    )
+    return Drawing("mesh", caption, figure, pixels=True)
+
+
+def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
+    """How the numbers settle as the polynomial degree rises."""
+    c, c_of, told = data[runs.RECORD["c"].path], data[states.SPEED.path], Told(data, scene)
+    shown = spread(list(range(len(c))), _SPEEDS)
+
+    def largest(row: Quantity) -> NDArray:
+        return np.array([data[row.path][c_of == speed].max() for speed in c[shown]])
+
+    figure = degrees_figure(
+        [told.label(int(np.argmax(c_of == speed)), [C]) for speed in c[shown]],
+        data[runs.CHANGES.path][shown],
+        data[runs.RECORD["degree"].path][shown],
+        largest(states.ESTIMATE),
+        largest(states.TRUE_ERROR) if there(data, states.TRUE_ERROR) else None,
+        choice.size,
+    )
+    caption = (
+        "How K_I and the moments of the pressure settle as the polynomial degree rises: markers are "
+        "changes from the degree before, bars the error estimated at the last, crosses the true one, "
+        "which has to lie below."
+    )
+    left_out = f"{len(c) - len(shown)} of {len(c)} speeds not shown." if len(shown) < len(c) else ""
+    return Drawing("degrees", caption, figure, left_out=left_out)

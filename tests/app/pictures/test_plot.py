@@ -1,0 +1,246 @@
+"""What plot draws by itself, what is chosen, and what it refuses."""
+
+import re
+import shutil
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from support import command, computed
+
+from galinx.app.errors import BadInput
+from galinx.app.pictures.choice import Choice, size
+from galinx.app.pictures.files import Files
+from galinx.app.results.drawings import of_archive, write
+from galinx.postprocess.errors import Occupied
+from galinx.postprocess.figures import film
+from galinx.postprocess.target import GIF, MP4, SVG
+
+CLOSED_FORM = {"solve.methods": ["closed_form"]}
+
+
+@pytest.fixture(scope="module")
+def fast():
+    """Five speeds, six states each."""
+    return computed("high_speed", CLOSED_FORM)
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    """Three speeds, four coefficients, three stiffnesses."""
+    law = {"friction.mu_c": [0.2, 0.4, 0.6, 0.8], "friction.sigma0_over_load": [1e4, 2e4, 4e4]}
+    return computed("parameter_study", {"motion.c": [0.0, 0.5, 0.9]} | law | CLOSED_FORM)
+
+
+@pytest.fixture(scope="module")
+def strokes():
+    """Twelve states of two strokes with a map each."""
+    motion = {"motion.c": 0.6, "motion.strokes": ["forward", "backward"]}
+    motion["motion.X_over_L"] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
+    places = {"output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]}, "output.points": None}
+    return computed("inside", motion | places | CLOSED_FORM)
+
+
+def drawn(run, name, **options):
+    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
+    return drawing
+
+
+def curves(axis):
+    return [line for line in axis.lines if len(np.unique(line.get_xdata())) > 2]
+
+
+def test_what_a_figure_leaves_out_is_said(fast, tmp_path):
+    """The last speed is the point of the scene: it is never the one that is left out."""
+    drawing = drawn(fast, "surface")
+    titles = [axis.get_title(loc="left") for axis in drawing.figure.axes[:3]]
+    assert [re.search(r"c = ([\d.]+)", title)[1] for title in titles] == ["0", "0.6", "0.9"]
+    assert drawing.left_out.startswith("12 of 30 states not shown (c = 0.3, 0.8): states 6-11,18-23;")
+    assert "--figure surface --states" in drawing.left_out and drawing.left_out in drawing.told
+    chosen = drawn(fast, "surface", states=(*range(6, 12), *range(18, 24)))
+    titles = [axis.get_title(loc="left") for axis in chosen.figure.axes[:2]]
+    assert [re.search(r"c = ([\d.]+)", title)[1] for title in titles] == ["0.3", "0.8"]
+    assert not chosen.left_out  # nothing of what was asked for
+
+
+def test_a_sweep_shows_the_ends_of_its_lists(sweep):
+    drawing = drawn(sweep, "friction")
+    legends = [axis.get_legend() for axis in drawing.figure.axes]
+    told = [[text.get_text() for text in legend.get_texts()] for legend in legends]
+    assert [len(labels) for labels in told] == [4, 3]
+    assert r"\mu_C = 0.2" in told[0][0] and r"\mu_C = 0.8" in told[0][-1]
+    assert "states not shown" in drawing.left_out
+
+
+def test_numbers_are_drawn_over_what_is_swept_most(sweep):
+    """Four coefficients are more than three speeds; these tell the curves apart."""
+    drawing = drawn(sweep, "parameters")
+    axes = drawing.figure.axes
+    assert {axis.get_xlabel() for axis in axes} == {"Coulomb's coefficient $\\mu_C$"}
+    (legend,) = drawing.figure.legends
+    assert [text.get_text()[:8] for text in legend.get_texts()] == ["$c = 0$ ", "$c = 0.5", "$c = 0.9"]
+    (K_I,) = [axis for axis in axes if "intensity" in axis.get_ylabel()]
+    data, first = sweep.data, curves(K_I)[0]
+    some = (data["states/c"] == 0.0) & (data["states/sigma0_over_load"] == 2e4)
+    some &= (data["states/motion"] == "FM1") & (data["states/X_over_L"] == 0.8)
+    assert first.get_xdata().tolist() == data["states/mu_c"][some].tolist() == [0.2, 0.4, 0.6, 0.8]
+    assert first.get_ydata().tolist() == data["states/closed_form/K_I"][some].tolist()
+    assert "σ₀ l/N = 20\u202f000 m⁻¹, FM1, X/L = 0.8" in drawing.caption.replace("\u202fm", " m")
+
+
+def test_columns_that_show_the_same_are_drawn_once_and_named(sweep):
+    drawing = drawn(sweep, "parameters")
+    told = drawing.caption.split("same up to a factor: ")[1]
+    assert {"g", "K_I_left", "K_I_right"} <= set(told.rstrip(".").split(", "))
+    labels = [axis.get_ylabel() for axis in drawing.figure.axes]
+    assert len(labels) == len(set(labels)) == 4  # f, alpha, beta, K_I
+
+
+def test_any_column_can_be_drawn_over_any_other(sweep):
+    drawing = drawn(sweep, "parameters", x="sigma0_over_load", y=("alpha", "K_I"), by="mu_c")
+    assert len(drawing.figure.axes) == 2 and len(drawing.figure.legends[0].get_texts()) == 4
+    (axis,) = drawn(sweep, "parameters", x="f", y=("K_I",), by="c").figure.axes
+    assert axis.get_xlabel() == "friction coefficient F/N"
+    (axis,) = drawn(sweep, "parameters", x="speed", y=("K_I",)).figure.axes
+    assert axis.get_xlabel() == "speed [m/s]"
+    assert curves(axis)[0].get_xdata()[-1] == pytest.approx(0.9 * sweep.scene.solid.c_s)
+
+
+def test_a_quantity_of_ones_own_is_drawn_by_itself(sweep, monkeypatch):
+    from galinx.postprocess.quantities.quantity import QUANTITIES, STATE, Quantity
+
+    row = Quantity("states/wear", "m", "depth of wear, by hand", (STATE,))
+    monkeypatch.setitem(QUANTITIES, row.path, row)
+    data = sweep.data | {row.path: 1e-5 * sweep.data["states/mu_c"] ** 2}
+    drawing = next(d for d in of_archive(data, sweep.scene, Choice(figures=("parameters",))))
+    labels = [axis.get_ylabel().replace("\n", " ") for axis in drawing.figure.axes]
+    assert any(label.startswith("depth of wear $[10^{-6}") for label in labels)
+
+
+def test_speeds_are_also_told_in_metres_per_second(fast):
+    figure = drawn(fast, "parameters").figure
+    (beside,) = figure.axes[0].child_axes
+    assert beside.get_xlabel() == "speed [m/s]"
+    figure.canvas.draw()
+    c_s = fast.scene.solid.c_s
+    assert beside.get_xlim() == pytest.approx([c_s * c for c in figure.axes[0].get_xlim()])
+
+
+def test_a_single_map_is_a_figure_of_its_own(strokes):
+    drawing = drawn(strokes, "inside", states=(2,), quantities=("von_mises",))
+    (axis,) = drawing.figure.axes
+    assert drawing.figure.get_figwidth() == 3.5 and len(axis.images) == 1 and axis.collections
+    label = axis.child_axes[0].get_ylabel()
+    assert label.startswith("von Mises") and "\n" not in label
+
+
+def test_formats_and_endings_are_obeyed(fast, tmp_path):
+    choice = Choice(figures=("surface",), states=(0, 4), size=size("3.5in"))
+    for name, begins in (("a.svg", b"<?xml"), ("a.pdf", b"%PDF"), ("a.png", b"\x89PNG")):
+        write(fast.data, fast.scene, choice, Files(tmp_path / name))
+        assert (tmp_path / name).read_bytes().startswith(begins)
+    assert SVG.of(tmp_path / "a.svg")
+    wrote = write(fast.data, fast.scene, choice, Files(tmp_path / "many", "x", ("svg", "png")))
+    assert [one.path.name for one in wrote] == ["x_surface.svg", "x_surface.png"]
+    assert {one.path for one in wrote} == set((tmp_path / "many").iterdir())
+
+
+def test_films_are_made_of_strokes(strokes, tmp_path):
+    from PIL import Image
+
+    (one,) = write(strokes.data, strokes.scene, Choice(), Files(tmp_path / "film.gif"))
+    assert one.noun == "film" and GIF.of(one.path) and not one.left_out
+    with Image.open(one.path) as opened:
+        assert opened.n_frames == 12
+        pictures = [opened.seek(n) or np.asarray(opened.convert("RGB")).copy() for n in (0, 3, 9)]
+    assert all((one != other).any() for one, other in pairwise(pictures))
+    write(strokes.data, strokes.scene, Choice(), Files(tmp_path / "film.gif"))  # made again unasked
+
+
+def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
+    from galinx.app.pictures.film import film as made
+
+    shown, _ = made(strokes.data, strokes.scene, Choice())
+    places = []
+    for n in range(shown.frames):
+        shown.show(n)
+        axis = shown.figure.axes[0]
+        places.append(axis.get_title(loc="left").split(", $f")[0].replace("$", ""))
+    assert places[0] == "FM1, X/L = 0" and places[5:8] == [
+        "FM1, X/L = 1", "BM1, X/L = 1", "BM1, X/L = 0.8",
+    ]  # fmt: skip
+
+
+def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
+    files = Files(tmp_path / "film.mp4")
+    if shutil.which("ffmpeg"):
+        (one,) = write(strokes.data, strokes.scene, Choice(), files)
+        assert MP4.of(one.path)
+    monkeypatch.setattr(film.shutil, "which", lambda _: None)
+    with pytest.raises(BadInput, match=r"mp4 needs ffmpeg, which is not installed; gif does not"):
+        write(strokes.data, strokes.scene, Choice(), files)
+    assert Files(tmp_path).endings("film") == ("gif",)
+    monkeypatch.setattr(film.shutil, "which", lambda _: "/usr/bin/ffmpeg")
+    assert Files(tmp_path).endings("film") == ("mp4",)
+
+
+@pytest.mark.parametrize(
+    ("options", "to", "said"),
+    [
+        ({"figures": ("surfase",)}, ".", r"figure 'surfase': there is none; did you mean surface\?"),
+        ({"quantities": ("sgma_XX",)}, ".", r"quantity 'sgma_XX': there is none; did you mean sigma_XX\?"),
+        ({"method": "fme"}, ".", r"method 'fme': there is none; did you mean fem\?"),
+        ({"method": "fem"}, ".", r"nothing to draw for --method together"),
+        ({"states": (30,)}, ".", r"--states: found 30, expected numbers from 0 to 29; show lists them"),
+        ({"x": "foo"}, ".", r"x 'foo': there is none; valid: c, mu_c"),
+        ({"y": ("K_II",)}, ".", r"y 'K_II': there is none; did you mean K_I\?"),
+        ({"by": "mu_c"}, ".", r"by 'mu_c': there is none; valid: motion, X_over_L"),
+        ({"figures": ("friction",), "method": "fem"}, ".", r"friction follows no --method; leave"),
+        ({"figures": ("film",), "states": (0, 1)}, ".", r"a film needs at least 4 states .*, found 2"),
+        ({}, "a.pdf", r"a\.pdf is one file, found 3 figures; choose one by --figure: "),
+        ({"figures": ("surface",)}, "a.jpg", r"found 'jpg' for the figure surface, expected pdf, png,"),
+        ({"figures": ("surface",)}, "a.gif", r"found 'gif' for the figure surface, expected pdf"),
+        ({"figures": ("surface",), "size": size("1.5in x 1.5in")}, ".", r"--size: the figure surface"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_drawn_is_refused(fast, tmp_path, options, to, said):
+    with pytest.raises(BadInput, match=said):
+        write(fast.data, fast.scene, Choice(**options), Files(tmp_path / to))
+    assert not list(tmp_path.rglob("*.*"))
+
+
+@pytest.mark.parametrize("text", ["3", "3.5 inch", "in", "0.5in", "100in", "3in x", "-3in", "3in x 0mm"])
+def test_sizes_that_no_figure_has_are_refused(text):
+    with pytest.raises(BadInput, match=r"--size: found .*, expected"):
+        size(text)
+
+
+def test_sizes_are_read():
+    assert size("3.5in") == (3.5, None) and size("") is None
+    assert size("89mm x 6cm") == pytest.approx((3.504, 2.362), abs=1e-3)
+    assert size("252pt") == (3.5, None)
+
+
+def test_wrong_resolutions_and_formats_are_refused(fast, tmp_path):
+    choice = Choice(figures=("surface",))
+    with pytest.raises(BadInput, match="--dpi: found 5, expected 30 to 2400"):
+        write(fast.data, fast.scene, choice, Files(tmp_path, dpi=5))
+    with pytest.raises(BadInput, match=r"--format: found 'eps' .*; convert a pdf for eps"):
+        write(fast.data, fast.scene, choice, Files(tmp_path, formats=("eps",)))
+    with pytest.raises(BadInput, match=r"--format png is not the ending of .*a\.pdf"):
+        write(fast.data, fast.scene, choice, Files(tmp_path / "a.pdf", formats=("png",)))
+    (tmp_path / "a.pdf").write_text("mine")
+    with pytest.raises(Occupied, match="is not a figure of galinx"):
+        write(fast.data, fast.scene, choice, Files(tmp_path / "a.pdf"))
+
+
+def test_the_command_draws_what_it_is_told(archive, tmp_path):
+    one = command(
+        "plot", archive, "-o", tmp_path / "one.svg", "--states", "0,4,7", "--quantity", "sigma_XX",
+        "--method", "fem", "--size", "3.5in", "--dpi", "600",
+    )  # fmt: skip
+    assert one.returncode == 0, one.stderr
+    assert one.stdout == f"figure: {tmp_path / 'one.svg'}\n"
+    assert b'width="252pt"' in (tmp_path / "one.svg").read_bytes()[:2000]
+    refused = command("plot", archive, "-o", tmp_path / "two.tiff")
+    assert refused.returncode == 2 and "expected pdf, png, svg or a folder" in refused.stderr

@@ -1,12 +1,12 @@
 """What a user wants drawn, and how large: options of plot, checked against what an archive has."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any
 
 from galinx.app.errors import BadInput
+from galinx.app.scene.excerpt import nearest, short
 from galinx.postprocess.figures.canvas import Size
 from galinx.postprocess.quantities.states import SPEED
 
@@ -65,24 +65,6 @@ def words(text: str) -> tuple[str, ...]:
     return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
-def numbers(text: str) -> tuple[int, ...]:
-    """Numbers of states: ``0,4,7`` or ``0-3,8``.
-
-    Raises:
-        BadInput: there is something else.
-    """
-    found: list[int] = []
-    for word in words(text):
-        parts = re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", word)
-        if not parts:
-            raise BadInput(f"--states: found {word!r}, expected numbers as in 0,4,7 or 0-3")
-        first, last = int(parts[1]), int(parts[2] or parts[1])
-        if last - first > 1_000_000:
-            raise BadInput(f"--states: found {word!r}, expected fewer states")
-        found += range(first, last + 1)
-    return tuple(dict.fromkeys(found))
-
-
 def size(text: str) -> Size | None:
     """``3.5in``, or with a height ``89mm x 60mm``.
 
@@ -106,15 +88,12 @@ def size(text: str) -> Size | None:
     return Size(*sides)
 
 
-def one_of(option: str, word: str, known: Iterable[str]) -> str:
+def one_of(what: str, word: str, known: Collection[str]) -> str:
     """A word that is known.
 
     Raises:
-        BadInput: it is not; the message names the nearest, and all.
+        BadInput: it is not; the message names the nearest, or all.
     """
-    known = list(known)
     if word in known:
         return word
-    close = get_close_matches(word, known, 1)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    raise BadInput(f"{option}: found {word}{hint}, expected one of {', '.join(known) or 'none'}")
+    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, known)}")

@@ -90,7 +90,7 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Stresses inside at the slowest and the fastest speed, and how far both methods are apart."""
     fields, told = Fields(data, scene, choice.method), Told(data, scene)
     X, Y = fields.grid()
-    names = [one_of("--quantity", name, fields.names) for name in choice.quantities]
+    names = [one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _SHOWN if name in fields.names]
     some = list(choice.states) or _states(told)
     alone = len(names) == len(some) == 1

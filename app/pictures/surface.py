@@ -44,7 +44,7 @@ def stresses(data: dict[str, Any], choice: Choice) -> list[Stress]:
             _SHOWN.get(name, noun(next(iter(known[name].values())))),
             {method: data[row.path] for method, row in known[name].items()},
         )
-        for name in (one_of("--quantity", name, known) for name in wanted)
+        for name in (one_of("quantity", name, known) for name in wanted)
     ]
 
 
@@ -59,15 +59,15 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         for title, shown, names in groups
     ]
     shown = [state for _, some, _ in groups for state in some]
-    caption = (
-        "Stresses along the surface, under the punch (grey) and beside it: at its edges they grow "
-        "without bound. Insets show where on the friction loop each curve sits."
-    )
     fixed = [name for name in told.parameters if name not in told.varied(shown)]
     varied = [name for name in told.varied() if name in fixed]
+    figure = surface_figure(data[SURFACE_X.path], stresses(data, choice), columns, choice.size)
+    caption = "Stresses along the surface, under the punch (grey) and beside it"
+    caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."
+    if any(axis.child_axes for axis in figure.axes):
+        caption += " Insets show where on the friction loop each curve sits."
     if varied:
         caption += f" All at {told.text(shown[0], varied)}."
-    figure = surface_figure(data[SURFACE_X.path], stresses(data, choice), columns, choice.size)
     missing = not_shown(told, shown, "--figure surface --states", choice.states)
     return Drawing("surface", caption, figure, left_out=missing)
 

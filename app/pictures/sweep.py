@@ -138,7 +138,7 @@ def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
     some = np.concatenate([states for _, states in groups])
     same: list[str] = []
     if choice.y:
-        drawn = [one_of("--y", one, known) for one in choice.y]
+        drawn = [one_of("y", one, known) for one in choice.y]
     else:
         # Along strokes friction is drawn as a loop.
         elsewhere = [x] if name != PLACE else [x, data[FRICTION.path]]
@@ -183,7 +183,7 @@ def _over(
     """Name, axis and numbers of what is drawn over."""
     numeric = [name for name in told.parameters if told.numeric(name)]
     if wanted:
-        one_of("--x", wanted, [*numeric, _SPEED, *known])
+        one_of("x", wanted, [*numeric, _SPEED, *known])
     swept = _swept(told, some) or told.varied(some)
     name = C if wanted == _SPEED else wanted or next((name for name in swept if name in numeric), "")
     if not name:
@@ -202,7 +202,7 @@ def _by(told: Told, wanted: str, x: str, some: NDArray) -> str:
     """What tells the curves apart; nothing for one curve."""
     varied = [name for name in told.varied(some) if name != x]
     if wanted:
-        return one_of("--by", wanted, varied)
+        return one_of("by", wanted, varied)
     law = [name for name in varied if name in (C, *told.law)]
     # Places are the strokes' only where nothing else is swept.
     return next(iter([*law, *varied]), "")

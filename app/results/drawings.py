@@ -14,7 +14,7 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.canvas import TooSmall
 from galinx.postprocess.figures.film import FORMATS as OF_FILMS
 
-__all__ = ["Drawing", "of_archive", "there", "write"]
+__all__ = ["Drawing", "names", "of_archive", "there", "write"]
 
 _Data = dict[str, Any]
 
@@ -70,7 +70,7 @@ def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[D
     Raises:
         BadInput: what is wanted is not there; the message says what is.
     """
-    for name in _names(data, scene, choice):
+    for name in names(data, scene, choice):
         if name != FILM:
             try:
                 yield _FIGURES[name].draw(data, scene, choice)
@@ -88,24 +88,29 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
     """
     if not choice.figures and (files.one in OF_FILMS or set(files.formats) & OF_FILMS.keys()):
         choice = replace(choice, figures=(FILM,))
-    names = _names(data, scene, choice)
-    files.check(names)
-    made = (lambda: film.film(data, scene, choice)) if FILM in names else None
+    wanted = names(data, scene, choice)
+    files.check(wanted)
+    made = (lambda: film.film(data, scene, choice)) if FILM in wanted else None
     return files.write(of_archive(data, scene, choice), made)
 
 
-def _names(data: _Data, scene: Scene, choice: Choice) -> list[str]:
+def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
+    """Of the figures that a choice wants.
+
+    Raises:
+        BadInput: what is wanted is not there; the message says what is.
+    """
     choice.check_states(data)
     if choice.method:
-        one_of("--method", choice.method, METHODS)
+        one_of("method", choice.method, METHODS)
     there_are = [name for name, figure in _FIGURES.items() if figure.has(data, scene, _PLAIN)]
     for name in choice.figures:
         # A film that the archive has too few states for says so itself.
-        one_of("--figure", name, dict.fromkeys([*there_are, FILM]))
+        one_of("figure", name, dict.fromkeys([*there_are, FILM]))
         if ignored := choice.given - _FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
     for name in choice.quantities:
-        one_of("--quantity", name, dict.fromkeys(_quantities(data, scene)))
+        one_of("quantity", name, dict.fromkeys(_quantities(data, scene)))
     wanted = choice.figures or [
         name for name in there_are if name != FILM and choice.given <= _FIGURES[name].follows
     ]

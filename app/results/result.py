@@ -75,6 +75,9 @@ class Result:
 
         Args:
             options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
+
+        Raises:
+            BadInput: what is wanted is not there.
         """
         from galinx.app.pictures.choice import Choice
         from galinx.app.results.drawings import of_archive
@@ -87,23 +90,17 @@ class Result:
         Args:
             name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
                 friction where there are no stresses.
-            options: what is drawn, as of :meth:`drawings`.
+            options: what is drawn, as in :meth:`drawings`.
 
         Raises:
             BadInput: the result has no such figure.
         """
+        from galinx.app.results.drawings import names
         from galinx.postprocess.figures.notebook import shown
 
-        found = {drawing.name: drawing.figure for drawing in self.drawings(**options)}
-        chosen = name or ("surface" if "surface" in found else "friction")
-        if chosen not in found:
-            from galinx.app.errors import BadInput
-            from galinx.app.scene.excerpt import excerpt, nearest
-
-            raise BadInput(
-                f"figure {excerpt(name)}: the result has none of that name{nearest(name, found)}"
-            )
-        return shown(found[chosen])
+        usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
+        (drawing,) = self.drawings(figures=(name or usual,), **options)
+        return shown(drawing.figure)
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
@@ -111,7 +108,7 @@ class Result:
     ) -> Any:  # fmt: skip
         """Write figures into a folder, which is made, or one into a file; their paths.
 
-        Without ``to`` nothing is written, and the figure is returned that :meth:`figure` gives.
+        Without a place nothing is written, and the figure is returned that :meth:`figure` gives.
 
         Args:
             to: a folder, or a file whose ending is its format.
@@ -119,7 +116,7 @@ class Result:
             overwrite: files that are no figures of galinx are replaced, too.
             formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
             dpi: dots per inch of what is made of pixels.
-            options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
+            options: what is drawn, as in :meth:`drawings`.
 
         Raises:
             BadInput: what is wanted is not there, or there is no such format.

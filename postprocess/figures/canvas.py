@@ -200,7 +200,7 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
     """
     data = BytesIO()
     if pixels:
-        figure.savefig(data, format="png", dpi=200)
+        figure.savefig(data, format="png", dpi=160)
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
     kind = "png" if pixels else "svg+xml"

@@ -4,6 +4,8 @@ from io import BytesIO
 
 from matplotlib.figure import Figure
 
+from galinx.postprocess.figures.style import styled
+
 #: Dots per inch on a screen.
 _DPI = 110
 
@@ -14,6 +16,7 @@ def shown(figure: Figure) -> Figure:
     return figure
 
 
+@styled
 def _png(figure: Figure) -> bytes:
     data = BytesIO()
     figure.savefig(data, format="png", dpi=_DPI)

@@ -22,6 +22,9 @@ _BESIDE, _UNDER = 2.0, 1.04
 _EDGE = 0.09
 #: Columns whose ranges differ more have limits of their own.
 _APART = 4.0
+#: Size of an inset, of the names of its axes, and where it may begin, all over that of the panel.
+_INSET, _NAMES = (0.27, 0.31), (0.07, 0.12)
+_CORNERS = ((0.37, 0.18), (0.075, 0.13), (0.7, 0.13), (0.075, 0.64), (0.7, 0.64))
 #: Markers in a panel.
 _MARKERS = 36
 
@@ -168,6 +171,8 @@ def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for the regular part; the singular ends run out of the picture."""
     regular = values[:, from_edge(X) > _EDGE]
     low, high = np.nanmin(regular), np.nanmax(regular)
+    if 0.0 < -high < 0.2 * (high - low):  # zero is near
+        high = 0.0
     margin = 0.08 * (high - low) or 1.0
     return low - margin, high + margin
 
@@ -184,9 +189,27 @@ def _sits(column: Column) -> list[Any]:
     return [(place.X_over_L, place.f, id(place.loop)) for place in column.places]
 
 
+def _free(axis: Axes) -> tuple[float, float] | None:
+    """Where no curve runs through an inset and the names of its axes, over the panel's size."""
+    to_panel = axis.transData + axis.transAxes.inverted()
+    points = np.concatenate([to_panel.transform(line.get_xydata()) for line in axis.lines])
+    points = points[np.isfinite(points).all(axis=1)]
+    for corner in _CORNERS:
+        first, last = np.array(corner) - _NAMES, np.array(corner) + _INSET + 0.02
+        if not ((first <= points) & (points <= last)).all(axis=1).any():
+            return corner
+    return None
+
+
 def _inset(axis: Axes, column: Column) -> None:
-    """A loop that all share is grey. Its axes have names and no numbers: it shows places, not values."""
-    inset = axis.inset_axes((0.36, 0.17, 0.3, 0.36))
+    """A loop that all share is grey. Its axes have names and no numbers: it shows places, not values.
+
+    Where curves leave it no room there is none.
+    """
+    corner = _free(axis)
+    if corner is None:
+        return
+    inset = axis.inset_axes((*corner, *_INSET))
     shared = all(place.loop is column.places[0].loop for place in column.places)
     for n, (curve, place) in enumerate(zip(column.curves, column.places)):
         if n == 0 or not shared:

@@ -10,8 +10,8 @@ from galinx.postprocess.figures.typeset import plain
 #: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
 _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
 _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
-#: As plain text has them.
-_LOWERED, _RAISED = re.compile("[₀-₉]+"), re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
+#: As plain text has it.
+_RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
 
 
 def markup(text: str) -> Markup:
@@ -20,7 +20,6 @@ def markup(text: str) -> Markup:
     Whatever else the text holds is escaped.
     """
     told = str(escape(plain(text))).replace("sigma_", "σ_")
-    told = _LOWERED.sub(lambda found: f"_{normalize('NFKC', found[0])}", told)
     told = _RAISED.sub(lambda found: f"&#8239;×&#8239;10<sup>{normalize('NFKC', found[1])}</sup>", told)
     told = _INDEXED.sub(r"<i>\1</i><sub>\2</sub>", told)
     return Markup(

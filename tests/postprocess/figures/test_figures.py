@@ -84,6 +84,18 @@ def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run):
         legible(run.drawings(size=size("3.5in")))
 
 
+def test_an_inset_goes_where_no_curve_is():
+    load = {"solve.mode": "traction", "solve.pressure": [[-1, 0], [0.3, -2], [1, 0]]}
+    run = computed("traction", load | CLOSED_FORM)
+    (drawing,) = run.drawings(figures=("surface",))
+    assert drawing.figure.axes[0].child_axes and "Insets" in drawing.caption
+    assert "without bound" not in drawing.caption
+    legible([drawing])
+    everywhere = {"solve.pressure": [[-1, -1], *([x / 20, -1 - x % 2] for x in range(-19, 20)), [1, -1]]}
+    (drawing,) = computed("traction", load | everywhere | CLOSED_FORM).drawings(figures=("surface",))
+    assert not drawing.figure.axes[0].child_axes and "Insets" not in drawing.caption
+
+
 def test_the_studys_figures_are_legible(study_run):
     shown = list(of_study(study_run.data, study_run.scene))
     assert [drawing.name for drawing in shown] == [f"fig{n}" for n in (2, 5, 6, 7, 8, 9, 10)]
@@ -102,7 +114,7 @@ def test_what_is_not_legible_is_found():
     axis.set_ylabel("an axis whose label is longer than the paper is high", fontsize=12)
     axis.text(0.2, 0.2, "one"), axis.text(0.2, 0.2, "two")
     said = "\n".join(faults(_drawable(figure)))
-    for words in ("6.5 pt", "is cut off", "'one' lies on 'two'", "on the curve 'other'", "on a panel"):
+    for words in ("6.5 pt", "is cut off", "'one' lies on 'two'", "on the curve", "on a panel"):
         assert words in said
 
 

@@ -63,7 +63,8 @@ def plot(
     from galinx.app.results.result import load
 
     wanted = choice.Choice(
-        figures=choice.words(figure), states=tuple(options.numbers(states)) if states else (), quantities=choice.words(quantity),
+        figures=choice.words(figure), quantities=choice.words(quantity),
+        states=tuple(options.numbers(states)) if states else (),
         method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
     )  # fmt: skip
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))

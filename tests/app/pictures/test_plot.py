@@ -188,7 +188,7 @@ def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
     ("options", "to", "said"),
     [
         ({"figures": ("surfase",)}, ".", r"figure 'surfase': there is none; did you mean surface\?"),
-        ({"quantities": ("sgma_XX",)}, ".", r"quantity 'sgma_XX': there is none; did you mean sigma_XX\?"),
+        ({"quantities": ("sgma_XX",)}, ".", "quantity 'sgma_XX': there is none; did you mean sigma_XX"),
         ({"method": "fme"}, ".", r"method 'fme': there is none; did you mean fem\?"),
         ({"method": "fem"}, ".", r"nothing to draw for --method together"),
         ({"states": (30,)}, ".", r"--states: found 30, expected numbers from 0 to 29; show lists them"),

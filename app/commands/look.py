@@ -57,15 +57,16 @@ def check(archive: Path) -> int:
 @click.command()
 @options.archive
 @click.option("-o", "output", type=options.FILE, help="Page; default: the archive's name with .html.")
+@options.si
 @options.overwrite
-def report(archive: Path, output: Path | None, overwrite: bool) -> int:
+def report(archive: Path, output: Path | None, si: bool, overwrite: bool) -> int:
     """Write a page that shows all of ARCHIVE: one HTML file that needs no network.
 
     Example: ./run.sh report tables.h5
     """
     target, result = output or Path(f"{archive.stem}.html"), _loaded(archive)
     if ranks.is_root():
-        result.report(target, overwrite)
+        result.report(target, overwrite, si)
         print(f"report: {target}")
         print(f"next: open it in a browser, or {program()} plot {archive} for PDF figures")
     return errors.GOOD

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.results.si import in_si
 from galinx.app.scene.scene import Scene
-from galinx.postprocess.quantities import runs, states, stresses
+from galinx.postprocess.quantities import runs, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.scale import NEAR
 from galinx.solvers.contact import from_edge
@@ -36,7 +37,7 @@ class Answer:
 
 def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
     """The results that an archive has, finite elements first where there are both methods."""
-    return [*_of_states(data), *_of_surface(data, scene)]
+    return [*_of_states(data), *_of_surface(data, scene), *_of_limits(data, scene)]
 
 
 def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
@@ -83,9 +84,37 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
                 )
 
 
+#: Where the solid yields, and where answers do not hold, by method.
+_LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
+    ("Largest von Mises stress", yielding.VON_MISES),
+    ("Largest shear stress in the plane", yielding.SHEAR),
+    ("Load at first yield", yielding.FIRST_LOAD),
+    ("Yield passed up to, from the edge X = −a", yielding.REACH_LEFT),
+    ("Yield passed up to, from the edge X = a", yielding.REACH_RIGHT),
+    ("Depth of the yielded zone", yielding.DEPTH),
+    ("Tension under the punch", {method: rows[0] for method, rows in validity.TENSION.items()}),
+    ("Wave crossings of the contact in a stroke", {CLOSED_FORM: validity.CROSSINGS}),
+    ("Slip turned round up to, from X = −a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
+    ("Slip turned round up to, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
+    ("Strain beyond 5 % up to, from X = −a", {CLOSED_FORM: validity.STRAIN[0]}),
+    ("Strain beyond 5 % up to, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
+)
+
+
+def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    for name, rows in _LIMITS:
+        for row in _either(data, rows):
+            told = in_si(row, "", scene)
+            if told and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
+                form = "{:.4g}" if told.unit == "1" else ""
+                yield Answer(name, *_span(told.factor * data[row.path], told.unit, form))
+
+
 def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
     """One of both methods."""
-    return [rows[method] for method in (FEM, CLOSED_FORM) if rows[method].path in data][:1]
+    return [
+        rows[method] for method in (FEM, CLOSED_FORM) if method in rows and rows[method].path in data
+    ][:1]
 
 
 def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:

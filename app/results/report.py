@@ -7,6 +7,7 @@ from typing import Any
 from galinx.app.console.program import program
 from galinx.app.results.answers import answers, summary
 from galinx.app.results.drawings import Drawing
+from galinx.app.results.si import scaling
 from galinx.app.results.tabulated import curves, states_table
 from galinx.app.scene.scene import Scene
 from galinx.app.study.published import (
@@ -29,6 +30,8 @@ TERMS = (
     ("FM, BM", "forward and backward motion: strokes, numbered"),
     ("K_I", "stress intensity factor: strength of the pressure's singularity at an edge of the punch, "
      "dimensionless by N and a"),
+    ("von Mises stress", "what a solid in this state of stress bears like a bar under tension; it yields "
+     "where that is its yield strength"),
     ("X/L", "place on a stroke over the pre-sliding displacement L, along which friction builds up"),
     ("v_0", "indentation, relative to the far boundary, which is held: in the plane it grows with its "
      "distance like a logarithm"),
@@ -47,6 +50,7 @@ class Report:
         data, attributes: an archive.
         scene: the archive's.
         sheets: tables before that of the states; the published ones where the archive has their states.
+        si: are the table of states and the curves in SI?
     """
 
     def __init__(
@@ -55,9 +59,11 @@ class Report:
         attributes: dict[str, Any],
         scene: Scene,
         sheets: list[Sheet] | None = None,
+        si: bool = False,
     ) -> None:
         self._data, self._attributes, self._scene = data, attributes, scene
         self._sheets = _published(data, scene) if sheets is None else sheets
+        self._scaling = scaling(scene if si else None)
         self._pictures: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing) -> None:
@@ -79,8 +85,8 @@ class Report:
                 "answers": answers(data, scene),
                 "reasons": json.loads(attributes["verdict_reasons"]),
                 "sheets": self._sheets,
-                "states": states_table(data),
-                "curves": curves(data),
+                "states": states_table(data, self._scaling),
+                "curves": curves(data, self._scaling),
                 "pictures": self._pictures,
                 "times": [
                     (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")

@@ -132,8 +132,8 @@ class Result:
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
         return [one.path for one in write(self.data, self.scene, Choice(**options), files)]
 
-    def report(self, path: Path | str, overwrite: bool = False) -> None:
-        """Write a self-contained HTML page.
+    def report(self, path: Path | str, overwrite: bool = False, si: bool = False) -> None:
+        """Write a self-contained HTML page, its table of states and its curves in SI where asked for.
 
         Raises:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
@@ -142,7 +142,7 @@ class Result:
         from galinx.app.results.report import Report
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        report = Report(self.data, self.attributes, self.scene)
+        report = Report(self.data, self.attributes, self.scene, si=si)
         for drawing in self.drawings():
             report.add(drawing)
         target.write(report.text().encode())

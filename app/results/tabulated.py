@@ -9,6 +9,7 @@ from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, of_states, stresses, table
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, STATE, TEXT
+from galinx.postprocess.tables import Scaling, as_archived
 
 #: Most cells of the table, and numbers of the curves: a page stays below 5 MB.
 _CELLS, _NUMBERS = 60_000, 250_000
@@ -19,17 +20,22 @@ _DIGITS, _OF_ERRORS = 6, 2
 _CALLED = {CLOSED_FORM: "closed form", FEM: "finite elements"}
 
 
-def states_table(data: dict[str, Any]) -> dict[str, Any]:
+def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any]:
     """Every state with all that has one value a state: what differs between states first.
 
     Args:
         data: datasets by path.
+        scaling: how quantities are told.
     """
     apart = parameters(data)
     others = [
         row
         for path, row in table().items()
-        if of_states(path) and path in data and row.over == (STATE,) and path not in apart
+        if of_states(path)
+        and path in data
+        and row.over == (STATE,)
+        and path not in apart
+        and scaling(row, "")
     ]
     rows = [*apart.values(), *others]
     constant = [row for row in apart.values() if len(np.unique(data[row.path])) == 1]
@@ -37,8 +43,11 @@ def states_table(data: dict[str, Any]) -> dict[str, Any]:
     count = len(data[rows[0].path])
     kept = min(count, _CELLS // (len(shown) + 1))
     columns = [{"head": "state", "name": "state", "csv": "state", "about": "number", "digits": None}]
-    columns += [_column(row) for row in shown]
-    cells = [list(range(kept)), *(_plain(data[row.path][:kept], 12) for row in shown)]
+    columns += [_column(row, scaling) for row in shown]
+    cells = [
+        list(range(kept)),
+        *(_plain(_told(row, data[row.path][:kept], scaling), 12) for row in shown),
+    ]
     same = ", ".join(
         f"{_head(row)} = {data[row.path][0]:g}" if row.type != TEXT else "" for row in constant
     )
@@ -49,11 +58,12 @@ def states_table(data: dict[str, Any]) -> dict[str, Any]:
     return {"columns": heads, "note": note, "data": {"columns": columns, "rows": list(zip(*cells))}}
 
 
-def curves(data: dict[str, Any]) -> dict[str, Any] | None:
+def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any] | None:
     """Stresses on the surface of states, by method and quantity; None where there are none.
 
     Args:
         data: datasets by path.
+        scaling: how quantities are told.
     """
     known = {"σ_XX": stresses.IN_PLANE, "σ_YY": stresses.PRESSURE}
     methods = [m for m in (CLOSED_FORM, FEM) if all(rows[m].path in data for rows in known.values())]
@@ -64,33 +74,50 @@ def curves(data: dict[str, Any]) -> dict[str, Any] | None:
     count = len(data[next(iter(apart))])
     most = max(_NUMBERS // (len(X) * len(methods) * len(known)), 1)
     some = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+    told = scaling(stresses.IN_PLANE[methods[0]], "")
+    in_units = told is not None and told.unit == "Pa"
+    factor = 1e-6 * told.factor if told and in_units else 1.0
     values = [
-        [[_plain(data[rows[method].path][i][order], 5) for i in some.tolist()] for rows in known.values()]
+        [
+            [_plain(factor * data[rows[method].path][i][order], 5) for i in some.tolist()]
+            for rows in known.values()
+        ]
         for method in methods
     ]
     varied = [row for row in apart.values() if len(np.unique(data[row.path])) > 1]
     names = [
         ", ".join([str(i), *(_value(row, data[row.path][i]) for row in varied)]) for i in some.tolist()
     ]
-    note = "Over N/(2a)." + f" {len(some)} of {count} states." * (len(some) < count)
+    note = "In MPa." if in_units else "Over N/(2a)."
+    note += f" {len(some)} of {count} states." * (len(some) < count)
     return {
         "note": note,
         "data": {
+            "unit": "[MPa]" if in_units else "/ (N/2a)",
             "X": _plain(X[order], 9), "states": names, "quantities": list(known),
             "methods": [_CALLED[method] for method in methods], "values": values,
         },
     }  # fmt: skip
 
 
-def _column(row: Quantity) -> dict[str, Any]:
+def _told(row: Quantity, values: NDArray, scaling: Scaling) -> NDArray:
+    told = scaling(row, "")
+    return values if told is None or told.factor == 1.0 else told.factor * values
+
+
+def _column(row: Quantity, scaling: Scaling) -> dict[str, Any]:
     name = row.path.partition("/")[2].replace("/", "_")
-    unit = "" if row.unit in ("1", "none") else f" [{row.unit}]"
+    told = scaling(row, name) or as_archived(row, name)
+    head = _head(row)
+    if told.name != name:
+        head = told.name if row.symbol else head.replace(" over a", "")
+    unit = "" if told.unit in ("1", "none") else f" [{told.unit}]"
     error = "error" in row.path or "estimate" in row.path
     digits = None if row.type == TEXT else _OF_ERRORS if error else _DIGITS
     return {
-        "head": _head(row) + unit,
-        "name": name,
-        "csv": name + unit,
+        "head": head + unit,
+        "name": told.name,
+        "csv": told.name + unit,
         "about": row.about,
         "digits": digits,
     }

@@ -1,6 +1,6 @@
 // Stresses on the surface of one state: both methods, zoomed by dragging, read by pointing.
 {
-  const { X, states, quantities, methods, values } = JSON.parse(byId("curves-data").textContent);
+  const { unit, X, states, quantities, methods, values } = JSON.parse(byId("curves-data").textContent);
   const box = byId("curves"), svg = box.querySelector("svg"), reading = box.querySelector("output");
   const COLOURS = ["var(--one)", "var(--two)"], LEFT = 58, RIGHT = 12, TOP = 22, BELOW = 40;
   const HOME = [Math.max(X[0], -3), Math.min(X[X.length - 1], 3)];
@@ -56,7 +56,7 @@
       draw("text", { x: LEFT - 6, y: y(tick) + 4, "text-anchor": "end" }, short(tick));
     }
     draw("text", { x: right, y: height - 6, "text-anchor": "end" }, "X/a (dimensionless)");
-    draw("text", { x: 4, y: 14 }, `${quantities[byId("quantity").value]} / (N/2a)`);
+    draw("text", { x: 4, y: 14 }, `${quantities[byId("quantity").value]} ${unit}`);
     const clip = draw("clipPath", { id: "inside" });
     clip.appendChild(draw("rect", { x: LEFT, y: TOP, width: right - LEFT, height: bottom - TOP }));
     curves.forEach((curve, method) => {

@@ -1,13 +1,14 @@
 """Commands that look at archives."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from support import command
+from support import command, computed
 from tampering import opened
 
 from galinx.app.commands import options
@@ -86,3 +87,30 @@ def test_check_tells_damage_from_contradictions(archive, tmp_path):
     done = command("check", whole)
     assert done.returncode == 1 and "fault: verdict says FAIL" in done.stdout
     assert "faults: 1" in done.stdout
+
+
+OWN = {
+    "solid.material": "T302", "solve.methods": ["closed_form"], "solve.mode": "traction", "motion.c": 0.3,
+    "solve.pressure": [[-1, 0], [0, -2], [1, 0]], "output.quantities": ["surface", "yield"],
+}  # fmt: skip
+
+
+def test_in_si_show_tells_yield_speeds_and_lengths(tmp_path):
+    result = computed("tables4_5", OWN)
+    result.save(tmp_path / "a.h5")
+    unit, a = 55.3e3 / 2e-3, 1e-3
+    plain, si = (command("show", tmp_path / "a.h5", *options).stdout for options in ((), ("--si",)))
+    largest = result.data["states/closed_form/von_mises"]
+    assert re.search(rf"largest von Mises stress +exact +N/\(2a\) +{largest.min():.4g} ", plain)
+    assert re.search(
+        rf"largest von Mises stress +exact +Pa +{re.escape(f'{unit * largest.min():.4g}')} ", si
+    )
+    depth = result.data["states/closed_form/von_mises_Y_over_a"].min()
+    assert re.search(rf"at Y +exact +m +{re.escape(f'{a * depth:.4g}')} ", si)
+    assert "speed [m/s]" in si and " 940.2 " in si and "wave crossings in a stroke" in si
+    shown = json.loads(command("show", tmp_path / "a.h5", "--json", "--si").stdout)
+    first, units = shown["states"][0], shown["units"]
+    assert units["closed_form"]["von_mises"] == "Pa" and units["closed_form"]["von_mises_Y"] == "m"
+    assert first["closed_form"]["von_mises"] == pytest.approx(unit * largest[0], rel=1e-14)
+    assert first["speed"] == pytest.approx(result.data["states/speed"][0]) and "c" not in first
+    assert units["speed"] == "m/s"

@@ -9,10 +9,12 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from support import computed
 
 from galinx import compute, template
 from galinx.app.results import answers
-from galinx.app.results.tabulated import states_table
+from galinx.app.results.si import scaling
+from galinx.app.results.tabulated import curves, states_table
 from galinx.postprocess.page.symbols import markup
 
 CHROMIUM = shutil.which("chromium")
@@ -174,3 +176,47 @@ def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
 )  # fmt: skip
 def test_numbers_have_prefixes(value, shown):
     assert answers._engineering(value, "Pa") == shown
+
+
+def test_in_si_the_table_and_the_curves_have_units(map_run):
+    scene, data = map_run.scene, map_run.data
+    table = states_table(data, scaling(scene))
+    columns = {column["csv"]: i for i, column in enumerate(table["data"]["columns"])}
+    speed = columns["speed [m/s]"]
+    assert [row[speed] for row in table["data"]["rows"]] == pytest.approx(data["states/speed"], rel=1e-11)
+    width = columns["closed_form_slip_reversed_left [m]"]
+    expected = 1e-3 * data["states/closed_form/slip_reversed_left"]
+    assert [row[width] for row in table["data"]["rows"]] == pytest.approx(expected, rel=1e-11)
+    assert "closed_form_slip_reversed_left" in {
+        column["csv"] for column in states_table(data)["data"]["columns"]
+    }
+
+
+def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
+    result = computed(
+        "tables4_5",
+        {
+            "solid.material": "T302",
+            "solve.methods": ["closed_form"],
+            "output.quantities": ["sif", "yield"],
+        },
+    )
+    found = {answer.name: answer.value for answer in answers.answers(result.data, result.scene)}
+    depth = result.data["states/closed_form/yield_depth"]
+    assert (
+        found["Depth of the yielded zone"]
+        == f"{1e6 * depth.min() * 1e-3:.3f} µm to {1e3 * depth.max():.2f} µm"
+    )
+    assert found["Wave crossings of the contact in a stroke"].startswith("0.08333 to 1.045e+05")
+
+
+def test_in_si_curves_are_in_megapascals(surface_run):
+    plain, si = curves(surface_run.data), curves(surface_run.data, scaling(surface_run.scene))
+    assert plain["data"]["unit"] == "/ (N/2a)" and si["data"]["unit"] == "[MPa]"
+    one, other = (np.array(found["data"]["values"][0][0], dtype=float) for found in (plain, si))
+    np.testing.assert_allclose(other, 27.65 * one, rtol=1e-4)  # of five digits
+
+
+@pytest.fixture(scope="module")
+def surface_run():
+    return computed("tables4_5", {"solve.methods": ["closed_form"]})

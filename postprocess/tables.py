@@ -116,22 +116,22 @@ LENGTHS = (
 
 #: What tells where a solid yields and where answers do not hold, by what a table calls it.
 _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
-    ("largest von Mises stress", yielding.VON_MISES),
+    ("largest von Mises", yielding.VON_MISES),
     ("  at X", yielding.VON_MISES_X),
     ("  at Y", yielding.VON_MISES_Y),
-    ("largest shear stress", yielding.SHEAR),
+    ("largest shear", yielding.SHEAR),
     ("  at X", yielding.SHEAR_X),
     ("  at Y", yielding.SHEAR_Y),
     ("load at first yield", yielding.FIRST_LOAD),
-    ("yield within, from X = -a", yielding.REACH_LEFT),
-    ("yield within, from X = a", yielding.REACH_RIGHT),
-    ("depth of the yielded zone", yielding.DEPTH),
-    ("wave crossings in a stroke", {"": validity.CROSSINGS}),
-    ("slip turned round, from X = -a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
-    ("slip turned round, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
-    ("strain beyond 5 %, from X = -a", {CLOSED_FORM: validity.STRAIN[0]}),
-    ("strain beyond 5 %, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
-    ("tension under the punch", {method: rows[0] for method, rows in validity.TENSION.items()}),
+    ("yield within, left", yielding.REACH_LEFT),
+    ("yield within, right", yielding.REACH_RIGHT),
+    ("depth of yield", yielding.DEPTH),
+    ("waves in a stroke", {"": validity.CROSSINGS}),
+    ("slip turned, left", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
+    ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
+    ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),
+    ("strain > 5 %, right", {CLOSED_FORM: validity.STRAIN[1]}),
+    ("tension", {method: rows[0] for method, rows in validity.TENSION.items()}),
     ("  at X", {method: rows[1] for method, rows in validity.TENSION.items()}),
 )
 _METHODS = {CLOSED_FORM: "exact", FEM: "FE", "": ""}
@@ -147,5 +147,8 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
                 ends = (f"{told.factor * end(values):.4g}" for end in (np.nanmin, np.nanmax))
                 unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
                 rows.append([label, _METHODS[method], unit, *ends])
-    notes = ["exact: closed form, FE: finite elements; slip and strain: at the load"]
+    notes = [
+        "left, right: how far from X = -a and X = a; waves: how often one crosses the contact",
+        "exact: closed form, FE: finite elements",
+    ]
     return Sheet("Yield, and where answers hold", ["", "by", "unit", "least", "most"], rows, notes)

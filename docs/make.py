@@ -144,7 +144,7 @@ digest again, has made another archive.
 
 Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another
 process first since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is
-not found in them.
+not found in them. Those before version 3 do not tell of their solid and its speeds.
 """
 
 _ATTRIBUTES = """\

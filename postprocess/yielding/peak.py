@@ -29,8 +29,9 @@ _BETWEEN = 4
 #: where it is near, and below which share of the first a round that finds nothing better is the last.
 _STARTS, _ROUNDS, _FINER, _SMALLEST = 3, 40, 2.0, 1e-3
 
-#: Halvings in which a depth is found.
-_HALVINGS = 30
+#: Halvings in which a depth is found, and what the distance of places along X falls by in each: it has to
+#: follow a largest stress that moves as the depth changes.
+_HALVINGS, _NEARER = 30, 0.7
 
 #: A stress at points (states or 1, n, 2) over a, of every state: (states, n).
 Stress = Callable[[NDArray], NDArray]
@@ -135,13 +136,14 @@ class Levels:
         deepest = np.where(passed.any(axis=1), passed.shape[1] - 1 - passed[:, ::-1].argmax(axis=1), 0)
         X, Y = self.places[best[rows, deepest]].T
         inner = np.where(passed[rows, deepest], 0.0 - Y, 0.0)
-        of_peak = (peak.value >= 1.0) & (inner < -peak.Y)
+        somewhere = passed.any(axis=1)
+        of_peak = (peak.value >= 1.0) & (~somewhere | (inner < -peak.Y))
         inner, X = np.where(of_peak, -peak.Y, inner), np.where(of_peak, peak.X, X)
         depths = np.array([-level[0] for _, level, _ in self._by_level])
         outer = depths[np.minimum(np.searchsorted(depths, inner, side="right"), len(depths) - 1)]
         found = _deepest(stress, X, inner, outer)
         found = np.where(passed[:, -1], np.nan, found)
-        return np.where(passed.any(axis=1) | (peak.value >= 1.0), found, 0.0)
+        return np.where(somewhere | (peak.value >= 1.0), found, 0.0)
 
 
 def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
@@ -223,5 +225,5 @@ def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDAr
         passed = np.maximum(top, values.max(axis=1)) >= 1.0
         X = X + apart * u
         inner, outer = np.where(passed, y, inner), np.where(passed, outer, y)
-        apart = np.maximum(apart / 2.0, 1e-4 * y)
+        apart *= _NEARER
     return inner

@@ -1,0 +1,111 @@
+"""Yield by both methods, from a scene to its archive; nothing of it unless it is asked for."""
+
+import json
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx.app.errors import BadInput
+from galinx.postprocess.stresses import principal, von_mises
+
+#: Of the scene's states, the two with most and least friction; T302 yields at 205 MPa.
+CHANGES = {
+    "solid.material": "T302", "output.quantities": ["sif", "yield"], "solve.tolerance": 1e-5,
+    "motion.c": 0.6, "motion.strokes": ["forward"],
+}  # fmt: skip
+OWN = {"solve.mode": "traction", "solve.pressure": [[-1, 0], [-0.5, -1], [0.2, -1.4], [1, 0]]}
+
+
+@pytest.fixture(scope="module", params=["contact", "traction"])
+def of_punch(request):
+    return computed("tables4_5", CHANGES | {"solve.mode": request.param})
+
+
+@pytest.fixture(scope="module")
+def of_pressure():
+    return computed("tables4_5", CHANGES | OWN | {"punch.load": "500 kN/m"})
+
+
+def test_finite_elements_find_the_zone_at_the_edges_from_their_own_fields(of_punch):
+    data = of_punch.data
+    assert of_punch.verdict == "PASS", of_punch.attributes["verdict_reasons"]
+    for name in ("yield_reach_left", "yield_reach_right", "yield_depth"):
+        fem, exact = (data[f"states/{method}/{name}"] for method in ("fem", "closed_form"))
+        np.testing.assert_allclose(fem, exact, rtol=1e-5)
+        assert (fem != exact).all() and (exact > 1e-3).all()
+    assert (data["states/fem/estimate_yield"] > 0.0).all()
+    reasons = " ".join(json.loads(of_punch.attributes["verdict_reasons"]))
+    assert "estimated error of stresses in which yield is looked for" in reasons
+    assert "distance from the edges within which yield is passed" in reasons
+
+
+def test_sharp_edges_are_said_to_yield_at_any_load(of_punch):
+    assert any("any load makes these yield" in text for text in of_punch.data["run/skipped"])
+    assert not any("first_yield_load" in name or "von_mises" in name for name in of_punch.data)
+
+
+def test_finite_elements_find_the_largest_stresses_below_a_pressure(of_pressure):
+    data = of_pressure.data
+    assert of_pressure.verdict == "PASS", of_pressure.attributes["verdict_reasons"]
+    for name in ("von_mises", "max_shear", "first_yield_load", "yield_depth"):
+        fem, exact = (data[f"states/{method}/{name}"] for method in ("fem", "closed_form"))
+        np.testing.assert_allclose(fem, exact, rtol=1e-5)
+    assert (data["states/fem/von_mises"] != data["states/closed_form/von_mises"]).all()
+    load = 205e6 * 2e-3 / data["states/closed_form/von_mises"]  # by hand: N/(2a) times the largest
+    np.testing.assert_allclose(data["states/closed_form/first_yield_load"], load, rtol=1e-12)
+    assert not any("yield_reach" in name for name in data)
+
+
+def test_the_zone_begins_at_the_load_of_first_yield(of_pressure):
+    first = of_pressure.data["states/closed_form/first_yield_load"]
+    depths = [
+        computed(
+            "tables4_5",
+            CHANGES | OWN | {"solve.methods": ["closed_form"], "punch.load": float(share * first[0])},
+        ).data["states/closed_form/yield_depth"][0]
+        for share in (0.999, 1.001)
+    ]
+    assert depths[0] == 0.0 < depths[1]
+
+
+def test_invariants_inside_are_those_of_the_stresses(inside_run):
+    data, solid = inside_run.data, inside_run.scene.solid
+    for method in ("closed_form", "fem"):
+        σ = [data[f"interior/{method}/sigma_{ij}"] for ij in ("XX", "YY", "XY")]
+        one, two = principal(*σ)
+        np.testing.assert_array_equal(data[f"interior/{method}/sigma_1"], one)
+        np.testing.assert_array_equal(data[f"interior/{method}/sigma_2"], two)
+        np.testing.assert_allclose(one * two, σ[0] * σ[1] - σ[2] ** 2, atol=1e-12)
+        mises = von_mises(*σ, solid.ν * (σ[0] + σ[1]))
+        np.testing.assert_allclose(data[f"interior/{method}/von_mises"], mises, rtol=1e-14)
+
+
+def test_nothing_of_yield_is_computed_unasked(tables_run):
+    assert not any("yield" in name for name in tables_run.data)
+    assert "yield: not in output.quantities" in tables_run.data["run/skipped"]
+
+
+def test_yield_without_a_strength_is_refused():
+    with pytest.raises(BadInput, match=r'"yield": expected solid\.yield_strength'):
+        computed("tables4_5", {"output.quantities": ["yield"]})
+    with pytest.raises(BadInput, match=r"expected solid\.yield_strength"):
+        computed("tables4_5", {"solid.material": "BK7", "output.quantities": ["yield"]})
+
+
+def test_a_strength_of_ones_own_replaces_the_materials():
+    closed = CHANGES | {"solve.methods": ["closed_form"]}
+    one, other = (
+        computed("tables4_5", closed | changes).data["states/closed_form/yield_depth"]
+        for changes in ({}, {"solid.yield_strength": "410 MPa"})
+    )
+    half = computed("tables4_5", closed | {"punch.load": 55.3e3 / 2}).data[
+        "states/closed_form/yield_depth"
+    ]
+    np.testing.assert_allclose(other, half, rtol=1e-12)
+    assert (other < one / 2).all()
+
+
+def test_incompressible_solids_have_it_in_closed_form_only():
+    with pytest.raises(BadInput, match=r"output\.quantities: found .* expected ν <= 0\.49"):
+        computed("tables4_5", CHANGES | {"solid.nu": 0.5})

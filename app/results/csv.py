@@ -17,7 +17,7 @@ from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import SPEED
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
-from galinx.postprocess.tables import Scaled
+from galinx.postprocess.scaling import Scaled
 
 #: Where states have values, and the word of output.quantities that asks for them, by table.
 TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}

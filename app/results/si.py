@@ -4,7 +4,7 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
-from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
+from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 from galinx.solvers.solution import Body
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}

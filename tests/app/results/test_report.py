@@ -112,7 +112,7 @@ def test_many_states_are_counted_where_not_all_are_shown(map_run):
     [
         ("K_I at X", "<i>K</i><sub>I</sub> at X"), (r"$\mu_C$", "<i>μ</i><sub>C</sub>"),
         ("4.8e-07 m", "4.8&#8239;×&#8239;10<sup>−7</sup> m"), ("<b>", "&lt;b&gt;"),
-        (r"$\sigma_0 l/N$", "<i>σ</i><sub>0</sub> l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
+        (r"$\sigma_0 l/N$", "σ₀ l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
         (r"c = $4.786 \times 10^{-7}$", "c = 4.786&#8239;×&#8239;10<sup>−7</sup>"), ("0x1e-7", "0x1e-7"),
     ],
 )  # fmt: skip

@@ -154,12 +154,19 @@ class MeshKind:
             return 0.0
         return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / (2.0 * wanted.nearest)
 
-    def unseen(self, wanted: Wanted, degree: int) -> float:
+    def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         """Estimated relative error of K_I that the innermost cells leave, and that no level sees.
 
-        In a chart with smooth fields it falls with the degree, twentyfold from one to the next.
+        In a chart with smooth fields what is left of a singularity is linear in the distance but not in
+        the cell's coordinates: it falls with the degree's fourth power only. Measured at degree 12, over
+        all κ and speeds: 0.2 to 6 at rest, ten times as much at 0.99 of the Rayleigh speed.
+
+        Args:
+            wanted: what the mesh is for.
+            degree, cuts: of the cells.
+            margin: of the solid's response.
         """
-        share = 0.3 if self.fan else 3e-4 * 20.0 ** min(5 - degree, 1)
+        share = 0.3 if self.fan else 6.0 / (cuts**2 * degree**4 * margin ** (2.0 / 3.0))
         return share * self._innermost(wanted) ** 2
 
     def _power(self, wanted: Wanted) -> float:

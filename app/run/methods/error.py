@@ -125,7 +125,8 @@ class MeasuredError:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
         plan, response = self._ladder.work.plan, self._ladder.task.response
         kind, wanted, margin = plan.kind, plan.wanted, response.margin
-        far, innermost = kind.truncation(wanted, margin), kind.unseen(wanted, self._ladder.degree)
+        far = kind.truncation(wanted, margin)
+        innermost = kind.unseen(wanted, self._ladder.degree, plan.cuts, margin)
         # Measured at far boundaries of 100 a and 1e4 a; see docs/verification.md. n times the margin is
         # about the surface's compliance at rest, 1/2 to 10 for the solids that were tried.
         compliance = 2.0 + 0.55 * float(np.log(4.0 * response.n * margin))

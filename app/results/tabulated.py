@@ -3,13 +3,13 @@
 from typing import Any
 
 import numpy as np
-from galinx.postprocess.scaling import Scaling, as_archived
 from numpy.typing import NDArray
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, of_states, stresses, table
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, STATE, TEXT
+from galinx.postprocess.scaling import Scaling, as_archived
 
 #: Most cells of the table, and numbers of the curves: a page stays below 5 MB.
 _CELLS, _NUMBERS = 60_000, 250_000

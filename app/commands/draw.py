@@ -1,5 +1,6 @@
 """Commands that draw what archives hold: plot."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -45,10 +46,11 @@ from galinx.app.console.terminal import say
     metavar="NAMES",
     help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
 )
+@click.option("--si", is_flag=True, help="Stresses in MPa.")
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
-    by: str, size: str, dpi: int, formats: str, overwrite: bool,
+    by: str, size: str, dpi: int, formats: str, si: bool, overwrite: bool,
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
@@ -61,6 +63,7 @@ def plot(
     from galinx.app.pictures.files import Files
     from galinx.app.results.drawings import write
     from galinx.app.results.result import load
+    from galinx.app.results.si import unit_of_stress
 
     wanted = choice.Choice(
         figures=choice.words(figure), quantities=choice.words(quantity),
@@ -70,6 +73,8 @@ def plot(
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
     result = load(archive)
     if ranks.is_root():
+        if si:
+            wanted = replace(wanted, unit=1e-6 * unit_of_stress(result.scene))
         written = write(result.data, result.scene, wanted, files)
         for one, after in zip(written, [*written[1:], None]):
             print(f"{one.noun}: {one.path}")

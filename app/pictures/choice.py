@@ -8,6 +8,7 @@ from typing import Any
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import nearest, short
 from galinx.postprocess.figures.canvas import Size
+from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import SPEED
 
 _INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
@@ -30,6 +31,7 @@ class Choice:
         x, by: what curves are drawn over, and what tells them apart.
         y: names of what is drawn over ``x``.
         size: of every figure.
+        unit: of stresses, N/(2a), in MPa; 0: they are drawn over it.
     """
 
     figures: tuple[str, ...] = ()
@@ -40,12 +42,26 @@ class Choice:
     y: tuple[str, ...] = ()
     by: str = ""
     size: Size | None = None
+    unit: float = 0.0
 
     @property
     def given(self) -> set[str]:
         """Options that say what is drawn."""
         names = ("states", "quantities", "method", "x", "y", "by")
         return {name for name in names if getattr(self, name)}
+
+    def scale(self, row: Quantity) -> float:
+        """What a quantity's numbers are multiplied by."""
+        return self.unit if self.unit and row.unit == "N/(2a)" else 1.0
+
+    def called(self, row: Quantity) -> str:
+        """A quantity without a symbol, with its unit where that is not N/(2a)."""
+        return noun(row) + " (MPa)" * (self.scale(row) != 1.0)
+
+    def label(self, stress: str, symbol: str, between: str = " ") -> str:
+        """What a stress is called, its symbol in TeX, and its unit."""
+        unit = "$ (MPa)" if self.unit else "/(N/2a)$"
+        return f"{stress}{between}${symbol}{unit}"
 
     def check_states(self, data: dict[str, Any]) -> None:
         """
@@ -58,6 +74,11 @@ class Choice:
                 raise BadInput(
                     f"--states: found {state}, expected numbers from 0 to {count - 1}; show lists them"
                 )
+
+
+def noun(row: Quantity) -> str:
+    """What a quantity is, without how it was found."""
+    return row.about.split(",")[0].split(" (")[0]
 
 
 def words(text: str) -> tuple[str, ...]:

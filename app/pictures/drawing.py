@@ -58,8 +58,3 @@ def by_method(
         if told and row.method in ("", method or row.method):
             found.setdefault(path.rpartition("/")[2], {})[row.method] = row
     return found
-
-
-def noun(row: Quantity) -> str:
-    """What a quantity is, without how it was found."""
-    return row.about.split(",")[0].split(" (")[0]

@@ -52,7 +52,7 @@ def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]
         [f"{told.label(int(i), [STROKE, PLACE])}, $f = {f[i]:.2f}$" for i in frames],
         data.get(SURFACE_X.path, np.empty(0)),
         stresses,
-        inside.Fields(data, scene).grid() if fields else None,
+        inside.Fields(data, scene, Choice()).grid() if fields else None,
         fields,
         choice.size,
     )
@@ -70,7 +70,7 @@ def _shown(
             for stress in surface.stresses(data, choice)
             for method, values in list(stress.values.items())[:1]
         ], []
-    fields = inside.Fields(data, scene, choice.method)
+    fields = inside.Fields(data, scene, choice)
     names = choice.quantities or ("sigma_XX", "von_mises")
     made = []
     for name in names:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import METHODS, Drawing, by_method, noun, there
+from galinx.app.pictures.drawing import METHODS, Drawing, by_method, there
 from galinx.app.pictures.told import C, Told, not_shown
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.maps import Map, maps_figure
@@ -33,11 +33,12 @@ class Fields:
 
     Args:
         data, scene: the archive's.
-        method: that is wanted alone, if any.
+        choice: what is wanted.
     """
 
-    def __init__(self, data: dict[str, Any], scene: Scene, method: str = "") -> None:
-        self._data, self._scene = data, scene
+    def __init__(self, data: dict[str, Any], scene: Scene, choice: Choice) -> None:
+        self._data, self._scene, self._choice = data, scene, choice
+        method = choice.method
         self._shape = tuple(data[stresses.MAP.path].tolist())
         self._known = by_method(data, (STATE, INSIDE), method)
         self.methods = [name for name in METHODS if any(name in rows for rows in self._known.values())]
@@ -55,11 +56,13 @@ class Fields:
         return X[0], Y[:, 0]
 
     def values(self, name: str, method: str, state: int) -> NDArray:
-        """One quantity of a state, over N/(2a), (rows, columns)."""
+        """One quantity of a state, (rows, columns)."""
         if name in self._known:
-            return self._on_grid(self._data[self._known[name][method].path][state])
+            row = self._known[name][method]
+            return self._choice.scale(row) * self._on_grid(self._data[row.path][state])
         XX, YY, XY = (
-            self._on_grid(self._data[row.path][state]) for row in stresses.STRESSES_INSIDE[method]
+            self._choice.scale(row) * self._on_grid(self._data[row.path][state])
+            for row in stresses.STRESSES_INSIDE[method]
         )
         if name == "max_shear":
             return maximum_shear(XX, YY, XY)
@@ -68,9 +71,9 @@ class Fields:
     def label(self, name: str, alone: bool) -> str:
         """Of its colours."""
         if name not in _SHOWN:
-            return noun(next(iter(self._known[name].values())))
+            return self._choice.called(next(iter(self._known[name].values())))
         called, symbol = _SHOWN[name]
-        return f"{called}{' ' if alone else chr(10)}${symbol}/(N/2a)$"
+        return self._choice.label(called, symbol, " " if alone else "\n")
 
     def _of_components(self, name: str) -> bool:
         return (
@@ -88,7 +91,7 @@ def has_map(data: dict[str, Any], method: str = "") -> bool:
 
 def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Stresses inside at the slowest and the fastest speed, and how far both methods are apart."""
-    fields, told = Fields(data, scene, choice.method), Told(data, scene)
+    fields, told = Fields(data, scene, choice), Told(data, scene)
     X, Y = fields.grid()
     names = [one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _SHOWN if name in fields.names]

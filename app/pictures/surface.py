@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import Drawing, by_method, noun
+from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.friction import Loops
 from galinx.app.pictures.told import C, Told, few, not_shown, spread
 from galinx.app.scene.scene import Scene
@@ -24,8 +24,8 @@ _CURVES, _COLUMNS, _LEAST = 6, 3, 2.3
 _SHOWN = {
     next(iter(rows.values())).path.rpartition("/")[2]: label
     for rows, label in (
-        (PRESSURE, r"contact stress $\sigma_{YY}/(N/2a)$"),
-        (IN_PLANE, r"in-plane stress $\sigma_{XX}/(N/2a)$"),
+        (PRESSURE, ("contact stress", r"\sigma_{YY}")),
+        (IN_PLANE, ("in-plane stress", r"\sigma_{XX}")),
     )
 }
 
@@ -41,8 +41,10 @@ def stresses(data: dict[str, Any], choice: Choice) -> list[Stress]:
     wanted = choice.quantities or [name for name in _SHOWN if name in known]
     return [
         Stress(
-            _SHOWN.get(name, noun(next(iter(known[name].values())))),
-            {method: data[row.path] for method, row in known[name].items()},
+            choice.label(*_SHOWN[name])
+            if name in _SHOWN
+            else choice.called(next(iter(known[name].values()))),
+            {method: choice.scale(row) * data[row.path] for method, row in known[name].items()},
         )
         for name in (one_of("quantity", name, known) for name in wanted)
     ]

@@ -9,21 +9,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import Drawing, by_method, noun
+from galinx.app.pictures.choice import Choice, noun, one_of
+from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.told import PLACE, C, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
-from galinx.postprocess.quantities import Quantity, column
+from galinx.postprocess.quantities import Quantity, column, validity
 from galinx.postprocess.quantities.quantity import FEM, STATE
-from galinx.postprocess.quantities.states import FRICTION
+from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 
 #: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
 _VALUES, _CURVES, _PANELS = 3, 6, 12
 
 #: Relative change below which numbers count as constant or, up to a factor, as those of another column.
 _SAME = 1e-5
+
+#: Where answers do not hold, and the speed once more: drawn where they are asked for.
+_LIMITS = {
+    row.path.rpartition("/")[2]
+    for row in (
+        VELOCITY, validity.CROSSINGS, *validity.STRAINED,
+        *(row for rows in validity.TENSION.values() for row in rows),
+    )
+}  # fmt: skip
 
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
@@ -142,7 +151,8 @@ def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
     else:
         # Along strokes friction is drawn as a loop.
         elsewhere = [x] if name != PLACE else [x, data[FRICTION.path]]
-        numbers = {one: column.best[some] for one, column in known.items() if one != name}
+        left = {name, *_LIMITS}
+        numbers = {one: column.best[some] for one, column in known.items() if one not in left}
         order = sorted(numbers, key=lambda one: -known[one].methods)
         changing = {one for one in numbers if any(_varies(known[one].best[of]) for _, of in groups)}
         drawn, same = _apart(numbers, order, changing, [values[some] for values in elsewhere])

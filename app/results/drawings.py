@@ -39,7 +39,7 @@ def _on_surface(data: _Data, choice: Choice) -> bool:
 def _below(data: _Data, scene: Scene, choice: Choice) -> bool:
     if not inside.has_map(data, choice.method):
         return False
-    return set(choice.quantities) <= set(inside.Fields(data, scene, choice.method).names)
+    return set(choice.quantities) <= set(inside.Fields(data, scene, choice).names)
 
 
 def _no_figure(data: _Data, scene: Scene, choice: Choice) -> Drawing:
@@ -124,7 +124,7 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
 
 
 def _quantities(data: _Data, scene: Scene) -> list[str]:
-    below = inside.Fields(data, scene).names if inside.has_map(data) else []
+    below = inside.Fields(data, scene, _PLAIN).names if inside.has_map(data) else []
     return [*surface.quantities(data), *below]
 
 

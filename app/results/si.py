@@ -17,6 +17,11 @@ def scaling(scene: Scene | None) -> Scaling:
     return lambda row, name: in_si(row, name, scene)
 
 
+def unit_of_stress(scene: Scene) -> float:
+    """N/(2a) [Pa]."""
+    return Body(scene.solid, scene.punch.profile, scene.punch.load).stress
+
+
 def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
     """A quantity in SI; dimensionless ones that are over no length, stress or speed stay.
 

@@ -30,13 +30,14 @@ CROSSINGS = Quantity(
 )  # fmt: skip
 
 
-def _within(name: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
+def _within(name: str, strain: float, what: tuple[str, str]) -> tuple[Quantity, Quantity]:
     """At X = -a and X = a."""
 
     def end(side: str, at: str, i: int) -> Quantity:
         return Quantity(
             f"states/closed_form/{name}_{side}", "1",
-            f"distance from {at}, under the punch, within which {what}, over the half-width",
+            f"{what[0]}: distance from {at}, under the punch, within which {what[1]}, over the "
+            "half-width",
             (STATE,), lambda s, _: s.strained_within(strain)[:, i], CLOSED_FORM, PUNCH,
             range=_NOT_NEGATIVE,
         )  # fmt: skip
@@ -46,9 +47,11 @@ def _within(name: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
 
 #: The slip velocity is V (1 + u,X).
 SLIP_REVERSED = _within(
-    "slip_reversed", 1.0, "slip has turned round at the load: 1 + u,X is negative"
+    "slip_reversed", 1.0, ("slip turned round", "1 + u,X is negative at the load")
 )  # fmt: skip
-STRAIN = _within("large_strain", LARGE_STRAIN, "the strain u,X on the surface is beyond 5 % at the load")
+STRAIN = _within(
+    "large_strain", LARGE_STRAIN, ("strain beyond 5 %", "that of the surface along X is, at the load")
+)  # fmt: skip
 STRAINED = (*SLIP_REVERSED, *STRAIN)
 
 

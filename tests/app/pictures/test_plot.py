@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from support import command, computed
 
 from galinx.app.errors import BadInput
@@ -244,3 +245,35 @@ def test_the_command_draws_what_it_is_told(archive, tmp_path):
     assert b'width="252pt"' in (tmp_path / "one.svg").read_bytes()[:2000]
     refused = command("plot", archive, "-o", tmp_path / "two.tiff")
     assert refused.returncode == 2 and "expected pdf, png, svg or a folder" in refused.stderr
+
+
+def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
+    """27.65 MPa is N/(2a) of these scenes."""
+    for run, name, quantity in ((fast, "surface", "sigma_XX"), (strokes, "inside", "von_mises")):
+        plain, si = (
+            drawn(run, name, states=(1,), quantities=(quantity,), unit=unit).figure
+            for unit in (0.0, 27.65)
+        )
+        one, other = (figure.axes[0] for figure in (plain, si))
+        if name == "surface":
+            y, Y = (curves(axis)[0].get_ydata() for axis in (one, other))
+            assert "(N/2a)" in one.get_ylabel() and "(MPa)" in other.get_ylabel()
+        else:
+            y, Y = (np.asarray(axis.images[0].get_array()) for axis in (one, other))
+            labels = [" ".join(text.get_text() for text in f.findobj(Text)) for f in (plain, si)]
+            assert "(N/2a)" in labels[0] and "(MPa)" in labels[1] and "(N/2a)" not in labels[1]
+        np.testing.assert_allclose(Y, 27.65 * y, rtol=1e-6)
+
+
+def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
+    from galinx.app.commands.draw import plot
+    from galinx.app.results import drawings
+
+    fast.save(tmp_path / "a.h5")
+    units = []
+    monkeypatch.setattr(
+        drawings, "write", lambda data, scene, choice, files: units.append(choice.unit) or []
+    )
+    for options in ([], ["--si"]):
+        plot.main([str(tmp_path / "a.h5"), *options], standalone_mode=False)
+    assert units == [0.0, pytest.approx(27.65)]

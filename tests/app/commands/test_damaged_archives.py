@@ -125,18 +125,23 @@ DATASETS = (
 )
 
 NO_TEXT = (1.5, True, [1.0, 2.0], np.bytes_(b"\xff\xfe"), h5py.Empty("f"), np.array(["a", "b"], object))
-WRONG = dict.fromkeys(
-    ("datasets", "rules", "comparisons", "verdict_reasons", "warnings", "versions"),
-    (*NO_TEXT, "{", "3", "null", "[[]]", '{"a": []}', "", "[" * 5000),
-) | {
-    "complete": (False, 1, 0, "no", "True", [True, True]),
-    "load": ("1", np.nan, np.inf, True, [1.0, 2.0]),
-    "schema_version": ("2", 1, 0, -1, 4, 1.5, [2, 2]),
-    "verdict": (*NO_TEXT, "pass", "PASSED", "", "PASS "),
-    "program": (*NO_TEXT, "Galinx", ""),
-    "scene_sha256": (*NO_TEXT, "0" * 64, ""),
-    "created": (*NO_TEXT, "today", ""),
-}
+NO_NUMBER = ("1", True, [1.0, 2.0], h5py.Empty("f"))
+WRONG = (
+    dict.fromkeys(
+        ("datasets", "solid", "rules", "comparisons", "verdict_reasons", "warnings", "versions"),
+        (*NO_TEXT, "{", "3", "null", "[[]]", '{"a": []}', "", "[" * 5000),
+    )
+    | {
+        "complete": (False, 1, 0, "no", "True", [True, True]),
+        "speed_limit": NO_NUMBER,
+        "schema_version": ("2", 1, 0, -1, 4, 1.5, [2, 2]),
+        "verdict": (*NO_TEXT, "pass", "PASSED", "", "PASS "),
+        "program": (*NO_TEXT, "Galinx", ""),
+        "scene_sha256": (*NO_TEXT, "0" * 64, ""),
+        "created": (*NO_TEXT, "today", ""),
+    }
+    | dict.fromkeys(("load", "half_width", "c_s"), (*NO_NUMBER, np.nan, np.inf))
+)
 
 
 def tampered(file, choose):

@@ -57,7 +57,7 @@ def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
     is_refused(galinx(tmp_path, *RUN, shell='"$@" >/dev/full'), 3, "cannot write the output")
     assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "not judged"
     done = galinx(tmp_path, "show", "x.h5", shell='"$@" | head -c 5')
-    assert (done.stdout, done.stderr) == (b"Table", b"")
+    assert len(done.stdout) == 5 and not done.stderr
 
 
 @pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])

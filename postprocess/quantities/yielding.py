@@ -47,11 +47,12 @@ VON_MISES = _both(
     lambda s, _: s.strength.von_mises.value, OWN_PRESSURE, "largest stresses",
 )  # fmt: skip
 VON_MISES_X = _both(
-    "von_mises_X_over_a", "1", "where that is, along the surface, over the half-width",
+    "von_mises_X_over_a", "1",
+    "place of the largest von Mises stress along the surface, over the half-width",
     lambda s, _: s.strength.von_mises.X, OWN_PRESSURE, range=Range(),
 )  # fmt: skip
 VON_MISES_Y = _both(
-    "von_mises_Y_over_a", "1", "where that is, outwards, over the half-width",
+    "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
     lambda s, _: s.strength.von_mises.Y, OWN_PRESSURE, range=_BELOW,
 )  # fmt: skip
 SHEAR = _both(
@@ -59,32 +60,34 @@ SHEAR = _both(
     lambda s, _: s.strength.shear.value, OWN_PRESSURE, "largest stresses",
 )  # fmt: skip
 SHEAR_X = _both(
-    "max_shear_X_over_a", "1", "where that is, along the surface, over the half-width",
+    "max_shear_X_over_a", "1", "place of the largest shear stress along the surface, over the half-width",
     lambda s, _: s.strength.shear.X, OWN_PRESSURE, range=Range(),
 )  # fmt: skip
 SHEAR_Y = _both(
-    "max_shear_Y_over_a", "1", "where that is, outwards, over the half-width",
+    "max_shear_Y_over_a", "1", "place of the largest shear stress outwards, over the half-width",
     lambda s, _: s.strength.shear.Y, OWN_PRESSURE, range=_BELOW,
 )  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",
-    "load N per depth at which the solid first yields somewhere; 0 where its stress is infinite",
+    "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
+    "infinite",
     lambda s, _: s.strength.first_load, OWN_PRESSURE,
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",
-    "largest distance from X = -a, on its side of the middle, at which the von Mises stress reaches the "
-    f"yield strength at the load, over the half-width; {_BEYOND}",
+    "reach of yield from X = -a, the largest distance on its side of the middle at which the von Mises "
+    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone",
 )  # fmt: skip
 REACH_RIGHT = _both(
-    "yield_reach_right", "1", f"the same from X = a; {_BEYOND}",
+    "yield_reach_right", "1",
+    f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone",
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
-    "largest depth at which the von Mises stress reaches the yield strength at the load, over the "
-    f"half-width; {_BEYOND}",
+    "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
+    f"over the half-width; {_BEYOND}",
     lambda s, _: s.strength.depth, compared="depth of yield",
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
@@ -92,7 +95,7 @@ ESTIMATE_YIELD = Quantity(
     "estimated error of the stresses in which yield is looked for, over the larger of the largest there "
     "and further than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
-    range=_NOT_NEGATIVE,
+    range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 #: By method, those that are lengths.

@@ -90,7 +90,7 @@ def curves_figure(
     below = 0.25 + 0.13 * (1 + label.count("\n"))
     top = (0.2 if len(shown) > 1 else 0.08) + (0.3 if over.beside else 0.0)
     room = Room(0.7, 0.12, below + legend.height, top, 0.74, 0.2 + below)
-    figure, axes = panels(rows, columns, size, 0.8, room)
+    figure, axes = panels(rows, columns, size, 0.6 if columns == 2 else 0.8, room)
     for axis in axes.flat[len(shown) :]:
         axis.remove()
     tall = axes[0, 0].get_position().height * figure.get_figheight()

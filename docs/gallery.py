@@ -17,7 +17,8 @@ SHOWN = {
     "fig8": ("surface", "A larger μ_C leans the pressure to one end and raises the tension there."),
     "fig9": ("surface", "A stiffer contact comes nearer to full slip at the same place of the stroke."),
     "fig10": ("surface", "Dahl's exponent acts through f alone."),
-    "inside": ("inside", "Stresses below the punch by both methods, and their difference."),
+    "parameter_study": ("parameters", "What K_I and the exponents make of μ_C, at three speeds."),
+    "inside": ("inside", "Stresses below the punch, slow and fast, and how far both methods are apart."),
     "tables4_5": ("degrees", "Ten times more accurate with every degree: how the error is known."),
     "graded": ("mesh", "A mesh of straight cells, graded towards the edges."),
     "box": ("mesh", "The study's block; its walls are far outside this picture."),
@@ -58,12 +59,13 @@ def page() -> str:
 def main() -> None:
     """Compute the scenes and draw what is shown."""
     from galinx import compute, template
+    from galinx.postprocess.figures.canvas import content
 
     folder = DOCS / "figures" / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
     for name, (wanted, _) in SHOWN.items():
-        found = {drawing.name: drawing.figure for drawing in compute(template(name)).drawings()}
-        found[wanted].savefig(folder / f"{name}.png", dpi=70, metadata={"Software": "galinx"})
+        figure = compute(template(name)).figure(wanted)
+        (folder / f"{name}.png").write_bytes(content(figure, "png", 110))
         print(f"written: docs/figures/gallery/{name}.png", flush=True)
 
 

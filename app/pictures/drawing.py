@@ -1,5 +1,6 @@
 """A picture of an archive, and what pictures ask of archives."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -55,6 +56,12 @@ def by_method(
     found: dict[str, dict[str, Quantity]] = {}
     for path, row in table().items():
         told = path in data and row.over == over and row.type != TEXT and not row.symbol
-        if told and row.method in ("", method or row.method):
+        if told and method in ("", row.method):
             found.setdefault(path.rpartition("/")[2], {})[row.method] = row
     return found
+
+
+def noun(row: Quantity) -> str:
+    """What a quantity is, without how it was found."""
+    told = re.split(r"[,;:]| \(", row.about)[0]
+    return f"{told} over $a$" if "over the half-width" in row.about else told

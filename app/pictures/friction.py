@@ -69,9 +69,11 @@ class Loops:
         return Panel(title, [loop for loop in found if loop], ordered)
 
     def panels(self) -> tuple[list[Panel], list[int]]:
-        """A panel for each parameter of the law, the others at the middle of their lists; its states."""
-        if not self.names:
-            return [self.panel(self.first[:1].tolist(), [])], self.first[:1].tolist()
+        """All loops if they are few, else a panel for each parameter of the law, the others at the middle
+        of their lists; and the states that they are of."""
+        if len(self.first) <= _LOOPS:
+            states = self.told.ordered(self.first).tolist()
+            return [self.panel(states, self.names)], states
         shown, drawn = [], []
         for name in self.names:
             others = [other for other in self.names if other != name]

@@ -99,7 +99,7 @@ def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
     """Is something swept that changes something, or wanted?"""
     told = Told(data, scene)
     if choice.x or choice.y or choice.by:
-        return True
+        return bool(_columns(data, choice.method))
     return bool(_swept(told, _some(told, choice))) and bool(_sweep(data, told, choice).drawn)
 
 
@@ -139,7 +139,7 @@ def _some(told: Told, choice: Choice) -> NDArray[np.int64]:
 
 def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
     known, some = _columns(data, choice.method), _some(told, choice)
-    name, over, x = _over(told, known, choice.x, some)
+    name, over, x = _over(told, _columns(data, ""), choice.x, some)
     by = _by(told, choice.by, name, some)
     free = [name, by] if name in told.parameters else [by, *told.varied()]
     fixed = told.fixed([one for one in told.varied(some) if one not in free], some)

@@ -87,10 +87,10 @@ def curves_figure(
     exact, found = (any(values is not None for values in some) for some in zip(*map(_methods, every)))
     legend = Legend([*lines, *of_methods(exact, found)], size.width)
     label = folded(over.label, int((size.width / columns - 0.5) / _LETTER))
-    below = 0.25 + 0.13 * (1 + label.count("\n"))
+    below = 0.29 + 0.13 * (1 + label.count("\n"))
     top = (0.2 if len(shown) > 1 else 0.08) + (0.3 if over.beside else 0.0)
     room = Room(0.7, 0.12, below + legend.height, top, 0.74, 0.2 + below)
-    figure, axes = panels(rows, columns, size, 0.8, room)
+    figure, axes = panels(rows, columns, size, 0.6 if columns == 2 else 0.8, room)
     for axis in axes.flat[len(shown) :]:
         axis.remove()
     tall = axes[0, 0].get_position().height * figure.get_figheight()

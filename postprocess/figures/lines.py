@@ -16,7 +16,7 @@ def lines_figure(
     """Lines by label over x, the y axis logarithmic."""
     styles = looks(len(lines))
     legend = Legend([handle(look, label) for look, label in zip(styles, lines)], 5.0)
-    figure, axes = panels(1, 1, Size(5.0), 0.65, Room(0.62, 0.1, 0.4 + legend.height, 0.22))
+    figure, axes = panels(1, 1, Size(5.0), 0.65, Room(0.62, 0.1, 0.43 + legend.height, 0.22))
     axis = axes[0, 0]
     for y, look in zip(lines.values(), styles):
         axis.plot(x, y, color=look.colour, linestyle=look.line, marker=look.marker)
@@ -54,7 +54,7 @@ def degrees_figure(
     if true_error is not None:
         told.append(Line2D([], [], color=GREY, marker="x", linestyle="none", label="true error"))
     legend = Legend(told, size.width)
-    figure, axes = panels(1, 1, size, 0.72, Room(0.62, 0.1, 0.4 + legend.height, 0.1))
+    figure, axes = panels(1, 1, size, 0.72, Room(0.62, 0.1, 0.43 + legend.height, 0.1))
     axis = axes[0, 0]
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(labels)) - (len(labels) - 1) / 2.0) / max(1, len(labels) - 1)

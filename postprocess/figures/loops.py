@@ -67,7 +67,7 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
     foot = Legend([*(entries[0] if common else []), *strokes], size.width)
     below = 0.0 if common else max(map(len, entries)) * 0.15 + 0.05
     above = 0.2 if len(shown) > 1 or shown[0].title else 0.08
-    room = Room(0.48, 0.1, 0.38 + below + foot.height, above, 0.35, 0.55 + below)
+    room = Room(0.48, 0.1, 0.42 + below + foot.height, above, 0.35, 0.55 + below)
     figure, axes = panels(rows, columns, size, 0.62 if columns == 2 else 0.78, room)
     for axis in axes.flat[len(shown) :]:
         axis.remove()
@@ -77,7 +77,7 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
         if n % columns == 0:
             axis.set_ylabel(F_LABEL)
         if not common:
-            lowered = -(0.38 / (axis.get_position().height * figure.get_figheight()))
+            lowered = -(0.42 / (axis.get_position().height * figure.get_figheight()))
             axis.legend(
                 handles=entries[n], loc="upper center", bbox_to_anchor=(0.5, lowered), borderaxespad=0.0,
                 labelspacing=0.2,

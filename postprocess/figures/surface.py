@@ -94,7 +94,7 @@ def surface_figure(
     legend = Legend([*named, *of_methods(CLOSED_FORM in methods, FEM in methods)], size.width)
     ranges = [_ranges(X, stress, columns) for stress in stresses]
     apart = any(len(set(row)) > 1 for row in ranges)
-    room = Room(0.55, 0.1, 0.38 + legend.height, _top(columns, stresses), 0.42 if apart else 0.2, 0.52)
+    room = Room(0.55, 0.1, 0.42 + legend.height, _top(columns, stresses), 0.42 if apart else 0.2, 0.52)
     figure, axes = panels(len(stresses), len(columns), size, 0.6, room)
     for row, stress, limits_ in zip(axes, stresses, ranges):
         half = half_width(X, [stress])

@@ -39,7 +39,7 @@ class Quantity:
     Attributes:
         path: of its dataset in an archive.
         unit: "1" for dimensionless, "none" for texts.
-        about: what it is; the dataset's long name.
+        about: what it is; the dataset's long name, up to its first comma that of axes.
         over: its dimensions.
         of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
             None where the run itself puts it in.

@@ -25,19 +25,19 @@ LARGE_STRAIN = 0.05
 
 CROSSINGS = Quantity(
     "states/wave_crossings", "1",
-    "how often a wave of the speed c_s crosses the contact while a stroke lasts, L/(2 a c); NaN at rest",
+    "wave crossings of a stroke, how often a wave of the speed c_s crosses the contact while it lasts: "
+    "L/(2 a c); NaN at rest",
     (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 
 
-def _within(name: str, strain: float, what: tuple[str, str]) -> tuple[Quantity, Quantity]:
+def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
     """At X = -a and X = a."""
 
     def end(side: str, at: str, i: int) -> Quantity:
         return Quantity(
             f"states/closed_form/{name}_{side}", "1",
-            f"{what[0]}: distance from {at}, under the punch, within which {what[1]}, over the "
-            "half-width",
+            f"{reach} from {at}, the distance under the punch within which {what}, over the half-width",
             (STATE,), lambda s, _: s.strained_within(strain)[:, i], CLOSED_FORM, PUNCH,
             range=_NOT_NEGATIVE,
         )  # fmt: skip
@@ -47,10 +47,12 @@ def _within(name: str, strain: float, what: tuple[str, str]) -> tuple[Quantity, 
 
 #: The slip velocity is V (1 + u,X).
 SLIP_REVERSED = _within(
-    "slip_reversed", 1.0, ("slip turned round", "1 + u,X is negative at the load")
+    "slip_reversed", "reach of reversed slip", 1.0,
+    "slip has turned round at the load: 1 + u,X is negative",
 )  # fmt: skip
 STRAIN = _within(
-    "large_strain", LARGE_STRAIN, ("strain beyond 5 %", "that of the surface along X is, at the load")
+    "large_strain", "reach of large strain", LARGE_STRAIN,
+    "the strain u,X on the surface is beyond 5 % at the load",
 )  # fmt: skip
 STRAINED = (*SLIP_REVERSED, *STRAIN)
 
@@ -68,7 +70,8 @@ def _tension(method: str) -> tuple[Quantity, Quantity]:
             of(0), method, asked_by=ON_SURFACE, range=_NOT_NEGATIVE,
         ),
         Quantity(
-            f"states/{method}/tension_X_over_a", "1", "where that is, over the half-width; NaN for none",
+            f"states/{method}/tension_X_over_a", "1",
+            "place of the largest tension, over the half-width; NaN for none",
             (STATE,), of(1), method, asked_by=ON_SURFACE, nan_allowed=ANYWHERE,
             range=Range(at_least=-1.0, at_most=1.0),
         ),

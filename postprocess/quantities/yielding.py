@@ -52,8 +52,7 @@ VON_MISES_X = _both(
     lambda s, _: s.strength.von_mises.X, OWN_PRESSURE, range=Range(),
 )  # fmt: skip
 VON_MISES_Y = _both(
-    "von_mises_Y_over_a", "1",
-    "place of the largest von Mises stress below the surface, over the half-width",
+    "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
     lambda s, _: s.strength.von_mises.Y, OWN_PRESSURE, range=_BELOW,
 )  # fmt: skip
 SHEAR = _both(
@@ -65,7 +64,7 @@ SHEAR_X = _both(
     lambda s, _: s.strength.shear.X, OWN_PRESSURE, range=Range(),
 )  # fmt: skip
 SHEAR_Y = _both(
-    "max_shear_Y_over_a", "1", "place of the largest shear stress below the surface, over the half-width",
+    "max_shear_Y_over_a", "1", "place of the largest shear stress outwards, over the half-width",
     lambda s, _: s.strength.shear.Y, OWN_PRESSURE, range=_BELOW,
 )  # fmt: skip
 FIRST_LOAD = _both(
@@ -76,19 +75,19 @@ FIRST_LOAD = _both(
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",
-    "yield: largest distance from X = -a, on its side of the middle, at which the von Mises stress "
-    f"reaches the yield strength at the load, over the half-width; {_BEYOND}",
+    "reach of yield from X = -a, the largest distance on its side of the middle at which the von Mises "
+    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone",
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
-    f"yield: largest distance from X = a, as from X = -a, over the half-width; {_BEYOND}",
+    f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone",
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
-    "yield: largest depth, at which the von Mises stress reaches the yield strength at the load, over "
-    f"the half-width; {_BEYOND}",
+    "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
+    f"over the half-width; {_BEYOND}",
     lambda s, _: s.strength.depth, compared="depth of yield",
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(

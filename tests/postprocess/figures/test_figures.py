@@ -28,6 +28,14 @@ def study_run():
     return computed("study", CLOSED_FORM)
 
 
+@pytest.fixture(scope="module")
+def laws_run():
+    """Four laws, which one panel holds."""
+    return computed(
+        changes=CLOSED_FORM | {"friction.mu_c": [0.3, 0.7], "friction.sigma0_over_load": [1e4, 4e4]}
+    )
+
+
 @pytest.fixture
 def drawings(map_run):
     """Every figure of one result, by name."""
@@ -78,8 +86,8 @@ def test_finite_elements_are_markers_on_closed_form_lines(drawings):
         assert len(markers) == 6 and all(line.get_linestyle() in ("None", "") for line in markers)
 
 
-def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run):
-    for run in (map_run, sweep_run):
+def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run, laws_run):
+    for run in (map_run, sweep_run, laws_run):
         legible(run.drawings())
         legible(run.drawings(size=size("3.5in")))
 

@@ -21,7 +21,7 @@ from galinx.app.cli import cli
         (("reprot", "a.h5"), "did you mean report?"),
         (("init", "tabel1"), "init tabel1: no such scene; did you mean table1?"),
         (("init", "quite something else"), "no such scene; valid: box, "),
-        (("plot", "a.h5", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),
+        (("paper", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),
         (("./bad.toml",), "No such command"),
     ],
 )

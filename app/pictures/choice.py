@@ -78,7 +78,8 @@ class Choice:
 
 def noun(row: Quantity) -> str:
     """What a quantity is, without how it was found."""
-    return row.about.split(",")[0].split(" (")[0]
+    told = re.split(r"[,;:]| \(", row.about)[0]
+    return f"{told} over $a$" if "over the half-width" in row.about else told
 
 
 def words(text: str) -> tuple[str, ...]:

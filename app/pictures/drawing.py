@@ -1,6 +1,5 @@
 """A picture of an archive, and what pictures ask of archives."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -59,9 +58,3 @@ def by_method(
         if told and method in ("", row.method):
             found.setdefault(path.rpartition("/")[2], {})[row.method] = row
     return found
-
-
-def noun(row: Quantity) -> str:
-    """What a quantity is, without how it was found."""
-    told = re.split(r"[,;:]| \(", row.about)[0]
-    return f"{told} over $a$" if "over the half-width" in row.about else told

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support import FEW_DEGREES, HOME, SCENE, command
+from support import FEW_DEGREES, HOME, SCENE, clean_environment, command
 
 from galinx import load
 
@@ -60,7 +60,9 @@ def test_friction_alone_imports_no_finite_elements(tmp_path):
         "assert done.exception is None, done.exception\n"
         "print([m for m in ('dolfinx', 'gmsh', 'petsc4py', 'mpi4py', 'matplotlib') if m in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", script], cwd=HOME, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=HOME, env=clean_environment(), capture_output=True, text=True
+    )
     assert done.stdout.strip() == "[]", done.stderr
 
 

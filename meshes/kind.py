@@ -152,7 +152,7 @@ class MeshKind:
         """Estimated relative error of the stresses nearest to an edge that these cells leave there."""
         if not self.fan or wanted.nearest is None:
             return 0.0
-        return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / (2.0 * wanted.nearest)
+        return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / wanted.nearest
 
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         """Estimated relative error of K_I that the innermost cells leave, and that no level sees.

@@ -15,6 +15,8 @@ def test_init_writes_a_scene_once(tmp_path):
     assert again.returncode == 2 and "exists" in again.stderr
     assert (tmp_path / "mine.toml").read_bytes() == before
     unknown = command("init", "fig99", cwd=tmp_path)
+    assert unknown.returncode == 2 and "did you mean fig9?" in unknown.stderr
+    unknown = command("init", "zzz", cwd=tmp_path)
     assert unknown.returncode == 2 and "own_material" in unknown.stderr
     listed = command("init", cwd=tmp_path).stdout
     assert all(name in listed for name in templates())

@@ -125,6 +125,16 @@ class AnisotropicFrame:
         """Midway between the roots."""
         return self.roots.midpoint
 
+    @property
+    def spread(self) -> float:
+        """Hyperbolic distance of the roots."""
+        return self.roots.apart
+
+    @property
+    def mirrored(self) -> bool:
+        """Is it its own mirror image in X = 0?"""
+        return self.c16 == 0.0 == self.c26
+
     def at(self, c: float) -> "AnisotropicFrame":
         """The same solid at another speed."""
         return AnisotropicFrame(self.c11, self.c12, self.c16, self.c22, self.c26, c)

@@ -36,6 +36,8 @@ class Response(Protocol):
             displacements grow as it falls.
         contraction: p of the plane X + pY, Im p > 0, midway between those in which the fields are
             analytic; 1j at rest in an isotropic solid.
+        spread: hyperbolic distance of these, 0 where they meet.
+        mirrored: is the solid its own mirror image in X = 0?
     """
 
     @property
@@ -52,6 +54,10 @@ class Response(Protocol):
     def margin(self) -> float: ...
     @property
     def contraction(self) -> complex: ...
+    @property
+    def spread(self) -> float: ...
+    @property
+    def mirrored(self) -> bool: ...
 
     def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""

@@ -194,7 +194,15 @@ def scene_page() -> str:
         parts += [f"## [{name}]\n", *_section(section)]
     parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
     rows = [
-        (f"`{n}`", m.about, f"`{m.kind}`", m.told, m.source, m.yield_strength or "–", m.yield_source or "–")
+        (
+            f"`{n}`",
+            m.about,
+            f"`{m.kind}`",
+            m.told,
+            m.source,
+            m.yield_strength or "–",
+            m.yield_source or "–",
+        )
         for n, m in LIBRARY.items()
     ]
     heads = ("name", "solid", "kind", "constants", "source", "yield strength", "its source")

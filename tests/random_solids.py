@@ -12,7 +12,9 @@ def orthotropic(rng, stiffest=40.0):
     E1, angle, plane = 10.0 ** rng.uniform(0.0, np.log10(stiffest)), rng.uniform(-180.0, 180.0), "strain"
     ν12, ν13, ν23 = rng.uniform(0.0, 0.35, 3)
     plane = rng.choice(["strain", "stress"])
-    return Orthotropic(E1, 1.0, rng.uniform(0.7, 1.0), ν12, ν13, ν23, rng.uniform(0.2, 0.6), 1.0, angle, plane)
+    return Orthotropic(
+        E1, 1.0, rng.uniform(0.7, 1.0), ν12, ν13, ν23, rng.uniform(0.2, 0.6), 1.0, angle, plane
+    )
 
 
 def cubic(rng):

@@ -77,7 +77,7 @@ class Punch:
         for k, p in enumerate(solid.p):
             # B f' has the given real part on the axis and no part from above it.
             # A point on the surface is looked at from below.
-            z = mp.mpc(X, 0) + p * Y if Y else mp.mpc(X, -mp.mpf(10) ** -60)
+            z = mp.mpc(X, 0) + p * Y if Y else mp.mpc(X, -(mp.mpf(10) ** -60))
             f = -weights[k] * self.cauchy(z) / (2j * mp.pi)
             a, b = solid.A[:, k], solid.B[:, k]
             σ[0] += 2 * ((-p * b[0] + solid.inertia * a[0]) * f).real

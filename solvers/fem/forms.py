@@ -94,9 +94,7 @@ FORMS: Registry[Form] = Registry(
     "weak form",
     {
         "isotropic": Form(moving_stiffness, ("κ", "c")),
-        "anisotropic": Form(
-            anisotropic_stiffness, ("c11", "c12", "c16", "c22", "c26", "c66", "c")
-        ),
+        "anisotropic": Form(anisotropic_stiffness, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
         "nearly incompressible": Form(mixed_stiffness, ("κ", "c"), pressure=True),
     },
 )

@@ -102,7 +102,10 @@ class SurfaceSlopes:
         s = space.chart.surface_coordinate(X)
         stretch = space.chart.surface_stretch(s)[:, None, None]
         trace = gather(space, fields)
-        self._basis, self._rounding = trace.derivative(s) / stretch, trace.rounding(s)[:, 0] / stretch[:, 0]
+        self._basis, self._rounding = (
+            trace.derivative(s) / stretch,
+            trace.rounding(s)[:, 0] / stretch[:, 0],
+        )
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""

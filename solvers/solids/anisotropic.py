@@ -45,7 +45,11 @@ class Anisotropic(PlaneSolid):
             (0, 1): "stiffness: 1 - c12²/(c11 c22)",
             (0, 2): "stiffness: 1 - c16²/(c11 c66)",
             (1, 2): "stiffness: 1 - c26²/(c22 c66)",
-            (0, 1, 2): "stiffness: the determinant of [[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]] "
+            (
+                0,
+                1,
+                2,
+            ): "stiffness: the determinant of [[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]] "
             "over c11 c22 c66",
         }
         check_minors(self.stiffness, meaning)
@@ -55,11 +59,15 @@ class Anisotropic(PlaneSolid):
         c11, c12, c16, c22, c26, c66 = self.constants
         return np.array([[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]])
 
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        return self.plane == "stress" or bool(self.along_Z)
+
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane: no strain along Z, or 0 in plane stress; NaN if not known."""
         if self.plane == "stress":
             return 0.0 * σ_XX
-        if not self.along_Z:
+        if not self.knows_σ_ZZ:
             return np.full(np.shape(σ_XX), np.nan)
         by_XX, by_YY, by_XY = np.linalg.solve(self.stiffness, self.along_Z)
         return by_XX * σ_XX + by_YY * σ_YY + by_XY * σ_XY

@@ -63,9 +63,8 @@ class AnisotropicFrame:
         """The roots, None where there are none."""
         Q, R, T = self._matrices
         mixed = R + R.T
-        diagonal = np.convolve(*([T[i, i], mixed[i, i], Q[i, i]] for i in (0, 1)))
-        across = [T[0, 1], mixed[0, 1], Q[0, 1]]
-        return roots(diagonal - np.convolve(across, across))
+        one, across, other = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
+        return roots(np.convolve(one, other) - np.convolve(across, across))
 
     @property
     def roots(self) -> Roots:
@@ -74,19 +73,19 @@ class AnisotropicFrame:
         return self._found
 
     @cached_property
-    def _G(self) -> NDArray[np.complex128]:
+    def _G(self) -> NDArray[Any]:
         """u,Y = G u,X of what decays below the surface: the quadratic less T times that of the roots."""
         Q, R, T = self._matrices
         return np.linalg.solve(R + R.T + self.roots.sum * T, self.roots.product * T - Q)
 
     @cached_property
-    def _stiffness(self) -> NDArray[np.complex128]:
+    def _stiffness(self) -> NDArray[Any]:
         """Y⁻¹ of the surface: (σ_XY, σ_YY) = Y⁻¹ u,X of what decays."""
         _, R, T = self._matrices
         return R.T + T @ self._G
 
     @cached_property
-    def _Y(self) -> NDArray[np.complex128]:
+    def _Y(self) -> NDArray[Any]:
         return np.linalg.inv(self._stiffness)
 
     @cached_property
@@ -111,7 +110,7 @@ class AnisotropicFrame:
 
     @cached_property
     def least_stiffness(self) -> float:
-        """Smallest eigenvalue of the surface's stiffness -iY⁻¹, a Hermitian matrix; it falls with speed."""
+        """Smallest eigenvalue of the surface's stiffness -iY⁻¹, Hermitian; it falls with speed."""
         Z = -1j * self._stiffness
         return float(np.linalg.eigvalsh((Z + Z.conj().T) / 2.0)[0])
 

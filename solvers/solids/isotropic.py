@@ -63,6 +63,11 @@ class Isotropic:
         return self.κ - 1.0 < INCOMPRESSIBLE
 
     @property
+    def knows_σ_ZZ(self) -> bool:
+        """It always is."""
+        return True
+
+    @property
     def form(self) -> str:
         """The weak form that finite elements solve."""
         return "nearly incompressible" if self.nearly_incompressible else "isotropic"

@@ -28,6 +28,11 @@ class PlaneSolid(ABC):
         """σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY in the frame of the scene [Pa], (3, 3)."""
 
     @property
+    def knows_σ_ZZ(self) -> bool:
+        """Are the constants enough for σ_ZZ?"""
+        return True
+
+    @property
     def μ(self) -> float:
         """c₆₆ in the frame of the scene [Pa]."""
         return float(self.stiffness[2, 2])
@@ -69,7 +74,9 @@ def rotated(stiffness: NDArray, angle: float) -> NDArray[np.float64]:
     c, s = cos(φ), sin(φ)
     for _ in range(int(quarters % 4.0)):
         c, s = -s, c
-    T = np.array([[c * c, s * s, -2.0 * s * c], [s * s, c * c, 2.0 * s * c], [s * c, -s * c, c * c - s * s]])
+    T = np.array(
+        [[c * c, s * s, -2.0 * s * c], [s * s, c * c, 2.0 * s * c], [s * c, -s * c, c * c - s * s]]
+    )
     turned = T @ stiffness @ T.T
     return (turned + turned.T) / 2.0
 

@@ -17,7 +17,7 @@ class Potential(Protocol):
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z)."""
 
-    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0."""
 
 
@@ -103,6 +103,10 @@ class Solid(Protocol):
     def ρ(self) -> float: ...
     @property
     def c_s(self) -> float: ...
+
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        """Are the constants enough for :meth:`σ_ZZ`? It is NaN without."""
 
     def limit(self) -> float:
         """Highest speed over ``c_s``: that of a wave along the surface."""

@@ -111,9 +111,8 @@ class StressGauges:
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
         return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
 
-
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
-        """What the last digits of the fields can do to stresses, relative; those on the surface for all."""
+        """What the fields' last digits can do to stresses, relative; those on the surface for all."""
         if not self._words:
             return []
         σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX

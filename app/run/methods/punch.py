@@ -95,7 +95,7 @@ class PunchLevel:
     def rounding(self, g: NDArray) -> list[float]:
         """What is not the mirror image of itself at -g, of a flat punch: a profile need not be one.
 
-        A solid that is not its own mirror image has the same K_I at both ends of a flat punch for all that.
+        In a solid that is none itself K_I is the same at both ends of a flat punch for all that.
         """
         if not self.task.response.mirrored:
             states = self.punch.states(g, flat=True)

@@ -79,9 +79,7 @@ def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
             f"[solve]\ntolerance = 1e-5\n[output]\nquantities = {list(quantities)}\n"
         )
     ).data
-    found = galinx.compute(
-        scene(isotropic_as("orthotropic", known, 30.0), share, 1e-5, quantities)
-    ).data
+    found = galinx.compute(scene(isotropic_as("orthotropic", known, 30.0), share, 1e-5, quantities)).data
     for name in ("K_I_left", "K_I_right"):
         np.testing.assert_allclose(found[f"states/fem/{name}"], wanted[f"states/fem/{name}"], rtol=2e-5)
     σ, other = (data["surface/fem/sigma_XX"] for data in (found, wanted))
@@ -94,7 +92,9 @@ def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
 
 def test_a_mirror_image_swaps_the_ends():
     """X → -X: the angle and the sign of σ_XY change; right becomes left."""
-    one, other = (Orthotropic(8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, angle) for angle in (35.0, -35.0))
+    one, other = (
+        Orthotropic(8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, angle) for angle in (35.0, -35.0)
+    )
     data = galinx.compute(scene(one, 0.5, 1e-5, ("sif", "surface"))).data
     image = galinx.compute(scene(other, 0.5, 1e-5, ("sif", "surface"), sign="eq25")).data
     for method in ("closed_form", "fem"):

@@ -14,7 +14,7 @@ from galinx.solvers.solids.orthotropic import Orthotropic
 from galinx.solvers.solids.plane import rotated
 
 pytest.importorskip("mpmath")
-from stroh import Punch, Stroh  # noqa: E402
+from stroh import Punch, Stroh
 
 SHARES = (0.0, 5e-7, 0.6, 0.99)
 BESIDE = np.array([-30.0, -1.5, -1.00001, 1.0001, 1.2, 3.0])
@@ -90,7 +90,8 @@ def test_a_pressure_put_in_has_the_stresses_of_an_isotropic_solid():
     X, Y = np.array([-2.0, -0.2, 0.8, 5.0]), np.array([-0.01, -0.5, -2.0, -70.0])
     for c in (0.0, 0.5):
         found, wanted = (
-            GivenPressure(one.response(c), -0.4, pressure) for one in (isotropic_as("cubic", known), known)
+            GivenPressure(one.response(c), -0.4, pressure)
+            for one in (isotropic_as("cubic", known), known)
         )
         np.testing.assert_allclose(found.inside(X, Y), wanted.inside(X, Y), rtol=1e-11, atol=1e-14)
         np.testing.assert_allclose(found.σ_XX(X), wanted.σ_XX(X), rtol=1e-11, atol=1e-14)

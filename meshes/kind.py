@@ -126,7 +126,7 @@ class MeshKind:
         can, whose outermost ring is cut, too. Measured, see docs/verification.md.
         """
         digits = -log10(self._of_cells(wanted))
-        more = max(ceil(wanted.spread * digits / 6.0 - 1.3), 0)
+        more = max(ceil(1.3 * (wanted.spread * digits / 6.0 - 1.4)), 0)
         return more + more % 2 if self.walls else more
 
     def _innermost(self, wanted: Wanted) -> float:

@@ -63,9 +63,12 @@ def polar_figure(angles: NDArray, shown: Sequence[Panel], now: float, size: Size
     for axis, panel in zip(axes, shown):
         for (_, values), look in zip(panel.curves.items(), looks(len(panel.curves))):
             axis.plot(φ, values, color=look.colour, linestyle=look.line)
-        axis.plot(np.deg2rad([now, now]), axis.get_ylim(), color=GREY, linewidth=0.5)
         if panel.from_zero:
             axis.set_rmin(0.0)
+        else:
+            all_of_it = np.concatenate(list(panel.curves.values()))
+            axis.set_rlim(np.nanmin(all_of_it) * 0.95, np.nanmax(all_of_it) * 1.01)
+        axis.plot(np.deg2rad([now, now]), axis.get_ylim(), color=GREY, linewidth=0.5)
         axis.set_thetagrids(range(0, 360, 30))
         axis.tick_params(labelsize=SMALL, pad=0.5)
         axis.set_rlabel_position(75.0)

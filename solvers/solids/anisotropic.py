@@ -20,7 +20,7 @@ class Anisotropic(PlaneSolid):
         ValueError: a constant is not finite, or together they are no elastic solid.
     """
 
-    about: ClassVar[str] = "anisotropic: by its stiffness in the frame of the scene, X the motion, Y up"
+    about: ClassVar[str] = "by its stiffness in the frame of the scene, X the motion, Y up"
 
     constants: tuple[float, ...] = numbers(
         "stiffness", "stiffness c11, c12, c16, c22, c26, c66", "Pa", 6, usual=(1e3, 2e12),

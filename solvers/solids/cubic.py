@@ -22,7 +22,7 @@ class Cubic(PlaneSolid):
         ValueError: a constant is outside its range, or together they are no elastic solid.
     """
 
-    about: ClassVar[str] = "cubic: axes [100] and [010] in the plane, at an angle, [001] along Z"
+    about: ClassVar[str] = "with [100] and [010] in the plane, at an angle, [001] along Z"
 
     c11: float = parameter("c11", "stiffness c11", "Pa", symbol="c_{11}", above=0.0, usual=_USUAL)
     c12: float = parameter("c12", "stiffness c12", "Pa", symbol="c_{12}")

@@ -31,7 +31,7 @@ class Orthotropic(PlaneSolid):
         ValueError: a constant is outside its range, or together they are no elastic solid.
     """
 
-    about: ClassVar[str] = "orthotropic: axes 1 and 2 in the plane, at an angle, 3 along Z"
+    about: ClassVar[str] = "with axes 1 and 2 in the plane, at an angle, 3 along Z"
 
     E1: float = _modulus("E1", "Young's modulus along axis 1")
     E2: float = _modulus("E2", "Young's modulus along axis 2")

@@ -92,9 +92,8 @@ def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
 
 def test_a_mirror_image_swaps_the_ends():
     """X → -X: the angle and the sign of σ_XY change; right becomes left."""
-    one, other = (
-        Orthotropic(8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, angle) for angle in (35.0, -35.0)
-    )
+    constants = (8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0)
+    one, other = (Orthotropic(*constants, angle) for angle in (35.0, -35.0))
     data = galinx.compute(scene(one, 0.5, 1e-5, ("sif", "surface"))).data
     image = galinx.compute(scene(other, 0.5, 1e-5, ("sif", "surface"), sign="eq25")).data
     for method in ("closed_form", "fem"):
@@ -120,3 +119,36 @@ def test_a_speed_beyond_all_waves_has_no_closed_form_either():
         make_plan(beyond)
     with pytest.raises(BadInput, match="m/s: the finite element form is indefinite"):
         make_plan(scene(solid, 1.001, 1e-5))
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_von_mises_asks_for_what_σ_ZZ_needs(known):
+    text = (
+        '[solid]\nkind = "anisotropic"\nrho = 1500\nstiffness = ["10 GPa", 3e9, 1e9, "5 GPa", 0, "2 GPa"]\n'
+        + 'stiffness_Z = [1e9, "2 GPa", 0]\n' * known
+        + f'{FRICTION}[motion]\nc = 0.1\n[solve]\nmethods = ["closed_form"]\n'
+        '[output]\nquantities = ["interior"]\npoints = [[0.0, -0.5]]\n'
+    )
+    result = galinx.compute(parse(text))
+    assert ("interior/closed_form/von_mises" in result.data) == known
+    assert "interior/closed_form/sigma_1" in result.data
+    if not known:
+        strong = text.replace("rho =", 'yield_strength = "100 MPa"\nrho =').replace("interior", "yield")
+        with pytest.raises(BadInput, match="stiffness_Z"):
+            parse(strong.replace("points = [[0.0, -0.5]]\n", ""))
+
+
+def test_figures_turn_a_solid_that_has_an_angle():
+    from galinx.app.results import drawings
+
+    changes = {"solve.methods": ["closed_form"], "output.quantities": ["sif"], "output.map": None}
+    fibres, steel = (
+        galinx.template(name, changes | more)
+        for name, more in (("fibres", {}), ("inside", {"output.points": None}))
+    )
+    assert "angles" in drawings.names(galinx.compute(fibres).data, fibres)
+    assert "angles" not in drawings.names(galinx.compute(steel).data, steel)
+    drawn = {d.name: d for d in drawings.of_archive(galinx.compute(fibres).data, fibres)}
+    limits = drawn["angles"].figure.axes[0].lines[0]
+    turned = limits.get_ydata()[np.isclose(limits.get_xdata(), np.deg2rad(30.0))]
+    assert turned == pytest.approx(fibres.solid.limit() * fibres.solid.c_s, rel=1e-12)

@@ -124,7 +124,8 @@ def test_a_speed_beyond_all_waves_has_no_closed_form_either():
 @pytest.mark.parametrize("known", [False, True])
 def test_von_mises_asks_for_what_σ_ZZ_needs(known):
     text = (
-        '[solid]\nkind = "anisotropic"\nrho = 1500\nstiffness = ["10 GPa", 3e9, 1e9, "5 GPa", 0, "2 GPa"]\n'
+        '[solid]\nkind = "anisotropic"\nrho = 1500\n'
+        + 'stiffness = ["10 GPa", 3e9, 1e9, "5 GPa", 0, "2 GPa"]\n'
         + 'stiffness_Z = [1e9, "2 GPa", 0]\n' * known
         + f'{FRICTION}[motion]\nc = 0.1\n[solve]\nmethods = ["closed_form"]\n'
         '[output]\nquantities = ["interior"]\npoints = [[0.0, -0.5]]\n'

@@ -19,6 +19,7 @@ SHOWN = {
     "fig10": ("surface", "Dahl's exponent acts through f alone."),
     "parameter_study": ("parameters", "What K_I and the exponents make of μ_C, at three speeds."),
     "inside": ("inside", "Stresses below the punch, slow and fast, and how far both methods are apart."),
+    "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
     "tables4_5": ("degrees", "Ten times more accurate with every degree: how the error is known."),
     "graded": ("mesh", "A mesh of straight cells, graded towards the edges."),
     "box": ("mesh", "The study's block; its walls are far outside this picture."),

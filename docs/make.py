@@ -195,12 +195,17 @@ def scene_page() -> str:
     parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
     rows = [
         (
-            f"`{n}`", m.about, m.E, f"{m.nu:g}", m.rho, m.source, m.yield_strength or "–",
-            m.yield_source or "breaks, does not yield",
+            f"`{n}`",
+            m.about,
+            f"`{m.kind}`",
+            m.told,
+            m.source,
+            m.yield_strength or "–",
+            m.yield_source or "–",
         )
         for n, m in LIBRARY.items()
-    ]  # fmt: skip
-    heads = ("name", "solid", "E", "ν (dimensionless)", "ρ", "source", "yield strength", "its source")
+    ]
+    heads = ("name", "solid", "kind", "constants", "source", "yield strength", "its source")
     parts.append(_table(heads, rows))
     return "\n".join(parts)
 

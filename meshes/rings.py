@@ -28,12 +28,21 @@ class Refinement:
         ratio: size of a ring over that of the ring outside it, in (0, 1).
         sectors: cells along each of the two legs of an L, so 2·sectors columns of cells in angle.
         columns: widths in ξ of the columns outside the rings.
+        pieces: of the outermost ring, of equal width.
     """
 
     levels: int
     ratio: float
     sectors: int
     columns: tuple[float, ...]
+    pieces: int = 1
+
+    @property
+    def sizes(self) -> NDArray[np.float64]:
+        """Sizes of the rings over that of the outermost, from it inwards to the innermost square."""
+        rings = self.ratio ** np.arange(self.levels + 1)
+        outermost = np.linspace(1.0, rings[min(1, self.levels)], self.pieces + 1)
+        return np.concatenate([outermost[: -1 if self.levels else 1], rings[1:]])
 
 
 @dataclass(frozen=True)
@@ -115,7 +124,7 @@ def _corner(
     leg = np.concatenate(
         [np.column_stack([np.ones_like(t), -t]), np.column_stack([t[-2::-1], -np.ones(sectors)])]
     )
-    sizes = size * refinement.ratio ** np.arange(refinement.levels + 1)
+    sizes = size * refinement.sizes
     quads = [
         [inner * leg[i], inner * leg[i + 1], outer * leg[i + 1], outer * leg[i]]
         for outer, inner in pairwise(sizes)
@@ -133,7 +142,7 @@ def _corner(
             for y0, y1 in pairwise(grid)
         ]
     growth = np.ones((len(quads), 2))
-    growth[:rings, 1] = 1.0 / refinement.ratio
+    growth[:rings, 1] = np.repeat(sizes[:-1] / sizes[1:], 2 * sectors)
     return np.array(quads), growth
 
 

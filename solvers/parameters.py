@@ -49,6 +49,8 @@ class Parameter:
         range: where it may lie.
         usual: where it usually lies; beyond, its unit may be another than meant.
         options: the texts that it may be; none for a number.
+        count: of the numbers that it is, 0 for one number.
+        optional: may all of these be left out?
         note: what documentation says beyond ``about``.
     """
 
@@ -59,6 +61,8 @@ class Parameter:
     range: Range = Range()
     usual: tuple[float, float] | None = None
     options: tuple[str, ...] = ()
+    count: int = 0
+    optional: bool = False
     note: str = ""
 
 
@@ -77,6 +81,21 @@ def parameter(
     shown = symbol or rf"\mathrm{{{key}}}".replace("_", r"\_")
     known = Parameter(key, about, unit, shown, Range(**bounds), usual, note=note)
     return dataclasses.field(default=default, metadata={_METADATA: known})
+
+
+def numbers(
+    key: str,
+    about: str,
+    unit: str,
+    count: int,
+    *,
+    optional: bool = False,
+    usual: tuple[float, float] | None = None,
+    note: str = "",
+) -> Any:
+    """So many numbers as a dataclass's field, a tuple; an empty one where they may be left out."""
+    known = Parameter(key, about, unit, usual=usual, count=count, optional=optional, note=note)
+    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
 
 
 def choice(key: str, about: str, options: tuple[str, ...], *, note: str = "") -> Any:
@@ -122,6 +141,10 @@ def check(model: Any) -> None:
             if value not in known.options:
                 options = " or ".join(map(repr, known.options))
                 raise ValueError(f"{field.name} = {value!r}: expected {options}")
+        elif known.count:
+            left_out = known.optional and not value
+            if not left_out and (len(value) != known.count or not all(map(isfinite, value))):
+                raise ValueError(f"{key} = {value!r}: expected {known.count} finite numbers")
         elif not (isfinite(value) and value in known.range):
             bounds = f" {known.range}" if str(known.range) else ""
             raise ValueError(f"{field.name} = {value!r} ({key}): expected a finite number{bounds}")

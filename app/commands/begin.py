@@ -53,7 +53,7 @@ def materials() -> int:
     if ranks.is_root():
         for name, material in LIBRARY.items():
             say(f"{name}: {material.about}")
-            say(f"  E = {material.E}, ν = {material.nu:g} (dimensionless), ρ = {material.rho}")
+            say(f"  {material.kind}: {material.told}", 4)
             say(f"  {material.source}", 4)
             if material.yield_strength:
                 say(f"  yield strength {material.yield_strength}: {material.yield_source}", 4)

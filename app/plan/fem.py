@@ -97,7 +97,8 @@ def plan_fem(
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
-    wanted = wanted_for(solve.tolerance, places, exponent)
+    spread = max(response.spread for response in responses)
+    wanted = wanted_for(solve.tolerance, places, exponent, spread)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
@@ -117,21 +118,22 @@ def plan_fem(
     )  # fmt: skip
 
 
-def wanted_for(tolerance: float, places: Places, exponent: float) -> Wanted:
+def wanted_for(tolerance: float, places: Places, exponent: float, spread: float) -> Wanted:
     """What a mesh has to be good for where stresses are asked for at some places."""
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
-        return Wanted(tolerance, exponent=exponent)
+        return Wanted(tolerance, exponent=exponent, spread=spread)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = float(np.hypot(X, Y).max())
     around = bool(len(places.around))
-    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around)
+    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, spread)
 
 
 def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:
     """The same of the mesh that serves every piece of a pressure, over the narrowest one's half-width."""
-    return Wanted(wanted.tolerance, NEAR, (1.0 + wanted.farthest) / (np.diff(knots).min() / 2.0))
+    farthest = (1.0 + wanted.farthest) / (np.diff(knots).min() / 2.0)
+    return Wanted(wanted.tolerance, NEAR, farthest, spread=wanted.spread)
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:
@@ -168,7 +170,7 @@ def _largest(degree: int, cuts: int, fixed: bool) -> int:
 def _size(refinement: Refinement, p: int) -> int:
     """A cell of degree p cut k times has the nodes of one of degree k p."""
     cells = 2 * refinement.sectors * (
-        2 * refinement.levels + refinement.sectors + len(refinement.columns)
+        2 * len(refinement.sizes) - 2 + refinement.sectors + len(refinement.columns)
     )  # fmt: skip
     return 2 * p**2 * cells
 

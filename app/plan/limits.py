@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from math import inf
 
 import numpy as np
 
@@ -24,23 +25,28 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
     """Warnings about speeds.
 
     Raises:
-        BadInput: finite elements are asked for where their form is indefinite.
+        BadInput: finite elements are asked for where their form is indefinite, or any solution where a
+            wave in the solid is not faster.
     """
-
-    def beyond_limit(c: float) -> bool:
-        return c >= 1.0 or scene.solid.response(c).margin <= 0.0
-
     # Beyond its limit a solid stays: of a million speeds some twenty are looked at.
     ordered = sorted(speeds)
-    first = bisect_left(ordered, True, key=beyond_limit)
-    almost = bisect_left(ordered[:first], True, key=lambda c: beyond_limit(c / 0.99))
-    near, beyond = ([f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:]))
+    first = bisect_left(ordered, True, key=lambda c: _margin(scene, c) <= 0.0)
+    almost = bisect_left(ordered[:first], True, key=lambda c: _margin(scene, c / 0.99) <= 0.0)
+    formal = bisect_left(ordered, True, lo=first, key=lambda c: _margin(scene, c) == -inf)
+    near, beyond, none = (
+        [f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:], ordered[formal:])
+    )
     c_R = scene.solid.limit() if beyond or near else 0.0
     limit = f"the Rayleigh speed c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
     if fem and beyond:
         raise BadInput(
             f"motion: c = {listed(beyond)} is not below {limit}: the finite element form is indefinite "
             'there and does not converge; take lower speeds, or methods = ["closed_form"]'
+        )
+    if none:
+        raise BadInput(
+            f"motion: c = {listed(none)} is not below {limit}, and some wave inside the solid is not "
+            "faster: nothing decays with depth there; take lower speeds"
         )
     warnings = []
     if beyond:
@@ -51,6 +57,14 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
             "with them"
         )
     return warnings
+
+
+def _margin(scene: Scene, c: float) -> float:
+    """Of the response at a speed; minus infinity where a wave in the solid is not faster."""
+    try:
+        return scene.solid.response(c).margin
+    except ValueError:
+        return -inf
 
 
 def check_states(states: int) -> None:

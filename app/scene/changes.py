@@ -9,8 +9,13 @@ from tomlkit.items import Item
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
+from galinx.solvers.parameters import parameters
+from galinx.solvers.solids import SOLIDS
 
-_CONSTANTS = ("solid.E", "solid.nu", "solid.rho", "solid.yield_strength")
+#: What a material gives, or may not have.
+_CONSTANTS = ["solid.kind", "solid.yield_strength"] + [
+    f"solid.{key}" for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
+]
 
 #: Characters of a text that is put in: the time that tomlkit takes grows with their square.
 _LONGEST = 10_000

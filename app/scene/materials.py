@@ -8,20 +8,20 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Material:
-    """A known isotropic solid.
+    """A known solid.
 
     Attributes:
         about: what it is.
-        E, nu, rho: Young's modulus, Poisson's ratio and density as a scene writes them.
+        kind: of solid.
+        values: its constants by key, as a scene writes them.
         source: where they are printed.
         yield_strength, yield_source: uniaxial, as a scene writes it, and where that is printed; "" of
             what breaks rather than yields.
     """
 
     about: str
-    E: str
-    nu: float
-    rho: str
+    kind: str
+    values: dict[str, Any]
     source: str
     yield_strength: str = ""
     yield_source: str = ""
@@ -30,12 +30,25 @@ class Material:
     def constants(self) -> dict[str, Any]:
         """What a scene's section [solid] takes over."""
         strength = {"yield_strength": self.yield_strength} if self.yield_strength else {}
-        return {"E": self.E, "nu": self.nu, "rho": self.rho} | strength
+        return {"kind": self.kind} | self.values | strength
+
+    @property
+    def told(self) -> str:
+        """Its constants in a line."""
+        unit = {key: " (dimensionless)" for key, value in self.values.items() if isinstance(value, float)}
+        return ", ".join(f"{key} = {value}{unit.get(key, '')}" for key, value in self.values.items())
+
+
+def _material(entry: dict[str, Any]) -> Material:
+    """From its table, in which what is no attribute is a constant."""
+    names = ("about", "source", "yield_strength", "yield_source")
+    known = {name: entry.pop(name) for name in names if name in entry}
+    return Material(kind=entry.pop("kind", "isotropic"), values=entry, **known)
 
 
 #: Solids by the name that scenes use.
 LIBRARY = {
-    name: Material(**entry)
+    name: _material(entry)
     for name, entry in tomllib.loads(
         Path(__file__).with_name("materials.toml").read_text(encoding="utf-8")
     ).items()

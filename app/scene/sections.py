@@ -40,7 +40,8 @@ def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
 
 _SOLID_KEYS = {
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives E, nu, rho and, of metals, yield_strength", None,
+        Choice(LIBRARY), "name of a known solid, gives `kind`, constants and, of metals, yield_strength",
+        None,
         "what is written beside it replaces the material's",
     ),
     "yield_strength": Key(

@@ -38,6 +38,11 @@ def contradictions(scene: Scene) -> list[str]:
             'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
             '"205 MPa", or a material that has one'
         )
+    if "yield" in asked and not scene.solid.knows_σ_ZZ:
+        faults.append(
+            'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
+            "without which σ_ZZ is not known in plane strain"
+        )
     fixed = solve.degree is not None
     if not fixed and solve.cuts != 1:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")

@@ -59,6 +59,23 @@ class Number:
 
 
 @dataclass(frozen=True)
+class NumberList:
+    """So many numbers in ``unit``, each of which may be a text with a unit."""
+
+    unit: str
+    count: int
+
+    def __call__(self, value: Any) -> tuple[float, ...]:
+        if not isinstance(value, list) or len(value) != self.count:
+            raise ValueError(f"found {excerpt(value)}, expected a list of {self.count} numbers")
+        return tuple(to_si(entry, self.unit) for entry in value)
+
+    def schema(self) -> dict[str, Any]:
+        items = Number(self.unit).schema()
+        return {"type": "array", "items": items, "minItems": self.count, "maxItems": self.count}
+
+
+@dataclass(frozen=True)
 class Whole:
     """A whole number."""
 

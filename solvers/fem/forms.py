@@ -55,8 +55,22 @@ def moving_stiffness(u: Any, w: Any, grad: Any, constants: Any, degree: int) -> 
     """
     κ, c = constants
     Gu, Gw = grad(u), grad(w)
-    energy = ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
-    return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
+    return _moving(ufl.inner(stress(Gu, κ), ufl.sym(Gw)), Gu, Gw, c, degree)
+
+
+def anisotropic_stiffness(u: Any, w: Any, grad: Any, constants: Any, degree: int) -> Any:
+    """The same of any solid; constants are its stiffness over c₆₆, six numbers, and c over √(c₆₆/ρ)."""
+    c11, c12, c16, c22, c26, c66, c = constants
+    Gu, Gw = grad(u), grad(w)
+    C = ufl.as_matrix([[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]])
+    strain, other = (ufl.as_vector([G[0, 0], G[1, 1], G[0, 1] + G[1, 0]]) for G in (Gu, Gw))
+    return _moving(ufl.dot(ufl.dot(C, strain), other), Gu, Gw, c, degree)
+
+
+def _moving(energy: Any, Gu: Any, Gw: Any, c: Any, degree: int) -> Any:
+    """The integral of an energy less the inertia of displacements with these gradients."""
+    moving = energy - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
+    return moving * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
 
 
 def mixed_stiffness(
@@ -70,9 +84,9 @@ def mixed_stiffness(
     (u, p), (w, q), (κ, c) = trial, test, constants
     Gu, Gw = grad(u), grad(w)
     compliance = (κ - 1) / (3 - κ)  # μ/λ
-    energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
+    energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw))
     energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q
-    return energy * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
+    return _moving(energy, Gu, Gw, c, degree)
 
 
 #: Forms by the name that a solid gives.
@@ -80,6 +94,7 @@ FORMS: Registry[Form] = Registry(
     "weak form",
     {
         "isotropic": Form(moving_stiffness, ("κ", "c")),
+        "anisotropic": Form(anisotropic_stiffness, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
         "nearly incompressible": Form(mixed_stiffness, ("κ", "c"), pressure=True),
     },
 )

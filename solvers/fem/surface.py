@@ -62,14 +62,24 @@ class SurfaceTrace:
 
         Between two facets these jump; there they are those of the right one.
         """
+        by_node, u, length = self._around(s)
+        return np.einsum("ni,ni...->n...", by_node, u) / length[:, None, None]
+
+    def rounding(self, s: ArrayLike) -> NDArray[np.float64]:
+        """What the last digits of the displacements can do to these: (n, 2, fields)."""
+        by_node, u, length = self._around(s)
+        worst = np.einsum("ni,ni...->n...", np.abs(by_node), np.abs(u)) / length[:, None, None]
+        return np.finfo(float).eps * worst
+
+    def _around(self, s: ArrayLike) -> tuple[NDArray, NDArray, NDArray]:
+        """Derivatives by nodal values of the facets there, these values, and the facets' lengths."""
         s = np.asarray(s, dtype=float)
         first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
         facet = np.searchsorted(first, s, side="right") - 1
         facet = np.clip(facet, 0, len(self.s) - 1)
         start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
         _, by_node = lagrange(self._reference_nodes, (s - start) / length)
-        slopes = np.einsum("ni,ni...->n...", by_node, self.u[facet])
-        return slopes / length[:, None, None]
+        return by_node, self.u[facet], length
 
     @property
     def _reference_nodes(self) -> NDArray[np.float64]:
@@ -91,12 +101,20 @@ class SurfaceSlopes:
     def __init__(self, space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> None:
         s = space.chart.surface_coordinate(X)
         stretch = space.chart.surface_stretch(s)[:, None, None]
-        self._basis = gather(space, fields).derivative(s) / stretch
+        trace = gather(space, fields)
+        self._basis, self._rounding = (
+            trace.derivative(s) / stretch,
+            trace.rounding(s)[:, 0] / stretch[:, 0],
+        )
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
         u_X, v_X = (weights @ self._basis[:, i, : weights.shape[1]].T for i in (0, 1))
         return u_X, v_X
+
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        """What the last digits of the fields can do to μ u,X of combinations, (states, n)."""
+        return np.abs(weights) @ self._rounding[:, : weights.shape[1]].T
 
 
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:

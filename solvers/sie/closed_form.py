@@ -146,7 +146,7 @@ class EdgePotential:
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
 
-    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         by_right, by_left = step / (z - 1.0), step / (z + 1.0)
         if share == 0.0:
             return self.at(z) * (self.α * by_right + self.β * by_left)

@@ -60,7 +60,7 @@ class LinearPressure:
         """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
         return self._sum(piece.at() for piece in self._pieces(z))
 
-    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         return self._sum(piece.change(step, share) for piece in self._pieces(z))
 
     @staticmethod
@@ -104,7 +104,7 @@ class _Pieces:
         far = -2.0 * v * (mean * _series(v**2, 1)[0] + slope * v * _series(v**2, 3)[0])
         return np.where(self._far, far, self._pressure * L + 2.0 * slope)
 
-    def change(self, step: NDArray, share: float) -> NDArray[np.complex128]:
+    def change(self, step: NDArray, share: complex) -> NDArray[np.complex128]:
         """Their change for a step share·step of the points, over share."""
         d = step / self._half
         left, right = self._left + share * d, self._right + share * d

@@ -6,7 +6,7 @@ speed, β_s and β_d the contraction factors of shear and dilatational waves.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, sqrt
+from math import log, pi, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -61,6 +61,11 @@ class Isotropic:
     def nearly_incompressible(self) -> bool:
         """Near ν = 1/2 in plane strain."""
         return self.κ - 1.0 < INCOMPRESSIBLE
+
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        """It always is."""
+        return True
 
     @property
     def form(self) -> str:
@@ -171,6 +176,16 @@ class MovingFrame:
     def contraction(self) -> complex:
         """i√(β_s β_d), midway between iβ_s and iβ_d in the hyperbolic metric of the half-plane."""
         return 1j * sqrt(self.β_s * self.β_d)
+
+    @property
+    def spread(self) -> float:
+        """log β_d/β_s."""
+        return log(self.β_d / self.β_s)
+
+    @property
+    def mirrored(self) -> bool:
+        """It is its own mirror image."""
+        return True
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""

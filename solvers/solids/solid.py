@@ -17,7 +17,7 @@ class Potential(Protocol):
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z)."""
 
-    def change(self, z: NDArray, step: NDArray, share: float) -> NDArray[np.complex128]:
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0."""
 
 
@@ -36,6 +36,8 @@ class Response(Protocol):
             displacements grow as it falls.
         contraction: p of the plane X + pY, Im p > 0, midway between those in which the fields are
             analytic; 1j at rest in an isotropic solid.
+        spread: hyperbolic distance of these, 0 where they meet.
+        mirrored: is the solid its own mirror image in X = 0?
     """
 
     @property
@@ -52,6 +54,10 @@ class Response(Protocol):
     def margin(self) -> float: ...
     @property
     def contraction(self) -> complex: ...
+    @property
+    def spread(self) -> float: ...
+    @property
+    def mirrored(self) -> bool: ...
 
     def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""
@@ -97,6 +103,10 @@ class Solid(Protocol):
     def ρ(self) -> float: ...
     @property
     def c_s(self) -> float: ...
+
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        """Are the constants enough for :meth:`σ_ZZ`? It is NaN without."""
 
     def limit(self) -> float:
         """Highest speed over ``c_s``: that of a wave along the surface."""

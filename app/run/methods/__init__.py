@@ -23,6 +23,12 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
     return ClosedForm()
 
 
+def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
+    """Why von Mises is not told."""
+    asked = any(quantity is invariants[-1] for invariants in stresses.INVARIANTS_INSIDE.values())
+    return "σ_ZZ is not known without solid.stiffness_Z" if asked and not body.solid.knows_σ_ZZ else ""
+
+
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if body.pressure:
         return "the pressure is given" if quantity in _INTENSITIES else ""
@@ -32,7 +38,7 @@ def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) ->
         return "the two ends differ"
     if quantity and not body.flat and quantity in validity.STRAINED:
         return "known of flat punches only"
-    return ""
+    return _without_σ_ZZ(body, quantity)
 
 
 #: What only a punch has.
@@ -49,7 +55,7 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if quantity is states.SLOPE and (body.pressure or not body.flat):
         return "the pressure is given" if body.pressure else "the punch is not flat"
-    return ""
+    return _without_σ_ZZ(body, quantity)
 
 
 METHODS: Registry[MethodKind] = Registry(

@@ -72,6 +72,11 @@ class Displacement:
         together = len(points) == 1
         return self._task.response.stresses((found.of if together else found.of_each)(weights))
 
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        """What the last digits of the fields can do to σ_XX on the surface, (states, n)."""
+        noise = self._slopes.rounding(weights)
+        return np.abs(self._task.response.σ_XX(noise, 0.0 * noise, 0.0 * noise))
+
     def inside(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these weights, (3, states, m)."""
         found = np.empty((3, len(weights), len(self._task.places.points)))

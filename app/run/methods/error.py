@@ -125,12 +125,16 @@ class MeasuredError:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
         plan, response = self._ladder.work.plan, self._ladder.task.response
         kind, wanted, margin = plan.kind, plan.wanted, response.margin
-        far = kind.truncation(wanted, margin)
         innermost = kind.unseen(wanted, self._ladder.degree, plan.cuts, margin)
-        # Measured at far boundaries of 100 a and 1e4 a; see docs/verification.md. n times the margin is
-        # about the surface's compliance at rest, 1/2 to 10 for the solids that were tried.
-        compliance = 2.0 + 0.55 * float(np.log(4.0 * response.n * margin))
-        of_edges = compliance * np.abs(g) + 1.8 * far
+        # Measured at far boundaries of 100 a, 1e3 a and 1e4 a; see docs/verification.md. n times the
+        # margin is about the surface's compliance at rest, 1/10 to 10 for the solids that were tried.
+        compliance = 2.0 + 0.55 * max(float(np.log(4.0 * response.n * margin)), -1.0)
+        # Stiffness across the depth moves the boundary nearer, unless it is drawn for the solid.
+        nearer = max(response.m / response.n, 1.0) ** 0.5
+        nearer /= 1.0 if kind.chart.contracts else response.contraction.imag
+        far = nearer * kind.truncation(wanted, margin)
+        lean = response.n12 / response.n
+        of_edges = compliance * (np.abs(g) + 0.5 * abs(lean)) / np.abs(1.0 + g * lean) + 1.8 * far
         found = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:

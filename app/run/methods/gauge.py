@@ -23,6 +23,11 @@ _POINTS = 400
 _ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
 
 
+#: What rounding does to stresses over what the last digits of the displacements alone can, times the root
+#: of the response's margin: half to once of what breaks mirror images of solids that have them.
+_SOLVED = 100.0
+
+
 @dataclass(frozen=True)
 class Gauge:
     """Numbers of some states that stand for a word of output.quantities.
@@ -105,6 +110,15 @@ class StressGauges:
             return []  # no derivative is taken that nobody asks for
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
         return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
+
+    def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
+        """What the fields' last digits can do to stresses, relative; those on the surface for all."""
+        if not self._words:
+            return []
+        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+        noise = self._displacement.rounding(weights) / scale.of_in_plane(σ_XX, self._task.places.X)
+        solved = _SOLVED / self._task.response.margin**0.5
+        return [solved * float(noise.max())] * len(self._words)
 
 
 def gauged(task: Task) -> Task:

@@ -1,0 +1,90 @@
+"""Orthotropic solids: fibre composites, wood, rolled sheets; hexagonal crystals, too."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.parameters import check, choice, parameter
+from galinx.solvers.solids.plane import PlaneSolid, along_axes, check_minors, rotated
+from galinx.solvers.solids.solid import SOLIDS
+
+_USUAL = (1e3, 2e12)
+
+
+def _modulus(key: str, about: str) -> float:
+    return parameter(key, about, "Pa", symbol=f"{key[0]}_{{{key[1:]}}}", above=0.0, usual=_USUAL)
+
+
+def _ratio(key: str, one: int, other: int) -> float:
+    about = f"Poisson's ratio: contraction along {other} over extension along {one} where {one} is pulled"
+    return parameter(key, about, symbol=rf"\nu_{{{one}{other}}}")
+
+
+@dataclass(frozen=True)
+class Orthotropic(PlaneSolid):
+    """A solid with three planes of symmetry, whose axis 3 is Z.
+
+    Raises:
+        ValueError: a constant is outside its range, or together they are no elastic solid.
+    """
+
+    about: ClassVar[str] = "with axes 1 and 2 in the plane, at an angle, 3 along Z"
+
+    E1: float = _modulus("E1", "Young's modulus along axis 1")
+    E2: float = _modulus("E2", "Young's modulus along axis 2")
+    E3: float = _modulus("E3", "Young's modulus along axis 3")
+    ν12: float = _ratio("nu12", 1, 2)
+    ν13: float = _ratio("nu13", 1, 3)
+    ν23: float = _ratio("nu23", 2, 3)
+    G12: float = _modulus("G12", "shear modulus in the plane of axes 1 and 2")
+    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
+    angle: float = parameter(
+        "angle", "angle from X to axis 1", "deg", symbol=r"\theta", default=0.0,
+        note="counterclockwise, Y upwards",
+    )  # fmt: skip
+    plane: str = choice(
+        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+        meaning = {
+            (0, 1): "1 - nu12² E2/E1",
+            (0, 2): "1 - nu13² E3/E1",
+            (1, 2): "1 - nu23² E3/E2",
+            (0, 1, 2): "1 - nu12² E2/E1 - nu13² E3/E1 - nu23² E3/E2 - 2 nu12 nu13 nu23 E3/E1",
+        }
+        check_minors(self._compliance, meaning)
+
+    @property
+    def _compliance(self) -> NDArray[np.float64]:
+        """ε₁, ε₂, ε₃ by σ₁, σ₂, σ₃ [1/Pa]."""
+        s12, s13, s23 = -self.ν12 / self.E1, -self.ν13 / self.E1, -self.ν23 / self.E2
+        return np.array([[1.0 / self.E1, s12, s13], [s12, 1.0 / self.E2, s23], [s13, s23, 1.0 / self.E3]])
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        of_axes = np.zeros((3, 3))
+        count = 3 if self.plane == "strain" else 2
+        of_axes[:2, :2] = np.linalg.inv(self._compliance[:count, :count])[:2, :2]
+        of_axes[2, 2] = self.G12
+        return rotated(of_axes, self.angle)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane: no strain along axis 3, or 0 in plane stress."""
+        σ_1, σ_2 = along_axes(σ_XX, σ_YY, σ_XY, self.angle)
+        held = self.E3 * (self.plane == "strain")
+        return held * (self.ν13 / self.E1 * σ_1 + self.ν23 / self.E2 * σ_2)
+
+    def words(self) -> str:
+        return (
+            f"E1 = {self.E1:.6g} Pa, E2 = {self.E2:.6g} Pa, E3 = {self.E3:.6g} Pa, ν12 = {self.ν12:g}, "
+            f"ν13 = {self.ν13:g}, ν23 = {self.ν23:g}, G12 = {self.G12:.6g} Pa, axis 1 at {self.angle:g}° "
+            f"from X, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        )
+
+
+SOLIDS.register("orthotropic", Orthotropic)

@@ -1,0 +1,155 @@
+"""Any uniform solid by finite elements: against the closed form, against isotropic, mirrored."""
+
+import os
+
+import numpy as np
+import pytest
+from random_solids import isotropic_as
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.scene.read import parse
+from galinx.solvers.solids import Isotropic
+from galinx.solvers.solids.orthotropic import Orthotropic
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+
+FRICTION = """
+[friction]
+mu_c = 0.6
+sigma0_over_load = 6e4
+"""
+
+
+def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical"):
+    """A scene of an orthotropic or anisotropic solid at a share of its limit."""
+    if isinstance(solid, Orthotropic):
+        names = ("E1", "E2", "E3", "ν12", "ν13", "ν23", "G12", "ρ", "angle")
+        constants = {name.replace("ν", "nu").replace("ρ", "rho"): getattr(solid, name) for name in names}
+        kind = "orthotropic"
+    else:
+        constants, kind = {"stiffness": list(solid.constants), "rho": solid.ρ}, "anisotropic"
+    lines = "\n".join(f"{key} = {value!r}" for key, value in constants.items())
+    return parse(
+        f'[solid]\nkind = "{kind}"\nplane = "{solid.plane}"\n{lines}\n{FRICTION}sign = "{sign}"\n'
+        f"[motion]\nc = {share * solid.limit()!r}\nX_over_L = [0.1, 0.7]\n"
+        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n"
+    )
+
+
+def solids():
+    """Twelve with E1/E2 from 1 to 40, spread over angles and speeds."""
+    rng = np.random.default_rng(16)
+    for i, stiffest in enumerate(np.geomspace(1.0, 40.0, 12)):
+        E1, angle = 1e9 * stiffest, rng.uniform(-90.0, 90.0)
+        G12, share = rng.uniform(0.3e9, 0.7e9), rng.uniform(0.0, 0.9)
+        yield pytest.param(Orthotropic(E1, 1e9, 1e9, 0.3, 0.3, 0.4, G12, 1500.0, angle), share, id=str(i))
+
+
+def check(solid, share, tolerance):
+    result = galinx.compute(scene(solid, share, tolerance))
+    error, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    assert error.max() <= tolerance
+    assert np.all(error <= estimate) and estimate.max() <= tolerance
+
+
+ALL = list(solids())
+
+
+@pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[3::6])
+def test_finite_elements_reach_the_tolerance(solid, share):
+    check(solid, share, 1e-6)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="minutes; GALINX_THOROUGH=1")
+@pytest.mark.parametrize("solid, share", ALL)
+def test_finite_elements_reach_a_small_tolerance(solid, share):
+    check(solid, share, 1e-9)
+
+
+def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
+    known = Isotropic(193e9, 0.25, 7860.0)
+    share, quantities = 0.6, ("sif", "surface")
+    wanted = galinx.compute(
+        parse(
+            f'[solid]\nE = 193e9\nnu = 0.25\nrho = 7860\n{FRICTION}sign = "physical"\n'
+            f"[motion]\nc = {share * known.limit()!r}\nX_over_L = [0.1, 0.7]\n"
+            f"[solve]\ntolerance = 1e-5\n[output]\nquantities = {list(quantities)}\n"
+        )
+    ).data
+    found = galinx.compute(scene(isotropic_as("orthotropic", known, 30.0), share, 1e-5, quantities)).data
+    for name in ("K_I_left", "K_I_right"):
+        np.testing.assert_allclose(found[f"states/fem/{name}"], wanted[f"states/fem/{name}"], rtol=2e-5)
+    σ, other = (data["surface/fem/sigma_XX"] for data in (found, wanted))
+    far = np.abs(np.abs(wanted["surface/X_over_a"]) - 1.0) > 0.01
+    assert np.abs(σ - other)[:, far].max() <= 2e-5 * np.abs(other)[:, far].max()
+    np.testing.assert_allclose(
+        found["states/closed_form/K_I"], wanted["states/closed_form/K_I"], rtol=1e-12
+    )
+
+
+def test_a_mirror_image_swaps_the_ends():
+    """X → -X: the angle and the sign of σ_XY change; right becomes left."""
+    constants = (8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0)
+    one, other = (Orthotropic(*constants, angle) for angle in (35.0, -35.0))
+    data = galinx.compute(scene(one, 0.5, 1e-5, ("sif", "surface"))).data
+    image = galinx.compute(scene(other, 0.5, 1e-5, ("sif", "surface"), sign="eq25")).data
+    for method in ("closed_form", "fem"):
+        σ, mirrored = (found[f"surface/{method}/sigma_XX"] for found in (data, image))
+        rtol = 1e-12 if method == "closed_form" else 2e-5
+        assert np.abs(mirrored[:, ::-1] - σ).max() <= rtol * np.abs(σ).max()
+    np.testing.assert_allclose(image["states/alpha"], data["states/beta"], rtol=1e-12)
+    np.testing.assert_allclose(image["states/fem/K_I_left"], data["states/fem/K_I_right"], rtol=2e-5)
+    assert np.abs(data["states/alpha"] - data["states/beta"]).max() > 0.01
+
+
+def test_the_block_is_smaller_for_a_solid_stiff_across_its_depth_and_says_so():
+    upright = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 90.0)
+    data = galinx.compute(scene(upright, 0.3, 1e-2, solve='mesh = "box"')).data
+    error, estimate = data["states/fem/true_error"], data["states/fem/estimate"]
+    assert error.max() > 0.01 and np.all(error <= estimate) and np.all(estimate <= 10.0 * error)
+
+
+def test_a_speed_beyond_all_waves_has_no_closed_form_either():
+    solid = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 45.0)
+    beyond = scene(solid, 0.999 / solid.limit(), 1e-5, solve='methods = ["closed_form"]')
+    with pytest.raises(BadInput, match="nothing decays with depth"):
+        make_plan(beyond)
+    with pytest.raises(BadInput, match="m/s: the finite element form is indefinite"):
+        make_plan(scene(solid, 1.001, 1e-5))
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_von_mises_asks_for_what_σ_ZZ_needs(known):
+    text = (
+        '[solid]\nkind = "anisotropic"\nrho = 1500\n'
+        + 'stiffness = ["10 GPa", 3e9, 1e9, "5 GPa", 0, "2 GPa"]\n'
+        + 'stiffness_Z = [1e9, "2 GPa", 0]\n' * known
+        + f'{FRICTION}[motion]\nc = 0.1\n[solve]\nmethods = ["closed_form"]\n'
+        '[output]\nquantities = ["interior"]\npoints = [[0.0, -0.5]]\n'
+    )
+    result = galinx.compute(parse(text))
+    assert ("interior/closed_form/von_mises" in result.data) == known
+    assert "interior/closed_form/sigma_1" in result.data
+    if not known:
+        strong = text.replace("rho =", 'yield_strength = "100 MPa"\nrho =').replace("interior", "yield")
+        with pytest.raises(BadInput, match="stiffness_Z"):
+            parse(strong.replace("points = [[0.0, -0.5]]\n", ""))
+
+
+def test_figures_turn_a_solid_that_has_an_angle():
+    from galinx.app.results import drawings
+
+    changes = {"solve.methods": ["closed_form"], "output.quantities": ["sif"], "output.map": None}
+    fibres, steel = (
+        galinx.template(name, changes | more)
+        for name, more in (("fibres", {}), ("inside", {"output.points": None}))
+    )
+    assert "angles" in drawings.names(galinx.compute(fibres).data, fibres)
+    assert "angles" not in drawings.names(galinx.compute(steel).data, steel)
+    drawn = {d.name: d for d in drawings.of_archive(galinx.compute(fibres).data, fibres)}
+    limits = drawn["angles"].figure.axes[0].lines[0]
+    turned = limits.get_ydata()[np.isclose(limits.get_xdata(), np.deg2rad(30.0))]
+    assert turned == pytest.approx(fibres.solid.limit() * fibres.solid.c_s, rel=1e-12)

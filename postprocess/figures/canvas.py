@@ -159,6 +159,7 @@ def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
     # Without a date a figure that is drawn again is the same file.
     metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
     figure.savefig(data, format=ending, dpi=dpi, metadata=metadata)
+    figure.set_layout_engine("none")  # laid out once
     return data.getvalue()
 
 
@@ -203,5 +204,6 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
         figure.savefig(data, format="png", dpi=160)
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
+    figure.set_layout_engine("none")
     kind = "png" if pixels else "svg+xml"
     return f"data:image/{kind};base64,{b64encode(data.getvalue()).decode()}"

@@ -73,8 +73,11 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     try:
         tree = tomlkit.parse(text)
         known = [*_keys(tree)]
-        if "solid.material" in changes:  # another solid: constants of the old one would override it
-            old = (path for path in _CONSTANTS if path in known)
+        solid = tree.get("solid")
+        kind = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
+        if "solid.material" in changes or changes.get("solid.kind", kind) not in (kind, UNSET, None):
+            # another solid: constants of the old one would override it
+            old = (path for path in ("solid.material", *_CONSTANTS) if path in known)
             changes = dict.fromkeys(old) | dict(changes)
         for path, value in changes.items():
             if value is UNSET and path not in known:

@@ -31,3 +31,9 @@ def test_without_constants_a_solid_may_be_named():
 def test_every_known_solid_is_one(name):
     solid = template("fig5", {"solid.material": name}).solid
     assert LIBRARY[name].source and 500.0 < solid.c_s < 6000.0
+
+
+def test_another_kind_of_solid_replaces_the_constants_of_the_old_one():
+    changes = {"solid.kind": "cubic", "solid.c11": "165.7 GPa", "solid.c12": "63.9 GPa"}
+    solid = template("fig5", changes | {"solid.c44": "79.6 GPa", "solid.rho": 2330}).solid
+    assert (solid.c11, solid.ρ, solid.angle) == (165.7e9, 2330.0, 0.0)

@@ -73,12 +73,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     try:
         tree = tomlkit.parse(text)
         known = [*_keys(tree)]
-        solid = tree.get("solid")
-        kind = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
-        if "solid.material" in changes or changes.get("solid.kind", kind) not in (kind, UNSET, None):
-            # another solid: constants of the old one would override it
-            old = (path for path in ("solid.material", *_CONSTANTS) if path in known)
-            changes = dict.fromkeys(old) | dict(changes)
+        if stale := [path for path in _stale(tree, changes) if path in known]:
+            changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
             if value is UNSET and path not in known:
                 raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, known)}")
@@ -89,6 +85,19 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         raise BadInput(f"{name} cannot be changed: {error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
+
+
+def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
+    """Constants of the old solid where another takes its place, which they would override or not fit."""
+    if "solid.material" in changes:
+        return _CONSTANTS
+    solid = tree.get("solid")
+    old = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
+    kind = changes.get("solid.kind", old)
+    if not isinstance(kind, str) or kind == old or kind not in SOLIDS:
+        return []
+    own = parameters(SOLIDS[kind])
+    return [path for path in ("solid.material", *_CONSTANTS) if path.removeprefix("solid.") not in own]
 
 
 def _keys(tree: Mapping[str, Any]) -> Iterator[str]:

@@ -46,7 +46,7 @@ def is_sealed(path: Path) -> bool:
         start = file.read(ROOM)
     if start.startswith(_HDF5):
         return False
-    if _SCENE.search(start):
+    if b"\0" not in start and _SCENE.search(start):
         raise UnreadableArchive(
             f"{path} is a scene or another text, expected an archive of results; the command run makes "
             "one of a scene"

@@ -24,7 +24,7 @@ _ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
 
 
 #: What rounding does to stresses over what the last digits of the displacements alone can, times the root
-#: of the response's margin: of what breaks mirror images, where solids have them, 0.2 to 2.8 times was seen.
+#: of the response's margin: 0.2 to 2.8 times what breaks mirror images where solids have them.
 _SOLVED = 100.0
 
 

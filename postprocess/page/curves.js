@@ -94,6 +94,7 @@
   byId("left").addEventListener("click", zoom([-1.1, -0.9]));
   byId("right").addEventListener("click", zoom([0.9, 1.1]));
   for (const list of ["state", "quantity"]) byId(list).addEventListener("change", redraw);
+  redraw();
   new ResizeObserver(redraw).observe(svg);
 
   const legend = document.createElement("p");

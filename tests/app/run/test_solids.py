@@ -30,10 +30,10 @@ def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical
         kind = "orthotropic"
     else:
         constants, kind = {"stiffness": list(solid.constants), "rho": solid.ρ}, "anisotropic"
-    lines = "\n".join(f"{key} = {value!r}" for key, value in constants.items())
+    lines = "\n".join(f"{key} = {value.item() if hasattr(value, 'item') else value!r}" for key, value in constants.items())
     return parse(
         f'[solid]\nkind = "{kind}"\nplane = "{solid.plane}"\n{lines}\n{FRICTION}sign = "{sign}"\n'
-        f"[motion]\nc = {share * solid.limit()!r}\nX_over_L = [0.1, 0.7]\n"
+        f"[motion]\nc = {float(share * solid.limit())!r}\nX_over_L = [0.1, 0.7]\n"
         f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n"
     )
 
@@ -75,7 +75,7 @@ def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
     wanted = galinx.compute(
         parse(
             f'[solid]\nE = 193e9\nnu = 0.25\nrho = 7860\n{FRICTION}sign = "physical"\n'
-            f"[motion]\nc = {share * known.limit()!r}\nX_over_L = [0.1, 0.7]\n"
+            f"[motion]\nc = {float(share * known.limit())!r}\nX_over_L = [0.1, 0.7]\n"
             f"[solve]\ntolerance = 1e-5\n[output]\nquantities = {list(quantities)}\n"
         )
     ).data

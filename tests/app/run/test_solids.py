@@ -30,7 +30,7 @@ def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical
         kind = "orthotropic"
     else:
         constants, kind = {"stiffness": list(solid.constants), "rho": solid.ρ}, "anisotropic"
-    lines = "\n".join(f"{key} = {value.item() if hasattr(value, 'item') else value!r}" for key, value in constants.items())
+    lines = "\n".join(f"{key} = {np.asarray(value).tolist()!r}" for key, value in constants.items())
     return parse(
         f'[solid]\nkind = "{kind}"\nplane = "{solid.plane}"\n{lines}\n{FRICTION}sign = "{sign}"\n'
         f"[motion]\nc = {float(share * solid.limit())!r}\nX_over_L = [0.1, 0.7]\n"

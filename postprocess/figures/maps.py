@@ -64,7 +64,7 @@ def maps_figure(
     columns = len(titles) + (len(differences[0]) if len(differences) else 0)
     right = _BAR + (_BAR if len(differences) else 0.0)
     lines = max(title.count("\n") for title in titles) + (3 if len(differences) else 1)
-    room = Room(0.45, right, 0.38, 0.09 + 0.145 * lines, 0.12, 0.26)
+    room = Room(0.45, right, 0.38, 0.09 + 0.167 * lines, 0.12, 0.26)
     # The first column of differences stands beside the bars of the stresses.
     figure, axes = panels(len(maps), columns, size, (Y[-1] - Y[0]) / (X[-1] - X[0]), room)
     if len(differences):

@@ -29,39 +29,16 @@ def _element(degree: int, vector: bool = True, discontinuous: bool = False) -> A
     return kind("DQ" if discontinuous else "Lagrange", _CELL, degree)
 
 
-def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray) -> Any:
-    """A mesh shared out over the ranks; vertices in dolfinx's order, looked at where they are given."""
-    if elements:
-        return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=_element(1))
-    # FFCx names this variant in the element when it compiles, not when it finds the form in its cache;
-    # named here, the form has one key in both cases.
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, 1, variant="equispaced"))
-    return dolfinx.mesh.create_mesh(comm, cells, points, domain)
-
-
-def create_curved_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int) -> Any:
-    """A mesh whose cells have evenly spaced nodes of a degree, in the order of Lagrange elements."""
-    cells = cells.astype(np.int64)
+def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1) -> Any:
+    """A mesh shared out over the ranks; evenly spaced nodes of cells in the order of Lagrange elements."""
     if elements:
         even = {"lagrange_variant": basix.LagrangeVariant.equispaced, "shape": (2,)}
         element = elements.element("Lagrange", _CELL, degree, **even)
         return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.quadrilateral, degree, variant="equispaced"))
-    return dolfinx.mesh.create_mesh(comm, cells, points, domain)
-
-
-def original_cells(mesh: Any) -> NDArray[np.int64]:
-    """What each cell's number was when the mesh was made."""
-    return np.asarray(mesh.topology.original_cell_index)
-
-
-def function(mesh: Any, element: Any, values: NDArray, name: str) -> Any:
-    """A function of vector elements from its values at the nodes of every cell, (cells, nodes, 2)."""
-    found = fem.Function(space(mesh, element, {}), name=name)
-    # It is asked for at all nodes of one cell after the other.
-    found.interpolate(lambda x: values.reshape(-1, 2).T)
-    found.x.scatter_forward()
-    return found
+    # FFCx names this variant in the element when it compiles, not when it finds the form in its cache;
+    # named here, the form has one key in both cases.
+    element = ufl.VectorElement("Lagrange", ufl.quadrilateral, degree, variant="equispaced")
+    return dolfinx.mesh.create_mesh(comm, cells, points, ufl.Mesh(element))
 
 
 def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from dolfinx import fem
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -43,10 +44,14 @@ def in_physical_plane(
     cells = adapter.cell_nodes(space.V)
     places = np.empty((cells.max() + 1, 2))
     places[cells] = space.contracted(response).to_physical(image(vertices, nodes))
-    mesh = adapter.create_curved_mesh(space.comm, cells, length * places, space.degree)
+    mesh = adapter.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
     values = displacement * _nodal(space, response, fields, weights)
-    element = adapter.vector_element(space.degree)
-    return adapter.function(mesh, element, values[adapter.original_cells(mesh)], "displacement")
+    V = adapter.space(mesh, adapter.vector_element(space.degree), {})
+    found = fem.Function(V, name="displacement")
+    # It is asked for at all nodes of one cell after the other.
+    found.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
+    found.x.scatter_forward()
+    return found
 
 
 def _evenly(reference: NDArray) -> NDArray[np.float64]:

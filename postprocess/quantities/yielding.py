@@ -16,6 +16,7 @@ from galinx.postprocess.quantities.quantity import (
     Quantity,
 )
 from galinx.postprocess.quantities.stresses import YIELD
+from galinx.postprocess.yielding.peak import Peak
 from galinx.solvers.parameters import Range
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
@@ -42,31 +43,36 @@ def _both(
     }  # fmt: skip
 
 
-VON_MISES = _both(
-    "von_mises", "N/(2a)", f"largest von Mises stress, on the surface and inside; {_INFINITE}",
-    lambda s, _: s.strength.von_mises.value, OWN_PRESSURE, "largest stresses",
-)  # fmt: skip
-VON_MISES_X = _both(
-    "von_mises_X_over_a", "1",
-    "place of the largest von Mises stress along the surface, over the half-width",
-    lambda s, _: s.strength.von_mises.X, OWN_PRESSURE, range=Range(),
-)  # fmt: skip
-VON_MISES_Y = _both(
-    "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
-    lambda s, _: s.strength.von_mises.Y, OWN_PRESSURE, range=_BELOW,
-)  # fmt: skip
-SHEAR = _both(
-    "max_shear", "N/(2a)", f"largest shear stress in the plane, on the surface and inside; {_INFINITE}",
-    lambda s, _: s.strength.shear.value, OWN_PRESSURE, "largest stresses",
-)  # fmt: skip
-SHEAR_X = _both(
-    "max_shear_X_over_a", "1", "place of the largest shear stress along the surface, over the half-width",
-    lambda s, _: s.strength.shear.X, OWN_PRESSURE, range=Range(),
-)  # fmt: skip
-SHEAR_Y = _both(
-    "max_shear_Y_over_a", "1", "place of the largest shear stress outwards, over the half-width",
-    lambda s, _: s.strength.shear.Y, OWN_PRESSURE, range=_BELOW,
-)  # fmt: skip
+def _largest(
+    name: str, stress: str, of: Callable[[Any], Peak], direction: str = ""
+) -> tuple[dict[str, Quantity], ...]:
+    """A stress where it is largest, and both coordinates of the place."""
+    about, place = (
+        f"largest {stress}{direction}, on the surface and inside",
+        f"place of the largest {stress}",
+    )
+    return (
+        _both(
+            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, OWN_PRESSURE,
+            "largest stresses",
+        ),
+        _both(
+            f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
+            lambda s, _: of(s).X, OWN_PRESSURE, range=Range(),
+        ),
+        _both(
+            f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
+            lambda s, _: of(s).Y, OWN_PRESSURE, range=_BELOW,
+        ),
+    )  # fmt: skip
+
+
+VON_MISES, VON_MISES_X, VON_MISES_Y = _largest(
+    "von_mises", "von Mises stress", lambda s: s.strength.von_mises
+)
+SHEAR, SHEAR_X, SHEAR_Y = _largest(
+    "max_shear", "shear stress", lambda s: s.strength.shear, direction=" in the plane"
+)
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "

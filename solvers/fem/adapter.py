@@ -30,7 +30,7 @@ def _element(degree: int, vector: bool = True, discontinuous: bool = False) -> A
 
 
 def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1) -> Any:
-    """A mesh shared out over the ranks; evenly spaced nodes of cells in the order of Lagrange elements."""
+    """A mesh shared out over the ranks; nodes of cells evenly spaced, in the order of Lagrange's."""
     if elements:
         even = {"lagrange_variant": basix.LagrangeVariant.equispaced, "shape": (2,)}
         element = elements.element("Lagrange", _CELL, degree, **even)

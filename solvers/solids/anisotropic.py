@@ -7,7 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, choice, numbers, parameter
+from galinx.solvers.parameters import check, numbers
+from galinx.solvers.solids.constants import USUAL_STIFFNESS, density, in_plane
 from galinx.solvers.solids.plane import PlaneSolid, check_minors
 from galinx.solvers.solids.solid import SOLIDS
 
@@ -23,34 +24,28 @@ class Anisotropic(PlaneSolid):
     about: ClassVar[str] = "by its stiffness in the frame of the scene, X the motion, Y up"
 
     constants: tuple[float, ...] = numbers(
-        "stiffness", "stiffness c11, c12, c16, c22, c26, c66", "Pa", 6, usual=(1e3, 2e12),
+        "stiffness", "stiffness c11, c12, c16, c22, c26, c66", "Pa", 6, usual=USUAL_STIFFNESS,
         note="σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY with no strain along Z; in plane stress with no "
         "stress along Z",
     )  # fmt: skip
-    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
+    ρ: float = density()
     along_Z: tuple[float, ...] = numbers(
         "stiffness_Z", "stiffness c13, c23, c36", "Pa", 3, optional=True,
         note="tells σ_ZZ in plane strain, which is NaN without it",
     )  # fmt: skip
-    plane: str = choice(
-        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
-    )
+    plane: str = in_plane()
 
     def __post_init__(self) -> None:
         check(self)
         for name, value in zip(("c11", "c22", "c66"), np.diag(self.stiffness).tolist()):
             if value <= 0.0:
                 raise ValueError(f"stiffness: found {name} = {value:g} Pa, expected a number > 0")
+        rows = "[[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]]"
         meaning = {
             (0, 1): "stiffness: 1 - c12²/(c11 c22)",
             (0, 2): "stiffness: 1 - c16²/(c11 c66)",
             (1, 2): "stiffness: 1 - c26²/(c22 c66)",
-            (
-                0,
-                1,
-                2,
-            ): "stiffness: the determinant of [[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]] "
-            "over c11 c22 c66",
+            (0, 1, 2): f"stiffness: the determinant of {rows} over c11 c22 c66",
         }
         check_minors(self.stiffness, meaning)
 

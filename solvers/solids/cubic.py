@@ -7,11 +7,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, choice, parameter
+from galinx.solvers.parameters import check, parameter
+from galinx.solvers.solids.constants import angle, density, in_plane, modulus
 from galinx.solvers.solids.plane import PlaneSolid, check_minors, rotated
 from galinx.solvers.solids.solid import SOLIDS
-
-_USUAL = (1e3, 2e12)
 
 
 @dataclass(frozen=True)
@@ -24,25 +23,17 @@ class Cubic(PlaneSolid):
 
     about: ClassVar[str] = "with [100] and [010] in the plane, at an angle, [001] along Z"
 
-    c11: float = parameter("c11", "stiffness c11", "Pa", symbol="c_{11}", above=0.0, usual=_USUAL)
+    c11: float = modulus("c11", "stiffness c11", "c_{11}")
     c12: float = parameter("c12", "stiffness c12", "Pa", symbol="c_{12}")
-    c44: float = parameter("c44", "stiffness c44", "Pa", symbol="c_{44}", above=0.0, usual=_USUAL)
-    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
-    angle: float = parameter(
-        "angle", "angle from X to [100]", "deg", symbol=r"\theta", default=0.0,
-        note="counterclockwise, Y upwards",
-    )  # fmt: skip
-    plane: str = choice(
-        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
-    )
+    c44: float = modulus("c44", "stiffness c44", "c_{44}")
+    ρ: float = density()
+    angle: float = angle("[100]")
+    plane: str = in_plane()
 
     def __post_init__(self) -> None:
         check(self)
         normal = np.full((3, 3), self.c12) + (self.c11 - self.c12) * np.eye(3)
-        check_minors(
-            normal,
-            {(0, 1): "1 - (c12/c11)²", (0, 1, 2): "(1 - c12/c11)² (1 + 2 c12/c11)"},
-        )
+        check_minors(normal, {(0, 1): "1 - (c12/c11)²", (0, 1, 2): "(1 - c12/c11)² (1 + 2 c12/c11)"})
 
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:

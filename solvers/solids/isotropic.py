@@ -12,7 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, choice, parameter
+from galinx.solvers.parameters import check, parameter
+from galinx.solvers.solids.constants import density, in_plane, modulus
 from galinx.solvers.solids.potentials import stresses
 from galinx.solvers.solids.solid import SOLIDS, Potential
 
@@ -30,12 +31,10 @@ class Isotropic:
 
     about: ClassVar[str] = "isotropic"
 
-    E: float = parameter("E", "Young's modulus", "Pa", above=0.0, usual=(1e3, 2e12))
+    E: float = modulus("E", "Young's modulus")
     ν: float = parameter("nu", "Poisson's ratio", symbol=r"\nu", above=-1.0, at_most=0.5)
-    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
-    plane: str = choice(
-        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
-    )
+    ρ: float = density()
+    plane: str = in_plane()
 
     def __post_init__(self) -> None:
         check(self)

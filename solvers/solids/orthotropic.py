@@ -7,15 +7,14 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, choice, parameter
+from galinx.solvers.parameters import check, parameter
+from galinx.solvers.solids.constants import angle, density, in_plane, modulus
 from galinx.solvers.solids.plane import PlaneSolid, along_axes, check_minors, rotated
 from galinx.solvers.solids.solid import SOLIDS
 
-_USUAL = (1e3, 2e12)
-
 
 def _modulus(key: str, about: str) -> float:
-    return parameter(key, about, "Pa", symbol=f"{key[0]}_{{{key[1:]}}}", above=0.0, usual=_USUAL)
+    return modulus(key, about, f"{key[0]}_{{{key[1:]}}}")
 
 
 def _ratio(key: str, one: int, other: int) -> float:
@@ -40,14 +39,9 @@ class Orthotropic(PlaneSolid):
     ν13: float = _ratio("nu13", 1, 3)
     ν23: float = _ratio("nu23", 2, 3)
     G12: float = _modulus("G12", "shear modulus in the plane of axes 1 and 2")
-    ρ: float = parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
-    angle: float = parameter(
-        "angle", "angle from X to axis 1", "deg", symbol=r"\theta", default=0.0,
-        note="counterclockwise, Y upwards",
-    )  # fmt: skip
-    plane: str = choice(
-        "plane", "plane strain or stress", ("strain", "stress"), note='`"stress"` is a thin sheet'
-    )
+    ρ: float = density()
+    angle: float = angle("axis 1")
+    plane: str = in_plane()
 
     def __post_init__(self) -> None:
         check(self)

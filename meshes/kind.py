@@ -23,6 +23,9 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
 #: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
 _STRONGEST = -0.95
 
+#: How far apart fields may live before cells finer in angle are needed.
+_APART = 1.25
+
 #: Power of the rings' ratio by which they are gentler for stresses.
 _GENTLER = 0.6
 
@@ -117,16 +120,20 @@ class MeshKind:
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        return Refinement(levels, ratio, sectors, columns, 1 + ceil(finer / 2))
+        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5)
+        return Refinement(levels, ratio, sectors, columns, pieces)
+
+    def _apart(self, wanted: Wanted) -> float:
+        """How much it matters that the solid's fields live in planes apart."""
+        return wanted.spread * -log10(self._of_cells(wanted)) / 6.0
 
     def _finer(self, wanted: Wanted) -> int:
         """How many more sectors a solid asks for whose fields live in planes far apart.
 
         The large cells around the punch cannot follow both, whatever the degree is; those within them
-        can, whose outermost ring is cut, too. Measured, see docs/verification.md.
+        can, whose outermost ring is cut before that. Measured, see docs/verification.md.
         """
-        digits = -log10(self._of_cells(wanted))
-        more = max(ceil(1.3 * (wanted.spread * digits / 6.0 - 1.4)), 0)
+        more = max(ceil(1.3 * (self._apart(wanted) - _APART)), 0)
         return more + more % 2 if self.walls else more
 
     def _innermost(self, wanted: Wanted) -> float:
@@ -149,7 +156,9 @@ class MeshKind:
         digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
         stresses = wanted.nearest is not None
-        degree = ceil(3.4 - 0.2 * lost + (0.7 + 0.12 * lost) * digits) + stresses
+        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
+        # The first sector more does more than is asked of it.
+        degree -= _APART < self._apart(wanted) < 1.4 * _APART
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:

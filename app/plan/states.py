@@ -25,8 +25,9 @@ class States:
 
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
-            speed), the law's parameters, the speed in m/s, how often a wave crosses the contact in a
-            stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
+            speed), the law's parameters, the speed and that of a wave along the surface in m/s, how
+            often a wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the
+            punch.
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
@@ -120,6 +121,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         "c": np.repeat(all_speeds, friction.count * per_law),
         **values,
         "speed": np.repeat(np.multiply(all_speeds, scene.solid.c_s), friction.count * per_law),
+        "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": np.repeat(_crossings(scene, all_speeds), friction.count * per_law),
         "f": f.ravel(),
         "g": friction.stress_ratio * f.ravel() + 0.0,

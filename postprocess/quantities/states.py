@@ -37,6 +37,10 @@ SPEED = Quantity(
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
 RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
 VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=_NOT_NEGATIVE)
+SPEED_LIMIT = Quantity(
+    "states/speed_limit", "m/s", "speed of the wave along the surface, below which a punch has to be",
+    (STATE,), range=_NOT_NEGATIVE,
+)  # fmt: skip
 
 ALPHA = Quantity(
     "states/alpha", "1", "exponent of the pressure at X = a, local analysis", (STATE,),

@@ -26,6 +26,9 @@ _STRONGEST = -0.95
 #: How far apart fields may live before cells finer in angle are needed.
 _APART = 1.25
 
+#: Digits of moments that go with a digit of stresses.
+_OF_STRESSES = 1.5
+
 #: Power of the rings' ratio by which they are gentler for stresses.
 _GENTLER = 0.6
 
@@ -125,7 +128,8 @@ class MeshKind:
 
     def _apart(self, wanted: Wanted) -> float:
         """How much it matters that the solid's fields live in planes apart."""
-        return wanted.spread * -log10(self._of_cells(wanted)) / 6.0
+        digits = -log10(self._of_cells(wanted)) * (1.0 if wanted.nearest is None else _OF_STRESSES)
+        return wanted.spread * digits / 6.0
 
     def _finer(self, wanted: Wanted) -> int:
         """How many more sectors a solid asks for whose fields live in planes far apart.

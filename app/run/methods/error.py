@@ -80,6 +80,10 @@ class MeasuredError:
         found = self._measured(probes)
         self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
+        if not ladder.task.response.mirrored:
+            # Only what rounding might do is known there; what it does shows in the changes, too.
+            for word, pair in self._sample.items():
+                self._rounding[word] = min(self._rounding[word], max(float(d.max()) for d in pair))
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):

@@ -22,7 +22,7 @@ sigma0_over_load = 6e4
 """
 
 
-def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical"):
+def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical", output=""):
     """A scene of an orthotropic or anisotropic solid at a share of its limit."""
     if isinstance(solid, Orthotropic):
         names = ("E1", "E2", "E3", "ν12", "ν13", "ν23", "G12", "ρ", "angle")
@@ -34,7 +34,7 @@ def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical
     return parse(
         f'[solid]\nkind = "{kind}"\nplane = "{solid.plane}"\n{lines}\n{FRICTION}sign = "{sign}"\n'
         f"[motion]\nc = {float(share * solid.limit())!r}\nX_over_L = [0.1, 0.7]\n"
-        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n"
+        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n{output}"
     )
 
 
@@ -67,6 +67,38 @@ def test_finite_elements_reach_the_tolerance(solid, share):
 @pytest.mark.parametrize("solid, share", ALL)
 def test_finite_elements_reach_a_small_tolerance(solid, share):
     check(solid, share, 1e-9)
+
+
+@pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[5:6])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-7] if THOROUGH else [1e-4])
+def test_stresses_reach_the_tolerance(solid, share, tolerance):
+    data = solved_with_stresses(solid, share, tolerance)
+    for name, true in (("sigma_XX", in_plane_error(data)), ("inside", inside_error(data))):
+        estimate = data[f"states/fem/estimate_{name}"]
+        assert np.all(true <= estimate) and estimate.max() <= tolerance, name
+
+
+def solved_with_stresses(solid, share, tolerance):
+    points = "points = [[0.0, -0.5], [0.99, -0.01], [-1.02, -0.003], [1.5, -1.0]]\n"
+    found = galinx.compute(scene(solid, share, tolerance, ("sif", "surface", "interior"), output=points))
+    assert found.verdict == "PASS", found.attributes["verdict_reasons"]
+    return found.data
+
+
+def in_plane_error(data):
+    """Of every state, over the larger of itself and the largest 0.01 a from the edges."""
+    exact, X = data["surface/closed_form/sigma_XX"], data["surface/X_over_a"]
+    far = np.abs(exact[:, np.abs(np.abs(X) - 1.0) > 0.01]).max(axis=1, keepdims=True)
+    error = np.abs(data["surface/fem/sigma_XX"] - exact)
+    return (error / np.maximum(np.abs(exact), far)).max(axis=1)
+
+
+def inside_error(data):
+    """Of every state, over the largest stress 0.01 a from the edges, which no point here is nearer to."""
+    of = [[data[f"interior/{m}/sigma_{ij}"] for ij in ("XX", "YY", "XY")] for m in ("fem", "closed_form")]
+    found, exact = np.array(of)
+    largest = np.abs(exact).max(axis=(0, 2))
+    return np.abs(found - exact).max(axis=(0, 2)) / largest
 
 
 def test_an_isotropic_solid_has_the_same_results_however_it_is_given():

@@ -46,7 +46,7 @@ def of_degrees(order: int) -> Rate:
     Args:
         order: 2 for resultants and moments, 1 for derivatives.
     """
-    return Rate(0.16, 0.16) if order == 2 else Rate(0.45, 0.45, _ERRATIC)
+    return Rate(0.16, 0.16) if order == 2 else Rate(0.5, 0.5, _ERRATIC)
 
 
 def remaining(

@@ -64,5 +64,5 @@ def test_estimates_are_bounds_and_tight(found, holds):
     def good(*of_one_kind):
         return all(verdict.holds for verdict in random_scenes.verdicts({"kind": Ratios(*of_one_kind)}))
 
-    assert good(found, found) == holds
-    assert not good(found, [*found, 101.0]) and not good(found, found, [0.9])
+    assert good(found, found, found) == holds
+    assert not good(found, found, [*found, 101.0]) and not good(found, found, found, [0.9])

@@ -28,10 +28,16 @@ def test_the_estimate_covers_the_true_error(degree, cuts):
     assert "run/fem/change_by_degree" not in data
 
 
-@pytest.mark.parametrize("degree, cuts, c", [(10, 1, 0.6), (12, 1, 0.6), (12, 1, 0.9), (8, 2, 0.6)])
-def test_what_innermost_cells_leave_is_in_the_estimate(degree, cuts, c):
+@pytest.mark.parametrize(
+    "mesh, degree, cuts, c",
+    [
+        ("confocal", 10, 1, 0.6), ("confocal", 12, 1, 0.6), ("confocal", 12, 1, 0.9),
+        ("confocal", 8, 2, 0.6), ("graded", 11, 1, 0.91),
+    ],
+)  # fmt: skip
+def test_what_innermost_cells_leave_is_in_the_estimate(mesh, degree, cuts, c):
     """It falls with the degree's fourth power only, so that the next degree shows little of it."""
-    changes = {"solve.degree": degree, "solve.cuts": cuts, "solve.tolerance": 1e-4}
+    changes = {"solve.mesh": mesh, "solve.degree": degree, "solve.cuts": cuts, "solve.tolerance": 1e-4}
     data = computed("tables4_5", changes | {"motion.c": c, "motion.X_over_L": 0.0}).data
     still = np.abs(data["states/f"]) < 1e-9  # nothing else is left without friction
     true, estimate = (data[f"states/fem/{name}"][still] for name in ("true_error", "estimate"))

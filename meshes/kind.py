@@ -187,8 +187,8 @@ class MeshKind:
 
         In a chart with smooth fields what is left of a singularity is linear in the distance but not in
         the cell's coordinates: it falls with the degree's fourth power only. Measured at degree 12, over
-        all κ and speeds: 0.2 to 6 at rest, ten times as much at 0.99 of the Rayleigh speed. Straight cells leave
-        0.1 to 0.2 of their size squared at rest, 0.6 to 0.9 at 0.99 of the Rayleigh speed, at any degree.
+        all κ and speeds: 0.2 to 6 at rest, ten times as much at 0.99 of the Rayleigh speed. Straight
+        cells leave 0.1 to 0.2 of their size squared at rest, 0.6 to 0.9 at that speed, at any degree.
 
         Args:
             wanted: what the mesh is for.

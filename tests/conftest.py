@@ -1,6 +1,6 @@
 """What is computed once and read by many tests, and which tests are fast, which meet dolfinx.
 
-A test is ``fast``, or ``fem`` and to be run with every dolfinx, or of the pages and neither. None says so
+A test is ``fast``, or ``fem`` and to be run with every dolfinx, or neither. None says so
 itself: its place does, and the fixtures that it asks for.
 """
 
@@ -23,8 +23,13 @@ FAST = (
 )  # fmt: skip
 #: Fixtures that compute; what asks for one is not fast wherever it is.
 SLOW = {"tables_run", "map_run", "inside_run", "archives"}
-#: Tests of pages start programs, but nothing in them depends on the version of dolfinx.
-PAGES = "docs/"
+#: Tests that start programs, nothing in which depends on the version of dolfinx: what they look at is
+#: files, streams, processes, pages.
+NO_FEM = (
+    "docs/", "app/commands/test_damaged_archives.py", "app/commands/test_outputs.py", "app/console/",
+    "app/extremes/", "app/pictures/", "app/process/", "app/run/test_interruptions.py",
+    "app/run/test_random_scenes.py", "test_install.py", "test_run_sh.py",
+)  # fmt: skip
 
 
 def pytest_collection_modifyitems(items):
@@ -32,7 +37,7 @@ def pytest_collection_modifyitems(items):
         place = item.path.relative_to(Path(__file__).parent).as_posix()
         if place.startswith(FAST) and not SLOW & set(item.fixturenames):
             item.add_marker("fast")
-        elif not place.startswith(PAGES):
+        elif not place.startswith(NO_FEM):
             item.add_marker("fem")
 
 

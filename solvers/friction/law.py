@@ -13,16 +13,20 @@ class FrictionLaw(Protocol):
     """A law of dynamic friction, per normal force: f = F/N.
 
     A law is a dataclass whose fields are made by :func:`galinx.solvers.parameters.parameter`; scenes set
-    them by their keys. Its inner state z, (n,), changes with the slip. Those that inherit from this
-    class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
+    them by their keys. Its inner state z, (n,), dimensionless, changes with the slip. Those that inherit
+    from this class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
 
     Attributes:
         about: what the law is called, with its source.
         depends_on_speed: False where f is the same at every speed; it is then computed once.
+        broadcasts: can one law stand for many? Their parameters are then (m, 1), their states
+            (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
+            slips as NumPy's rules of broadcasting say.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
+    broadcasts: ClassVar[bool] = False
 
     def rest(self) -> NDArray[np.float64]:
         """State before the first stroke, (n,)."""
@@ -40,12 +44,28 @@ class FrictionLaw(Protocol):
         """States after so much slip [m] from z, (len(slip), n); None where only the rate is known."""
         return None
 
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64] | None:
+        """∫ s f d(slip) [m] over so much slip from z, (len(slip),); None where no formula gives it."""
+        return None
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
+        """s df/d(slip) [1/m] at states z (..., n), tangent stiffness over N; None: by differences."""
+        return None
+
     def stiffness(self, z: NDArray, s: int, V: float) -> float | None:
         """Largest |∂(dz/d(slip))/∂z| [1/m] of a stroke that starts at z; None where it is not known.
 
         Runge-Kutta's steps are stable where it is known to be small.
         """
         return None
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Numbers that grow through zero where the rate is not smooth: (how many,), each once a stroke."""
+        return np.zeros(0)
+
+    def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
+        """State after a time at rest [s]; only laws that age change."""
+        return z
 
 
 class Laws(Registry[type[FrictionLaw]]):

@@ -110,7 +110,7 @@ def numbers(
 def rows(
     key: str, about: str, columns: tuple[str, ...], *, optional: bool = False, note: str = ""
 ) -> Any:
-    """A table of numbers as a dataclass's field, a tuple of rows; ``columns`` are the units of its columns.
+    """A table of numbers as a dataclass's field, a tuple of rows; ``columns`` are the columns' units.
 
     Where it may be left out, it is empty then.
     """

@@ -15,7 +15,8 @@ LENGTH = 1e-4
 def _curve(rng):
     mu_c = rng.uniform(0.1, 1.0)
     return {
-        "mu_c": mu_c, "mu_s": mu_c * rng.uniform(1.0, 2.0), "stribeck_velocity": 10.0 ** rng.uniform(-4, -2),
+        "mu_c": mu_c, "mu_s": mu_c * rng.uniform(1.0, 2.0),
+        "stribeck_velocity": 10.0 ** rng.uniform(-4, -2),
         "stribeck_exponent": rng.uniform(0.5, 2.0),
     }  # fmt: skip
 

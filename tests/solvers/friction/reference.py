@@ -1,11 +1,12 @@
 """Friction laws as papers print them, in time and with signed velocities, integrated step by step.
 
 Nothing of galinx is imported here. A law is a function of its parameters, by the names that scenes use,
-and of the motion, strokes (direction, speed, length, rest before it); it gives f at so many places of each
-stroke, evenly spaced from its start to its end, (strokes, places), and ∫ f v dt over each, (strokes,).
+and of the motion, strokes (direction, speed, length, rest before it); it gives f at so many places of each,
+evenly spaced from its start to its end, (strokes, places), and ∫ f v dt over each, (strokes,).
 """
 
 import warnings
+from itertools import pairwise
 from math import asinh, exp, log, pi, sin
 
 import numpy as np
@@ -20,7 +21,7 @@ def _advance(rhs, y, times, stop=None):
     if stop is not None:
         stop.terminal, stop.direction = True, 1.0
     found = [y]
-    for start, end in zip(times[:-1], times[1:]):
+    for start, end in pairwise(times):
         done = solve_ivp(rhs, (start, end), found[-1], events=stop, **_PRECISE)
         assert done.success
         if done.status == 1:
@@ -159,7 +160,7 @@ def _inverted(slope, w, slip, breaks):
             warnings.simplefilter("ignore", IntegrationWarning)  # of the last digits
             return sum(
                 quad(lambda x: 1.0 / slope(x), *piece, epsabs=0.0, epsrel=2e-14, limit=200)[0]
-                for piece in zip(ends[:-1], ends[1:])
+                for piece in pairwise(ends)
             )
 
     top = 1.0 - 1e-12

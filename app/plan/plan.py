@@ -63,7 +63,7 @@ def make_plan(scene: Scene) -> Plan:
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
-        strokes=laws_followed(scene) * len(scene.motion.strokes), fem=fem, skipped=skipped,
+        strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
         warnings=tuple(warnings),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)

@@ -73,11 +73,8 @@ def compute(
 
 def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
     sink.put(runs.SCENE.path, scene.text)
-    for name, values in states.columns.items():
-        sink.put(column(name), values)
-    sink.put(runs.LOOP_OF_STATE.path, states.loop)
-    sink.put(runs.LOOP_X.path, states.travel)
-    sink.put(runs.LOOP_F.path, states.loops)
+    for path, values in states.datasets.items():
+        sink.put(path, values)
     for path, positions in plan.positions.items():
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:

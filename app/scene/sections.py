@@ -7,6 +7,7 @@ from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.numbers import Numbers
 from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve
+from galinx.app.scene.tables import Rows, Strokes
 from galinx.app.scene.values import (
     Choice,
     Choices,
@@ -20,7 +21,6 @@ from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import INTEGRATORS
-from galinx.solvers.friction.strokes import DIRECTION
 from galinx.solvers.parameters import Range, made
 from galinx.solvers.profiles import PROFILES, Profile
 from galinx.solvers.solids import SOLIDS, Solid
@@ -81,7 +81,18 @@ _MOTION_KEYS = {
         "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
     ),
     "strokes": Key(
-        Choices(DIRECTION), "directions in order of time", ("forward", "backward", "forward")
+        Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
+        "a stroke `{to = 0.8}` goes on from where the one before ended; `speed` of its own is for "
+        "friction alone, `rest` is the time at rest before it",
+    ),
+    "rest": Key(
+        Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
+    ),
+    "path": Key(
+        Rows(("s", "m"), 2), "motion point by point, time and position", None,
+        "instead of `c` or `speed`, `strokes` and `X_over_L`, for friction alone; positions from 0 to "
+        "`friction.pre_sliding`",
+        without="none",
     ),
     "X_over_L": Key(
         Numbers("", Range(at_least=0.0, at_most=1.0)), "positions on the stroke", (0.2, 0.8),

@@ -35,10 +35,11 @@ def table() -> dict[str, Quantity]:
     of_laws = {
         column(key): Quantity(
             column(key), "none" if known.options else known.unit or "1", known.about, (STATE,),
-            symbol=known.symbol, range=known.range,
+            symbol=known.symbol or key, range=known.range,
         )
         for law in LAWS.values()
         for key, known in parameters(law).items()
+        if known.single
     }  # fmt: skip
     return of_laws | QUANTITIES
 

@@ -49,7 +49,7 @@ class FrictionLaw(Protocol):
         return None
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
-        """s df/d(slip) [1/m] at states z (..., n), tangent stiffness over N; None: by differences."""
+        """s df/dd [1/m] at states z (..., n), the tangent stiffness over N; None: by differences."""
         return None
 
     def stiffness(self, z: NDArray, s: int, V: float) -> float | None:
@@ -60,7 +60,7 @@ class FrictionLaw(Protocol):
         return None
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Numbers that grow through zero where the rate is not smooth: (how many,), each once a stroke."""
+        """Numbers that grow through zero, each once a stroke, where the rate is not smooth, (any,)."""
         return np.zeros(0)
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:

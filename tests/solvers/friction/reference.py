@@ -1,8 +1,8 @@
 """Friction laws as papers print them, in time and with signed velocities, integrated step by step.
 
 Nothing of galinx is imported here. A law is a function of its parameters, by the names that scenes use,
-and of the motion, strokes (direction, speed, length, rest before it); it gives f at so many places of each,
-evenly spaced from its start to its end, (strokes, places), and ∫ f v dt over each, (strokes,).
+and of the motion, strokes (direction, speed, length, rest before it); it gives f at so many places of
+each, evenly spaced from its start to its end, (strokes, places), and ∫ f v dt over each, (strokes,).
 """
 
 import warnings

@@ -51,6 +51,7 @@ def test_every_law_goes_from_the_scene_to_the_contact(name, tmp_path):
     np.testing.assert_allclose(data["states/g"], -f, rtol=0.0, atol=1e-10)
     inner = np.concatenate([stroke.z for stroke in known])
     np.testing.assert_allclose(data["states/inner_state"], inner, rtol=0.0, atol=1e-10)
+    assert result.dataset.inner_state.dims == ("state", "inner")
     cot = 1.0 / np.tan(np.pi * data["states/alpha"])
     response = result.scene.solid.response(data["states/c"][0])
     np.testing.assert_allclose(cot, -f * response.q / response.n, rtol=0.0, atol=1e-9)

@@ -15,6 +15,7 @@ from galinx.app.scene.values import Spread
 from galinx.postprocess.quantities.quantity import OWN_PRESSURE, PUNCH
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path
+from galinx.solvers.friction.slider import Slider
 from galinx.solvers.friction.strokes import positions
 from galinx.solvers.parameters import made, parameters
 from galinx.solvers.profiles import Profile
@@ -170,6 +171,7 @@ class Scene:
         title: free text.
         text: the TOML it came from, byte for byte as archived.
         half_plane, punch, friction, motion, solve, output: its sections.
+        slider: a mass on a spring, None for none.
     """
 
     title: str
@@ -180,6 +182,7 @@ class Scene:
     motion: Motion
     solve: Solve
     output: Output
+    slider: Slider | None = None
 
     @property
     def solid(self) -> Solid:

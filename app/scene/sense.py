@@ -8,10 +8,11 @@ import numpy as np
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE
+from galinx.postprocess.quantities.slider import SLIDER
 from galinx.solvers.parameters import parameters, values
 
 #: Words of output.quantities that need no contact.
-FRICTIONS = frozenset({FRICTION_ALONE})
+FRICTIONS = frozenset({FRICTION_ALONE, SLIDER})
 #: Usual lengths of a stroke [m].
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
@@ -23,10 +24,15 @@ def contradictions(scene: Scene) -> list[str]:
     faults: list[str] = []
     asked, solve = set(scene.output.quantities), scene.solve
     faults += _of_motion(scene)
-    if asked - {"friction"} and not solve.methods:
+    if (contact := sorted(asked - FRICTIONS)) and not solve.methods:
         faults.append(
-            "solve.methods is empty, but output.quantities asks for "
-            f"{', '.join(sorted(asked - {'friction'}))}; name closed_form, fem or both"
+            f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
+            "closed_form, fem or both"
+        )
+    if (SLIDER in asked) != (scene.slider is not None):
+        faults.append(
+            'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
+            "drive_speed and duration"
         )
     if ("interior" in asked) != bool(scene.output.points or scene.output.map):
         faults.append(

@@ -5,6 +5,7 @@ from difflib import get_close_matches
 
 from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
     runs,
+    slider,
     states,
     stresses,
     validity,

@@ -67,6 +67,23 @@ class GeneralisedMaxwellSlip(StribeckCurve):
             attracted = self.C * (self.α - s * f / self.g(V)) / V
         return np.append(s * np.where(s * slipping > 0.0, attracted, self.k), 0.0 * f)
 
+    def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """df_i/dt [1/s], and no change of which slip."""
+        f, slipping = np.split(z, 2)
+        attracted = self.C * (self.α - s * f / self.g(V))
+        return np.append(s * np.where(s * slipping > 0.0, attracted, V * self.k), 0.0 * f)
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Each element that sticks comes to its limit."""
+        f, slipping = np.split(z, 2)
+        return np.where(s * slipping > 0.0, -1.0, s * f - self.α * self.g(V))
+
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """What has come to its limit slips."""
+        f, slipping = np.split(z, 2)
+        slips = (s * slipping > 0.0) | (s * f >= self.α * self.g(V) * (1.0 - 1e-9))
+        return np.append(f, s * slips)
+
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         return z[..., : len(self.elements)].sum(axis=-1)
 

@@ -63,6 +63,14 @@ class FrictionLaw(Protocol):
         """Numbers that grow through zero, each once a stroke, where the rate is not smooth, (any,)."""
         return np.zeros(0)
 
+    def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """dz/dt [1/s] in direction s = ±1 at the speed V >= 0 [m/s], (n,)."""
+        return V * self.rate(z, s, V)
+
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """State with which a motion in direction s begins, or goes on where the rate has switched."""
+        return z
+
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
         """State after a time at rest [s]; only laws that age change."""
         return z

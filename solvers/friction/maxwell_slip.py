@@ -67,6 +67,10 @@ class MaxwellSlip(FrictionLaw):
         """df_i/dd [1/m]."""
         return np.where(s * z < self.μ, s * self.k, 0.0)
 
+    def settle(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
+        """What has come to its limit is there."""
+        return np.where(s * z >= self.μ * (1.0 - 1e-9), s * self.μ, z)
+
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         return z.sum(axis=-1)
 

@@ -63,6 +63,13 @@ class RateAndState(FrictionLaw):
         aged = (steady - z) / self.D_c
         return np.where(self.evolution == "ageing", aged, -z / self.D_c * np.log(z / steady))
 
+    def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """dϑ/dt [1/s]; it ages at rest, too."""
+        if self.evolution == "ageing":
+            return (self.V0 - V * z) / self.D_c
+        turns = V * z / self.V0
+        return -self.V0 / self.D_c * turns * np.log(turns) if V > 0.0 else 0.0 * z
+
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """Ageing: ϑ - V₀/V decays as exp(-d/D_c); slip: ln(ϑ V/V₀) does."""
         steady, ϑ, x = self._steady(V), z[..., 0], np.asarray(slip, dtype=float) / self.D_c

@@ -52,6 +52,10 @@ class Table(FrictionLaw):
         """The slip grows as it is [1/m], once the direction is that of the stroke."""
         return np.array([1.0 / self._scale, 0.0])
 
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """A reversal begins the other branch."""
+        return np.array([self._start(z, s) / self._scale, float(s)])
+
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         d, f = self._branch(s)
         return np.interp(z[..., 0] * self._scale, d, f)

@@ -193,3 +193,44 @@ def test_archives_of_laws_are_whole_drawn_and_reported(name, tmp_path):
     assert next(iter(result.drawings())).name == "friction"
     result.report(tmp_path / "s.html")
     assert LAWS[name].about in (tmp_path / "s.html").read_text(encoding="utf-8")
+
+
+SLIDER = """
+slider = {mass = 2, stiffness = "8 N/m^2", drive_speed = "0.1 m/s", duration = "20 s"}
+"""
+
+
+def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
+    quantities = '["friction", "slider"]'
+    text = SCENE.format(
+        model="coulomb", friction="mu_c = [2e-5, 4e-5]", motion="speed = 2e-3", quantities=quantities
+    )
+    (tmp_path / "s.toml").write_text(text + SLIDER, encoding="utf-8")
+    done = command("run", "s.toml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert faults(tmp_path / "s.h5") == []
+    result = galinx.load(tmp_path / "s.h5")
+    data = result.data
+    np.testing.assert_allclose(data["slider/period"], np.pi, rtol=1e-7)
+    np.testing.assert_allclose(data["slider/slip_per_cycle"], 0.1 * np.pi, rtol=1e-7)
+    np.testing.assert_allclose(data["slider/peak_velocity"], 0.2, rtol=1e-6)
+    for row, μ in enumerate((2e-5, 4e-5)):
+        later = np.maximum(data["slider/time"] - μ * 2e4 / 0.8, 0.0)
+        wanted = 0.1 * (1.0 - np.cos(2.0 * later))
+        np.testing.assert_allclose(data["slider/velocity"][row], wanted, atol=2e-4)
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "slider"]
+
+
+@pytest.mark.parametrize(
+    "words, slider, said",
+    [
+        ('["friction", "slider"]', "", "go together"),
+        ('["friction"]', SLIDER, "go together"),
+        ('["friction", "slider"]', "slider = {mass = 1, stiffness = 1}", "missing drive_speed, duration"),
+        ('["friction", "slider"]', SLIDER.replace("2,", "-2,"), "found -2, expected > 0"),
+    ],
+)
+def test_faults_of_sliders_are_told(words, slider, said):
+    text = SCENE.format(model="coulomb", friction="mu_c = 0.4", motion="speed = 1", quantities=words)
+    with pytest.raises(BadInput, match=re.escape(said)):
+        parse(text + slider)

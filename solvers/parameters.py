@@ -53,6 +53,7 @@ class Parameter:
         options: the texts that it may be; none for a number.
         count: of the numbers that it is, 0 for one number.
         columns: units of the columns of a table of numbers; none for anything else.
+        measured: of these, the columns that a fit to measurements finds; the others are places.
         optional: may all of these be left out?
         note: what documentation says beyond ``about``.
     """
@@ -66,6 +67,7 @@ class Parameter:
     options: tuple[str, ...] = ()
     count: int = 0
     columns: tuple[str, ...] = ()
+    measured: tuple[int, ...] = ()
     optional: bool = False
     note: str = ""
 
@@ -108,13 +110,19 @@ def numbers(
 
 
 def rows(
-    key: str, about: str, columns: tuple[str, ...], *, optional: bool = False, note: str = ""
+    key: str,
+    about: str,
+    columns: tuple[str, ...],
+    *,
+    measured: tuple[int, ...] = (),
+    optional: bool = False,
+    note: str = "",
 ) -> Any:
     """A table of numbers as a dataclass's field, a tuple of rows; ``columns`` are the columns' units.
 
     Where it may be left out, it is empty then.
     """
-    known = Parameter(key, about, columns=columns, optional=optional, note=note)
+    known = Parameter(key, about, columns=columns, measured=measured, optional=optional, note=note)
     return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
 
 

@@ -3,8 +3,18 @@
 import numpy as np
 
 #: Laws whose states and work have formulas, and those that are integrated.
-EXACT = ("coulomb", "dahl", "gms", "lugre", "maxwell_slip", "rate_and_state", "stribeck", "table")
-INTEGRATED = ("bouc_wen", "elasto_plastic")
+EXACT = (
+    "bouc_wen",
+    "coulomb",
+    "dahl",
+    "gms",
+    "lugre",
+    "maxwell_slip",
+    "rate_and_state",
+    "stribeck",
+    "table",
+)
+INTEGRATED = ("elasto_plastic",)
 #: Laws that know no time and no speed.
 RATE_INDEPENDENT = ("coulomb", "dahl", "bouc_wen", "maxwell_slip", "table")
 

@@ -1,12 +1,12 @@
 """Coulomb's law of friction."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
 
@@ -32,6 +32,10 @@ class Coulomb(FrictionLaw):
 
     def __post_init__(self) -> None:
         check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.level}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         """Nothing changes."""

@@ -1,12 +1,12 @@
 """Dahl's dynamic friction law (Eqs 2-5, 44-51)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
 
@@ -40,6 +40,10 @@ class Dahl(FrictionLaw):
 
     def __post_init__(self) -> None:
         check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.level, "sigma0_over_load": seen.slope}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         """df/dd [1/m]."""

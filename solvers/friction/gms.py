@@ -1,13 +1,13 @@
 """Generalised Maxwell slip."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS
-from galinx.solvers.friction.maxwell_slip import check_elements, elements
+from galinx.solvers.friction.law import LAWS, Seen
+from galinx.solvers.friction.maxwell_slip import check_elements, elements, spread
 from galinx.solvers.friction.stribeck import StribeckCurve
 from galinx.solvers.parameters import check, parameter
 
@@ -39,6 +39,11 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     def __post_init__(self) -> None:
         check(self)
         check_elements(self.elements)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        rate = 10.0 * seen.speed / seen.length
+        return {**super().guess(seen), "elements": spread(seen), "attraction_rate": rate}
 
     @property
     def k(self) -> NDArray[np.float64]:

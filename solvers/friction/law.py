@@ -1,12 +1,33 @@
 """What a friction law is."""
 
-from typing import ClassVar, Protocol
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
 from galinx.solvers.parameters import parameters
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What measured friction looks like, for a guess of parameters.
+
+    Attributes:
+        level, least: large and small |f| in sliding.
+        slope: |df/dX| where motion begins [1/m].
+        length: slip between reversals [m].
+        speed: [m/s].
+        rows: wanted in tables.
+    """
+
+    level: float
+    least: float
+    slope: float
+    length: float
+    speed: float
+    rows: int
 
 
 class FrictionLaw(Protocol):
@@ -22,11 +43,18 @@ class FrictionLaw(Protocol):
         broadcasts: can one law stand for many? Their parameters are then (m, 1), their states
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
             slips as NumPy's rules of broadcasting say.
+        conventions: keys of parameters that are chosen, and no fit finds.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
     broadcasts: ClassVar[bool] = False
+    conventions: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        """Parameters by key with which a fit may begin; defaults serve for those that are not there."""
+        return {}
 
     def rest(self) -> NDArray[np.float64]:
         """State before the first stroke, (n,)."""

@@ -1,12 +1,12 @@
 """The LuGre law of friction."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS
+from galinx.solvers.friction.law import LAWS, Seen
 from galinx.solvers.friction.stribeck import StribeckCurve
 from galinx.solvers.parameters import parameter
 
@@ -32,6 +32,10 @@ class Bristles(StribeckCurve):
         "sigma2_over_load", "viscous friction σ₂/N", "s/m", symbol=r"\sigma_2/N", at_least=0.0,
         default=0.0,
     )  # fmt: skip
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {**super().guess(seen), "sigma0_over_load": seen.slope}
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         ζ = z[..., 0]

@@ -1,21 +1,28 @@
 """Maxwell slip: springs with sliders, side by side."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, rows
 
 
 def elements() -> tuple[tuple[float, float], ...]:
     """The field of springs and limits."""
     return rows(
-        "elements", "springs and their limits", ("1/m", ""),
+        "elements", "springs and their limits", ("1/m", ""), measured=(0, 1),
         note="a row of k/N and μ for each; the slope of f over slip at its start is the sum of all k/N",
     )  # fmt: skip
+
+
+def spread(seen: Seen) -> tuple[tuple[float, float], ...]:
+    """Elements that slide one after the other, each after twice the slip of the one before."""
+    μ = seen.level / seen.rows
+    slips = 0.5 * seen.length * 0.5 ** np.arange(seen.rows)
+    return tuple((float(μ / slip), μ) for slip in slips[::-1])
 
 
 def check_elements(rows: tuple[tuple[float, float], ...]) -> None:
@@ -49,6 +56,10 @@ class MaxwellSlip(FrictionLaw):
     def __post_init__(self) -> None:
         check(self)
         check_elements(self.elements)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"elements": spread(seen)}
 
     @property
     def k(self) -> NDArray[np.float64]:

@@ -1,12 +1,12 @@
 """Friction of rate and state."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, choice, parameter
 
 
@@ -28,6 +28,7 @@ class RateAndState(FrictionLaw):
 
     about: ClassVar[str] = "rate and state"
     broadcasts: ClassVar[bool] = True
+    conventions: ClassVar[tuple[str, ...]] = ("reference_speed",)
 
     f0: float = parameter(
         "reference_friction", "friction coefficient f₀ at the reference speed", symbol="f_0", above=0.0,
@@ -47,6 +48,13 @@ class RateAndState(FrictionLaw):
 
     def __post_init__(self) -> None:
         check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {
+            "reference_friction": seen.level, "reference_speed": seen.speed, "a": 0.02 * seen.level,
+            "b": 0.02 * seen.level, "critical_slip": 0.1 * seen.length,
+        }  # fmt: skip
 
     def rest(self) -> NDArray[np.float64]:
         return np.asarray(self.ϑ0, dtype=float)[..., None]

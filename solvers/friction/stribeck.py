@@ -1,12 +1,12 @@
 """Friction that falls with the speed: Stribeck's curve, alone and as part of other laws."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
 
@@ -32,6 +32,10 @@ class StribeckCurve(FrictionLaw):
 
     def __post_init__(self) -> None:
         check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.least, "mu_s": seen.level, "stribeck_velocity": seen.speed}
 
     def g(self, V: float) -> NDArray[np.float64]:
         """Coefficient of steady sliding at a speed [m/s], without viscous friction."""

@@ -1,12 +1,12 @@
 """Friction as it was measured."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, rows
 
 
@@ -29,7 +29,7 @@ class Table(FrictionLaw):
 
     shape: tuple[tuple[float, float], ...] = rows(
         "shape", "friction forward, pairs of slip since the reversal [m] and f", ("m", ""),
-        note="slips grow from 0",
+        measured=(1,), note="slips grow from 0",
     )  # fmt: skip
     shape_backward: tuple[tuple[float, float], ...] = rows(
         "shape_backward", "friction backward", ("m", ""), optional=True,
@@ -44,6 +44,11 @@ class Table(FrictionLaw):
                 raise ValueError(
                     f"{key}: found the slips {slips} m, expected two or more that grow from 0"
                 )
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        slips = np.linspace(0.0, seen.length, max(seen.rows, 2))
+        return {"shape": tuple((float(d), seen.level * float(d > 0.0)) for d in slips)}
 
     def rest(self) -> NDArray[np.float64]:
         return np.zeros(2)

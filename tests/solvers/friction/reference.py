@@ -183,11 +183,26 @@ def _by_quadrature(strokes, places, slope, breaks):
 
 
 def bouc_wen(strokes, places, mu_c, yield_displacement, exponent, gamma):
-    def slope(w, V):
-        return (1.0 - abs(w) ** exponent * (gamma + (1.0 - gamma) * np.sign(w))) / yield_displacement
+    """Integrated in two pieces where it comes from unloading to loading."""
+    f, work, ζ = [], [], 0.0
+    for s, V, length, _ in strokes:
+        v, times, values = s * V, np.linspace(0.0, length / V, places), []
 
-    ζ, _ = _by_quadrature(strokes, places, slope, (0.0,))
-    return mu_c * ζ, None
+        def rates(_, y, v=v):
+            turned = gamma + (1.0 - gamma) * np.sign(v * y[0])
+            return [v / yield_displacement * (1.0 - abs(y[0]) ** exponent * turned), mu_c * y[0] * v]
+
+        y, stop = np.array([ζ, 0.0]), (lambda _, y, s=s: s * y[0]) if s * ζ < 0.0 else None
+        found, at, y_at = _advance(rates, y, times, stop)
+        values = list(found[:, 0])
+        if at is not None:
+            y_at[0] = 0.0
+            found, _, _ = _advance(rates, y_at, np.append(at, times[len(found) :]))
+            values += list(found[1:, 0])
+        f.append(mu_c * np.array(values))
+        work.append(found[-1, 1])
+        ζ = found[-1, 0]
+    return np.array(f), np.array(work)
 
 
 def elasto_plastic(

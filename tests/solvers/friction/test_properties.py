@@ -127,7 +127,8 @@ def test_work_and_slope_are_those_of_the_friction(name, seed):
     f = law.friction(exactly(law, z, 1, V, length, places.ravel()), 1, V).reshape(places.shape)
     wanted = (f * half[:, None] * weight).sum()
     found = float(work(law, z, 1, V, length, exactly))
-    assert found == pytest.approx(wanted, rel=2e-5, abs=1e-6 * length)
+    # A kink within one of the 60 pieces costs up to 1/8 of its slope times the piece squared.
+    assert found == pytest.approx(wanted, rel=2e-4, abs=1e-6 * length)
     h = 1e-6 * length
     after = exactly(law, z, 1, V, length, np.array([0.0, h]))
     slope = law.slope(z if name == "table" else after[0], 1, V)

@@ -1,6 +1,6 @@
 """A law's parameters from measured friction: least squares with bounds."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,8 @@ from galinx.solvers.parameters import Parameter, Range, fields, made, parameters
 _STARTS, _AWAY = 6, 3.0
 #: Sums of squares this near to one another, relative, are of the same law: the search has ended.
 _AGAIN = 1e-6
+#: Residual where a law refuses its parameters.
+_REFUSED = 1e3
 #: Speeds this near to one another, relative, are one.
 _SAME = 1e-6
 #: Distance from bounds that an open range has, of the range or as such.
@@ -140,8 +142,6 @@ def fit(
         ValueError: a parameter has no start, there are fewer samples than numbers, or no start leads
             anywhere.
     """
-    from scipy.optimize import least_squares  # slow to import
-
     search = _Search(kind, seen(motion, f, rows), fixed, start)
     used = np.concatenate([move.samples for move in motion])
     if len(used) <= len(search.names):
@@ -155,7 +155,22 @@ def fit(
                 difference = friction(search.law(θ), motion, len(f))[used] - f[used]
         except ValueError:  # refused by the law
             difference = np.full(len(used), np.inf)
-        return np.where(np.isfinite(difference), difference, 1e3)
+        return np.where(np.isfinite(difference), difference, _REFUSED)
+
+    best = _least(residuals, search)
+    if best is None or best.cost >= 0.4 * _REFUSED**2 * len(used):
+        raise ValueError("no start of the search leads to a law; fix or start other parameters")
+    law, values = search.law(best.x), search.values(best.x)
+    stretch = search.stretch(best.x)
+    spread = 2.0 * best.cost / (len(used) - len(best.x))
+    covariance = spread * _inverse(best.jac) * np.outer(stretch, stretch)
+    numbers = search.numbers(best.x)
+    return Found(law, values, search.names, numbers, covariance, friction(law, motion, len(f)))
+
+
+def _least(residuals: Callable[[NDArray], NDArray], search: "_Search") -> Any:
+    """The best of SciPy's results from several starts, None where there is nothing to be found."""
+    from scipy.optimize import least_squares  # slow to import
 
     rng, best = np.random.default_rng(0), None
     for n in range(_STARTS if search.names else 0):
@@ -170,14 +185,7 @@ def fit(
             best = found
         if again:
             break
-    if best is None or not np.isfinite(best.cost) or best.cost >= 0.4e6 * len(used):
-        raise ValueError("no start of the search leads to a law; fix or start other parameters")
-    law, values = search.law(best.x), search.values(best.x)
-    stretch = search.stretch(best.x)
-    spread = 2.0 * best.cost / (len(used) - len(best.x))
-    covariance = spread * _inverse(best.jac) * np.outer(stretch, stretch)
-    numbers = search.numbers(best.x)
-    return Found(law, values, search.names, numbers, covariance, friction(law, motion, len(f)))
+    return best
 
 
 def _inverse(J: NDArray) -> NDArray[np.float64]:

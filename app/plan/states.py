@@ -13,6 +13,7 @@ from galinx.app.scene.sense import oddities
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.solvers.friction import FrictionLaw
+from galinx.solvers.friction.integrate import INTEGRATORS, Integrator, closely
 from galinx.solvers.friction.motion import last_cycle
 from galinx.solvers.friction.strokes import Stroke, Work, follow, works
 
@@ -115,9 +116,10 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     friction, all_speeds, count = scene.friction, speeds(scene), laws_followed(scene)
     f, found, at = np.empty((count, _states_a_law(scene))), _Found(), 0
     inner: NDArray | None = None
+    advance = INTEGRATORS[friction.integrator]
     try:
         for c, law, laws in _laws(scene):
-            strokes = _strokes(scene, law, c, scene.places, laws is not None)
+            strokes = _strokes(scene, law, c, scene.places, laws is not None, advance)
             n = laws or 1
             f[at : at + n] = _joined([stroke.f for stroke in strokes])
             z = _joined([stroke.z for stroke in strokes], -2)
@@ -195,19 +197,19 @@ def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
 
 
 def _strokes(
-    scene: Scene, law: FrictionLaw, c: float, places: Sequence[NDArray], many: bool
+    scene: Scene, law: FrictionLaw, c: float, places: Sequence[NDArray], many: bool, advance: Integrator
 ) -> list[Stroke]:
-    friction = scene.friction
     V = c * scene.solid.c_s
-    return follow(law, scene.legs, friction.pre_sliding, places, V, friction.integrator, many)
+    return follow(law, scene.legs, scene.friction.pre_sliding, places, V, advance, many)
 
 
 def _loops(scene: Scene, law: FrictionLaw, c: float, laws: int | None) -> tuple[list[Stroke], list[Work]]:
     """Friction along every stroke, and what these take."""
     friction, V = scene.friction, c * scene.solid.c_s
     fine = [leg.start + (leg.end - leg.start) * FINE for leg in scene.legs]
-    drawn = _strokes(scene, law, c, fine, laws is not None)
-    taken = works(law, scene.legs, friction.pre_sliding, V, friction.integrator, laws is not None)
+    advance = closely if friction.integrator == "exact" else INTEGRATORS[friction.integrator]
+    drawn = _strokes(scene, law, c, fine, laws is not None, advance)
+    taken = works(law, scene.legs, friction.pre_sliding, V, advance, laws is not None)
     return drawn, taken
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +114,28 @@ def adaptively(
     return states[back]
 
 
+def closely(
+    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
+) -> NDArray[np.float64]:
+    """The law's exact solution; where there is none, its rate integrated in the scheme's own steps.
+
+    Between them states are interpolated, to about 1e-9: for many places at once, as those of a curve.
+    """
+    if (states := law.exact(z, s, V, slip)) is not None:
+        return states
+    at, back = np.unique(np.clip(np.append(slip, length), 0.0, length), return_inverse=True)
+    found, d = np.empty((len(at), len(z))), 0.0
+    found[:] = z
+    while d < length:
+        ahead = at > d
+        piece = _solved(law, z, s, V, (d, length), at[ahead])
+        found[np.flatnonzero(ahead)[: len(piece.t)]] = piece.y.T
+        if piece.status == 0:
+            break
+        d, z = max((t[0], y[0]) for t, y in zip(piece.t_events, piece.y_events) if len(t))
+    return found[back[:-1]]
+
+
 def _smooth_piece(
     law: FrictionLaw, z: NDArray, s: int, V: float, d: float, end: float
 ) -> tuple[float, NDArray[np.float64]]:
@@ -121,26 +144,40 @@ def _smooth_piece(
     Raises:
         ValueError: the integration failed.
     """
-    from scipy.integrate import solve_ivp  # slow to import, and exact laws do without
-
-    events = [_event(law, s, V, int(n)) for n in np.flatnonzero(law.switches(z, s, V) < -_SWITCHED)]
-    found = solve_ivp(
-        lambda _, state: law.rate(state, s, V), (d, end), z, method="DOP853", events=events or None,
-        rtol=TOLERANCES[0], atol=TOLERANCES[1],
-    )  # fmt: skip
-    if not found.success:
-        raise ValueError(f"{type(law).__name__} could not be integrated: {found.message}")
+    found = _solved(law, z, s, V, (d, end))
     if found.status == 0:
         return end, found.y[:, -1]
     # Located on the interpolant; from the last step before it, integration itself goes there.
     at = max(float(times[0]) for times in found.t_events if len(times))
     before = found.t[found.t < at][-1] if (found.t < at).any() else d
     start = found.y[:, np.flatnonzero(found.t == before)[0]]
-    to = solve_ivp(
-        lambda _, state: law.rate(state, s, V), (before, at), start, method="DOP853",
-        rtol=TOLERANCES[0], atol=TOLERANCES[1],
+    return at, _solved(law, start, s, V, (before, at), switches=False).y[:, -1]
+
+
+def _solved(
+    law: FrictionLaw,
+    z: NDArray,
+    s: int,
+    V: float,
+    ends: tuple[float, float],
+    at: NDArray | None = None,
+    switches: bool = True,
+) -> Any:
+    """SciPy's result between two slips, at its own steps or at those wanted, up to the next switch.
+
+    Raises:
+        ValueError: the integration failed.
+    """
+    from scipy.integrate import solve_ivp  # slow to import, and exact laws do without
+
+    ahead = np.flatnonzero(law.switches(z, s, V) < -_SWITCHED) if switches else ()
+    found = solve_ivp(
+        lambda _, state: law.rate(state, s, V), ends, z, method="DOP853", t_eval=at,
+        events=[_event(law, s, V, int(n)) for n in ahead] or None, rtol=TOLERANCES[0], atol=TOLERANCES[1],
     )  # fmt: skip
-    return at, to.y[:, -1]
+    if not found.success:
+        raise ValueError(f"{type(law).__name__} could not be integrated: {found.message}")
+    return found
 
 
 def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:

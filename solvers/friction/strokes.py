@@ -76,7 +76,7 @@ def friction_along(
     """
     all_legs = legs(strokes)
     places = [positions(leg, X_over_L) for leg in all_legs]
-    return follow(law, all_legs, length, places, V, integrator)
+    return follow(law, all_legs, length, places, V, INTEGRATORS[integrator])
 
 
 def positions(leg: Leg, X_over_L: ArrayLike) -> NDArray[np.float64]:
@@ -93,7 +93,7 @@ def follow(
     length: float,
     places: Sequence[NDArray],
     V: float,
-    integrator: str = "exact",
+    advance: Integrator,
     many: bool = False,
 ) -> list[Stroke]:
     """Friction at given places of every stroke, starting from rest.
@@ -104,13 +104,12 @@ def follow(
         length: L [m].
         places: over L, on each stroke, in the order of travel.
         V: speed of strokes that have none of their own [m/s].
-        integrator: its name.
+        advance: how states advance.
         many: does the law stand for many?
 
     Raises:
         ValueError: the integrator cannot do it.
     """
-    advance = INTEGRATORS[integrator]
     result, z = [], _at_rest(law, many)
     for leg, X in zip(all_legs, places):
         speed = V if leg.speed is None else leg.speed
@@ -128,11 +127,10 @@ def works(
     all_legs: Sequence[Leg],
     length: float,
     V: float,
-    integrator: str = "exact",
+    advance: Integrator,
     many: bool = False,
 ) -> list[Work]:
     """What every stroke takes, starting from rest; arguments as of :func:`follow`."""
-    advance = INTEGRATORS[integrator]
     result, z = [], _at_rest(law, many)
     for leg in all_legs:
         speed = V if leg.speed is None else leg.speed

@@ -8,7 +8,7 @@ import random_laws as random
 import reference
 
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.integrate import adaptively, exactly, work
+from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
 from galinx.solvers.parameters import made
 
 #: Random sets of parameters, each with a motion of its own.
@@ -49,6 +49,20 @@ def test_integrated_laws_are_their_equations(name, seed):
     f, _ = follow(made(LAWS[name], parameters), strokes)
     f_wanted, _ = getattr(reference, name)(strokes, PLACES, **parameters)
     np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(SETS))
+def test_curves_of_integrated_laws_are_as_good_as_a_figure_wants(seed):
+    """Interpolated between the steps of the scheme, across breakaway."""
+    rng = np.random.default_rng([seed, 5])
+    law = made(LAWS["elasto_plastic"], random.parameters("elasto_plastic", rng))
+    d = np.linspace(0.0, random.LENGTH, 23)
+    for z, s in ((0.0, 1), (-0.9 * law.μ_C, 1), (0.5 * law.μ_C, -1)):
+        found, wanted = (
+            advance(law, np.array([z]), s, 1e-3, random.LENGTH, d) for advance in (closely, adaptively)
+        )
+        np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-8)
+        assert found[0, 0] == z and not np.array_equal(found, wanted)
 
 
 def of(name, **parameters):

@@ -15,7 +15,13 @@ from galinx.app.plan.limits import (
     warnings_of,
     warnings_of_size,
 )
-from galinx.app.plan.states import enumerate_states, laws_followed, speeds, states_a_speed
+from galinx.app.plan.states import (
+    enumerate_states,
+    laws_followed,
+    seconds_to_integrate,
+    speeds,
+    states_a_speed,
+)
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
 from galinx.app.run.slider import check_sliders
@@ -66,7 +72,7 @@ def make_plan(scene: Scene) -> Plan:
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
-        warnings=tuple(warnings),
+        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
     return replace(plan, warnings=(*plan.warnings, *heavy))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
+from galinx.app.plan import cost
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
@@ -19,6 +20,8 @@ from galinx.solvers.friction.strokes import Stroke, Work, follow, works
 
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
+#: The most of laws that have to be integrated, which takes some tenths of a second a loop.
+INTEGRATED_LOOPS = 100
 #: Laws that are followed together, and from word to word of how many are done.
 _TOGETHER = 500
 
@@ -103,6 +106,25 @@ def laws_followed(scene: Scene) -> int:
     return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
 
 
+def seconds_to_integrate(scene: Scene) -> float:
+    """Time that laws without a formula take, 0 for others.
+
+    Raises:
+        BadInput: the law refuses its parameters.
+    """
+    try:
+        if _has_formula(next(scene.friction.laws())):
+            return 0.0
+    except ValueError as error:
+        raise BadInput(f"friction: {error}") from None
+    laws = laws_followed(scene)
+    return cost.seconds_to_integrate(laws * len(scene.legs), min(laws, INTEGRATED_LOOPS))
+
+
+def _has_formula(law: FrictionLaw) -> bool:
+    return law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
+
+
 def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> States:
     """Friction of every state; what is held at once is that and nothing else.
 
@@ -126,8 +148,9 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
             if inner is None:
                 inner = np.empty((*f.shape, z.shape[-1]))
             inner[at : at + n] = z
-            if at < LOOPS:
-                found.add(*_loops(scene, law, c, laws), n, min(n, LOOPS - at))
+            most = LOOPS if laws or _has_formula(law) else INTEGRATED_LOOPS
+            if at < most:
+                found.add(*_loops(scene, law, c, laws), n, min(n, most - at))
             at += n
             if at % _TOGETHER == 0:
                 done(at, count)
@@ -135,7 +158,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         raise BadInput(f"friction: {error}") from None
     assert inner is not None
     loop = np.arange(count)
-    loop[LOOPS:] = -1
+    loop[len(found.f) :] = -1
     if not friction.law.depends_on_speed:
         f, inner = np.tile(f, (len(all_speeds), 1)), np.tile(inner, (len(all_speeds), 1, 1))
         loop = np.tile(loop, len(all_speeds))

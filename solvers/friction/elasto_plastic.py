@@ -36,7 +36,7 @@ class ElastoPlastic(Bristles):
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """d(σ₀ z)/dd [1/m]."""
         ζ = s * z / self.g(V)
-        between = np.clip((ζ - self.r) / (1.0 - self.r), 0.0, 1.0)
+        between = np.minimum(np.maximum((ζ - self.r) / (1.0 - self.r), 0.0), 1.0)
         α = np.sin(0.5 * np.pi * between) ** 2
         return s * self.σ0 * (1.0 - α * ζ)
 

@@ -234,3 +234,19 @@ def test_faults_of_sliders_are_told(words, slider, said):
     text = SCENE.format(model="coulomb", friction="mu_c = 0.4", motion="speed = 1", quantities=words)
     with pytest.raises(BadInput, match=re.escape(said)):
         parse(text + slider)
+
+
+def test_what_a_law_refuses_is_bad_input_and_integration_has_its_price(monkeypatch):
+    from galinx.app.plan import states
+    from galinx.app.plan.plan import make_plan
+
+    wrong = scene("table", {"shape": [[1e-6, 0.1], [2e-6, 0.2]]})
+    with pytest.raises(BadInput, match="friction: shape: found the slips"):
+        make_plan(wrong)
+    law = {"mu_c": [0.3, 0.4, 0.5], "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma0_over_load": 2e4}
+    assert make_plan(scene("lugre", law)).integrated == 0.0
+    assert make_plan(scene("elasto_plastic", law)).integrated > 0.5
+    monkeypatch.setattr(states, "INTEGRATED_LOOPS", 2)
+    data = galinx.compute(scene("elasto_plastic", law)).data
+    assert data["loops/f"].shape == (2, 505)
+    assert sorted(set(data["loops/of_state"])) == [-1, 0, 1]

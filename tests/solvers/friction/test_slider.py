@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_ivp, trapezoid
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.slider import Slider, cycle, pull
@@ -95,8 +95,8 @@ def test_the_drive_gives_what_friction_takes_and_the_spring_and_the_mass_hold(la
     ride = pull(slider, law, N)
     assert ride.t[-1] == pytest.approx(4.0) and (np.diff(ride.t) >= 0.0).all()
     e, over = 0.1 * ride.t - ride.x, 0.1 - ride.v
-    given = np.trapz(0.1 * (20.0 * e + 2.0 * over), ride.t)
-    taken = np.trapz(N * ride.f * ride.v + 2.0 * over**2, ride.t)
+    given = trapezoid(0.1 * (20.0 * e + 2.0 * over), ride.t)
+    taken = trapezoid(N * ride.f * ride.v + 2.0 * over**2, ride.t)
     held = 0.5 * ride.v[-1] ** 2 + 10.0 * e[-1] ** 2
     assert given == pytest.approx(taken + held, rel=1e-4)
     np.testing.assert_allclose(

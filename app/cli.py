@@ -11,7 +11,7 @@ import click
 
 from galinx import __version__
 from galinx.app import errors, ranks
-from galinx.app.commands import begin, compute, draw, export, look, options
+from galinx.app.commands import begin, compute, draw, export, fit, look, options
 from galinx.app.console.program import as_called, program
 from galinx.app.console.streams import plain_streams
 from galinx.app.errors import BadInput, MachineFailure
@@ -61,7 +61,9 @@ def cli(extensions: tuple[Path, ...]) -> None:
         extend(path)
 
 
-for _command in (*begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS, *draw.COMMANDS, *export.COMMANDS):
+for _command in (
+    *begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS, *draw.COMMANDS, *export.COMMANDS, *fit.COMMANDS
+):  # fmt: skip
     _command.help = as_called(_command.help)
     cli.add_command(_command)
 

@@ -10,7 +10,7 @@ from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, validity, yielding
 from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, TEXT
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 
 #: States that a table shows at most.
@@ -47,15 +47,16 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     """The first states of an archive: what tells them apart, and the main results."""
     apart = {path: row for path, row in parameters(data).items() if path != of.MOTION.path}
     varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
-    shown = {_head(row, scaling): (row, "{:.4g}") for row in varied.values()}
+    shown = {_head(row, scaling): (row, _form(row)) for row in varied.values()}
     results = _EITHER if of.K_I_BOTH.path in data else _ALONE
     for head, row, form in (("f", of.FRICTION, "{:+.4f}"), *results, *_BOTH):
         if row.path in data:
             shown[head] = row, form
-    factors = {path: _told(row, scaling).factor for path, row in apart.items()}
+    factors = {path: _told(row, scaling).factor for path, row in apart.items() if row.type != TEXT}
     series = [
-        [factors.get(row.path, 1.0) * value for value in data[row.path][:LIMIT].tolist()]
+        [value if row.type == TEXT else factors.get(row.path, 1.0) * value for value in values]
         for row, _ in shown.values()
+        if (values := data[row.path][:LIMIT].tolist())
     ]
     forms = [form for _, form in shown.values()]
     labels = [f"{n} {motion}" for n, motion in enumerate(data[of.MOTION.path][:LIMIT].tolist())]
@@ -68,7 +69,7 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     if hidden > 0:
         notes.append(f"and {hidden} more states; csv and show --json list all")
     same = [
-        f"{_head(row, scaling)} = {factors[path] * data[path][0]:.4g}"
+        f"{_head(row, scaling)} = " + _form(row).format(factors.get(path, 1) * data[path][0])
         for path, row in apart.items()
         if path not in varied
     ]
@@ -83,6 +84,10 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     return Sheet(title or "States", ["state", *shown], rows, notes)
 
 
+def _form(row: Quantity) -> str:
+    return "{}" if row.type == TEXT else "{:.4g}"
+
+
 def _told(row: Quantity, scaling: Scaling) -> Scaled:
     symbol = plain(f"${row.symbol}$")
     return scaling(row, symbol) or as_archived(row, symbol)
@@ -90,7 +95,7 @@ def _told(row: Quantity, scaling: Scaling) -> Scaled:
 
 def _head(row: Quantity, scaling: Scaling) -> str:
     told = _told(row, scaling)
-    return told.name + ("" if told.unit == "1" else f" ({told.unit})")
+    return told.name + ("" if told.unit in ("1", "none") else f" ({told.unit})")
 
 
 #: What tells where a solid yields and where answers do not hold, by what a table calls it.

@@ -61,6 +61,7 @@ SVG = _kind("a figure of galinx", rb"<\?xml .{,1500}<dc:title>galinx</dc:title>"
 GIF = _kind("a film of galinx", rb"GIF8.*galinx")
 MP4 = _kind("a film of galinx", rb".{4}ftyp.*galinx")
 TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),", ".csv", ".txt")
+SECTION = _kind("a section fitted by galinx", rb"# Fitted by galinx", ".toml")
 TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
 

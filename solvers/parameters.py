@@ -5,8 +5,9 @@ Sections of scenes, columns of the states, the schema and the pages of documenta
 
 import dataclasses
 from dataclasses import MISSING, dataclass
-from math import isfinite
 from typing import Any
+
+import numpy as np
 
 _METADATA = "galinx parameter"
 
@@ -24,12 +25,13 @@ class Range:
     below: float | None = None
     at_most: float | None = None
 
-    def __contains__(self, value: float) -> bool:
-        return (
-            (self.above is None or value > self.above)
-            and (self.at_least is None or value >= self.at_least)
-            and (self.below is None or value < self.below)
-            and (self.at_most is None or value <= self.at_most)
+    def __contains__(self, value: Any) -> bool:
+        """Does a number lie there, or every number of an array?"""
+        return bool(
+            (self.above is None or np.all(value > self.above))
+            and (self.at_least is None or np.all(value >= self.at_least))
+            and (self.below is None or np.all(value < self.below))
+            and (self.at_most is None or np.all(value <= self.at_most))
         )
 
     def __str__(self) -> str:
@@ -50,6 +52,8 @@ class Parameter:
         usual: where it usually lies; beyond, its unit may be another than meant.
         options: the texts that it may be; none for a number.
         count: of the numbers that it is, 0 for one number.
+        columns: units of the columns of a table of numbers; none for anything else.
+        measured: of these, the columns that a fit to measurements finds; the others are places.
         optional: may all of these be left out?
         note: what documentation says beyond ``about``.
     """
@@ -62,8 +66,15 @@ class Parameter:
     usual: tuple[float, float] | None = None
     options: tuple[str, ...] = ()
     count: int = 0
+    columns: tuple[str, ...] = ()
+    measured: tuple[int, ...] = ()
     optional: bool = False
     note: str = ""
+
+    @property
+    def single(self) -> bool:
+        """Is it one number or one text?"""
+        return not self.count and not self.columns
 
 
 def parameter(
@@ -95,6 +106,23 @@ def numbers(
 ) -> Any:
     """So many numbers as a dataclass's field, a tuple; an empty one where they may be left out."""
     known = Parameter(key, about, unit, usual=usual, count=count, optional=optional, note=note)
+    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
+
+
+def rows(
+    key: str,
+    about: str,
+    columns: tuple[str, ...],
+    *,
+    measured: tuple[int, ...] = (),
+    optional: bool = False,
+    note: str = "",
+) -> Any:
+    """A table of numbers as a dataclass's field, a tuple of rows; ``columns`` are the columns' units.
+
+    Where it may be left out, it is empty then.
+    """
+    known = Parameter(key, about, columns=columns, measured=measured, optional=optional, note=note)
     return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
 
 
@@ -138,13 +166,23 @@ def check(model: Any) -> None:
     for key, field in fields(model).items():
         known, value = field.metadata[_METADATA], getattr(model, field.name)
         if known.options:
-            if value not in known.options:
+            if not set(np.ravel(value).tolist()) <= set(known.options):
                 options = " or ".join(map(repr, known.options))
                 raise ValueError(f"{field.name} = {value!r}: expected {options}")
+        elif known.columns:
+            _check_rows(key, known, value)
         elif known.count:
             left_out = known.optional and not value
-            if not left_out and (len(value) != known.count or not all(map(isfinite, value))):
+            if not left_out and (len(value) != known.count or not np.isfinite(value).all()):
                 raise ValueError(f"{key} = {value!r}: expected {known.count} finite numbers")
-        elif not (isfinite(value) and value in known.range):
+        elif not (np.isfinite(value).all() and value in known.range):
             bounds = f" {known.range}" if str(known.range) else ""
             raise ValueError(f"{field.name} = {value!r} ({key}): expected a finite number{bounds}")
+
+
+def _check_rows(key: str, known: Parameter, value: Any) -> None:
+    if known.optional and not len(value):
+        return
+    wide = len(known.columns)
+    if not len(value) or any(len(row) != wide for row in value) or not np.isfinite(value).all():
+        raise ValueError(f"{key} = {value!r}: expected rows of {wide} finite numbers")

@@ -11,7 +11,6 @@ from galinx.app.pictures.told import C, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
 from galinx.postprocess.quantities import runs
-from galinx.solvers.friction.strokes import names
 
 #: Loops that can be told apart in a panel.
 _LOOPS = 6
@@ -26,7 +25,7 @@ class Loops:
 
     def __init__(self, data: dict[str, Any], scene: Scene) -> None:
         self._data, self.told = data, Told(data, scene)
-        self._strokes = names(scene.motion.strokes)
+        self._strokes = [leg.name for leg in scene.legs]
         _, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
         #: A state on each loop.
         self.first = np.array([state for state in first if data[runs.LOOP_OF_STATE.path][state] >= 0])
@@ -97,7 +96,7 @@ def friction(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     seen = np.flatnonzero(np.isin(rows, rows[drawn])).tolist()
     missing = not_shown(told, seen, "--figure friction --states", choice.states)
     caption = (
-        "Friction along the strokes, in the direction of the arrows: it builds up over the first stroke "
-        "and after each turn, faster in a stiffer law, and does not pass μ_C."
+        "Friction along the strokes, in the direction of the arrows, from rest and after each turn. A "
+        "closed loop dissipates its area times N L."
     )
     return Drawing("friction", caption, loops_figure(shown, choice.size), left_out=missing)

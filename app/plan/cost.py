@@ -14,6 +14,8 @@ STATE = 1e-4
 #: Seconds without: a stroke along which a law is followed, a quantity at a speed, a state, and each of
 #: its archived numbers.
 _STROKE, _QUANTITY, _STATE, _NUMBER = 3e-5, 2.5e-5, 2.2e-6, 1.3e-7
+#: Seconds of a stroke along which a law is integrated, and of a loop of some three strokes.
+_INTEGRATED, _LOOP = 3e-2, 0.25
 #: Seconds of a point inside: to find its cell, gradients of a state there, potentials of a state; with a
 #: pressure of the user's own gradients and potentials of each of its pieces.
 _FOUND, _GRADIENT, _POTENTIAL = 2.6e-6, 1.3e-6, 7.5e-7
@@ -26,6 +28,11 @@ _PROGRAM, _FRICTION = 130e6, 300.0
 _LIBRARIES, _AT_ONCE = 170e6, 64
 #: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.
 _SOLVES, _STEPS = 34, 25
+
+
+def seconds_to_integrate(strokes: int, loops: int) -> float:
+    """Friction by laws that have no formula: strokes that they are followed along, and loops drawn."""
+    return _INTEGRATED * strokes + _LOOP * loops
 
 
 def seconds_of_states(strokes: int, speeds: int, states: int, quantities: int, numbers: int) -> float:

@@ -15,14 +15,21 @@ from galinx.app.plan.limits import (
     warnings_of,
     warnings_of_size,
 )
-from galinx.app.plan.states import enumerate_states, laws_followed, speeds, states_a_speed
+from galinx.app.plan.states import (
+    enumerate_states,
+    laws_followed,
+    seconds_to_integrate,
+    speeds,
+    states_a_speed,
+)
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
+from galinx.app.run.slider import check_sliders
 from galinx.app.scene.scene import Scene
-from galinx.app.scene.sense import oddities
+from galinx.app.scene.sense import FRICTIONS, oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE, LOCAL
+from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.yielding.strength import places as yield_places
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
@@ -43,6 +50,7 @@ def make_plan(scene: Scene) -> Plan:
     """
     all_speeds, count = speeds(scene), states_a_speed(scene)
     check_states(len(all_speeds) * count)
+    check_sliders(scene)
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
     strength = scene.half_plane.yield_strength
     body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure, strength)
@@ -63,8 +71,8 @@ def make_plan(scene: Scene) -> Plan:
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
-        strokes=laws_followed(scene) * len(scene.motion.strokes), fem=fem, skipped=skipped,
-        warnings=tuple(warnings),
+        strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
+        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
     return replace(plan, warnings=(*plan.warnings, *heavy))
@@ -72,7 +80,7 @@ def make_plan(scene: Scene) -> Plan:
 
 def _contact(scene: Scene) -> bool:
     """Does anything ask for contact mechanics?"""
-    return bool(set(scene.output.quantities) - {FRICTION_ALONE})
+    return bool(set(scene.output.quantities) - FRICTIONS)
 
 
 def _asked(scene: Scene, places: Places) -> Places:

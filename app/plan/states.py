@@ -7,16 +7,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
+from galinx.app.plan import cost
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
+from galinx.postprocess.quantities import column, runs
+from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.solvers.friction import FrictionLaw
-from galinx.solvers.friction.strokes import Stroke, friction_along
+from galinx.solvers.friction.integrate import INTEGRATORS, Integrator, closely
+from galinx.solvers.friction.motion import last_cycle
+from galinx.solvers.friction.strokes import Stroke, Work, follow, works
 
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
-#: Laws that are followed from word to word of how many are done.
-_TOLD = 500
+#: The most of laws that have to be integrated, which takes some tenths of a second a loop.
+INTEGRATED_LOOPS = 100
+#: Laws that are followed together, and from word to word of how many are done.
+_TOGETHER = 500
 
 
 @dataclass(frozen=True)
@@ -28,15 +35,19 @@ class States:
             speed), the law's parameters, the speed and that of a wave along the surface in m/s, how
             often a wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the
             punch.
+        inner: inner state of the law at each state, (states, n).
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
+        works: what strokes take, as archived, by path, (loops, strokes) and (loops,).
     """
 
     columns: dict[str, NDArray]
+    inner: NDArray[np.float64]
     loop: NDArray[np.int64]
     travel: NDArray[np.float64]
     loops: NDArray[np.float64]
+    works: dict[str, NDArray[np.float64]]
 
     def __len__(self) -> int:
         return len(self.g)
@@ -46,6 +57,17 @@ class States:
         """σ_XY/σ_YY under the punch, (states,)."""
         return self.columns["g"]
 
+    @property
+    def datasets(self) -> dict[str, NDArray]:
+        """All as archived, by path."""
+        return {column(name): values for name, values in self.columns.items()} | {
+            INNER_STATE.path: self.inner,
+            runs.LOOP_OF_STATE.path: self.loop,
+            runs.LOOP_X.path: self.travel,
+            runs.LOOP_F.path: self.loops,
+            **self.works,
+        }
+
 
 def speeds(scene: Scene) -> tuple[float, ...]:
     """Speeds over the wave speed.
@@ -53,6 +75,8 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     Raises:
         BadInput: a speed given in m/s is not subsonic.
     """
+    if scene.motion.path is not None:
+        return (0.0,)  # each stroke has its own
     if scene.motion.c is not None:
         return tuple(dict.fromkeys(scene.motion.c))
     c_s = scene.solid.c_s
@@ -75,12 +99,31 @@ def states_a_speed(scene: Scene) -> int:
 
 
 def _states_a_law(scene: Scene) -> int:
-    return len(scene.motion.strokes) * len(set(scene.motion.X_over_L))
+    return sum(map(len, scene.places))
 
 
 def laws_followed(scene: Scene) -> int:
     """Number of laws that are followed: once, or once a speed where they depend on that."""
     return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
+
+
+def seconds_to_integrate(scene: Scene) -> float:
+    """Time that laws without a formula take, 0 for others.
+
+    Raises:
+        BadInput: the law refuses its parameters.
+    """
+    try:
+        if _has_formula(next(scene.friction.laws())):
+            return 0.0
+    except ValueError as error:
+        raise BadInput(f"friction: {error}") from None
+    laws = laws_followed(scene)
+    return cost.seconds_to_integrate(laws * len(scene.legs), min(laws, INTEGRATED_LOOPS))
+
+
+def _has_formula(law: FrictionLaw) -> bool:
+    return law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
 
 
 def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> States:
@@ -94,67 +137,138 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         BadInput: the integrator refuses the parameters.
     """
     friction, all_speeds, count = scene.friction, speeds(scene), laws_followed(scene)
-    f, loops = np.empty((count, _states_a_law(scene))), []
+    f, found, at = np.empty((count, _states_a_law(scene))), _Found(), 0
+    inner: NDArray | None = None
+    advance = INTEGRATORS[friction.integrator]
     try:
-        for i, (c, law) in enumerate(_laws(scene)):
-            strokes = _strokes(scene, law, c, scene.motion.X_over_L)
-            f[i] = _joined([stroke.f for stroke in strokes])
-            if i < LOOPS:
-                drawn = _strokes(scene, law, c, FINE)
-                loops.append(_joined([stroke.f for stroke in drawn]))
-            if i % _TOLD == _TOLD - 1:
-                done(i + 1, count)
+        for c, law, laws in _laws(scene):
+            strokes = _strokes(scene, law, c, scene.places, laws is not None, advance)
+            n = laws or 1
+            f[at : at + n] = _joined([stroke.f for stroke in strokes])
+            z = _joined([stroke.z for stroke in strokes], -2)
+            if inner is None:
+                inner = np.empty((*f.shape, z.shape[-1]))
+            inner[at : at + n] = z
+            most = LOOPS if laws or _has_formula(law) else INTEGRATED_LOOPS
+            if at < most:
+                found.add(*_loops(scene, law, c, laws), n, min(n, most - at))
+            at += n
+            if at % _TOGETHER == 0:
+                done(at, count)
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
+    assert inner is not None
     loop = np.arange(count)
-    loop[LOOPS:] = -1
+    loop[len(found.f) :] = -1
     if not friction.law.depends_on_speed:
-        f, loop = np.tile(f, (len(all_speeds), 1)), np.tile(loop, len(all_speeds))
-    per_law = f.shape[1]
+        f, inner = np.tile(f, (len(all_speeds), 1)), np.tile(inner, (len(all_speeds), 1, 1))
+        loop = np.tile(loop, len(all_speeds))
+    columns = _columns(scene, f)
+    travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
+    return States(
+        columns, inner.reshape(-1, inner.shape[-1]), np.repeat(loop, f.shape[1]), travel,
+        np.array(found.f), found.archived(scene),
+    )  # fmt: skip
+
+
+def _columns(scene: Scene, f: NDArray) -> dict[str, NDArray]:
+    """One entry a state in every array; ``f`` is (laws and speeds, states of each)."""
+    friction, all_speeds, per_law = scene.friction, speeds(scene), f.shape[1]
+    each = [len(X) for X in scene.places]
     values = {
-        key: np.tile(np.repeat(column, per_law), len(all_speeds))
-        for key, column in friction.columns().items()
+        key: np.tile(np.repeat(known, per_law), len(all_speeds))
+        for key, known in friction.columns().items()
     }
-    columns = {
-        "motion": np.tile(np.repeat([s.name for s in strokes], len(strokes[0].X_over_L)), len(f)),
-        "X_over_L": np.tile(_joined([stroke.X_over_L for stroke in strokes]), len(f)),
-        "c": np.repeat(all_speeds, friction.count * per_law),
+    given = np.repeat(np.multiply(all_speeds, scene.solid.c_s), friction.count * per_law)
+    own = [np.nan if leg.speed is None else leg.speed for leg in scene.legs]
+    speed = np.tile(np.repeat(own, each), len(f))
+    c = np.repeat(all_speeds, friction.count * per_law)
+    c = np.where(np.isnan(speed), c, speed / scene.solid.c_s)
+    lengths = np.tile(np.repeat([leg.length for leg in scene.legs], each), len(f))
+    return {
+        "motion": np.tile(np.repeat([leg.name for leg in scene.legs], each), len(f)),
+        "X_over_L": np.tile(_joined(list(scene.places)), len(f)),
+        "c": c,
         **values,
-        "speed": np.repeat(np.multiply(all_speeds, scene.solid.c_s), friction.count * per_law),
+        "speed": np.where(np.isnan(speed), given, speed),
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": np.repeat(_crossings(scene, all_speeds), friction.count * per_law),
+        "wave_crossings": _crossings(scene, lengths, c),
         "f": f.ravel(),
         "g": friction.stress_ratio * f.ravel() + 0.0,
     }
-    travel = _joined([stroke.X_over_L for stroke in drawn])
-    return States(columns, np.repeat(loop, per_law), travel, np.array(loops))
 
 
-def _crossings(scene: Scene, all_speeds: Sequence[float]) -> NDArray[np.float64]:
+def _crossings(scene: Scene, lengths: NDArray, c: NDArray) -> NDArray[np.float64]:
     """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
-    c = np.array(all_speeds)
     with np.errstate(divide="ignore"):
-        often = scene.friction.pre_sliding / (2.0 * scene.punch.profile.half_width * c)
+        often = lengths * scene.friction.pre_sliding / (2.0 * scene.punch.profile.half_width * c)
     return np.where(c > 0.0, often, np.nan)
 
 
-def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw]]:
-    """Every law that is followed, with its speed."""
-    followed = speeds(scene) if scene.friction.law.depends_on_speed else speeds(scene)[:1]
+def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
+    """What is followed at a speed: a law, or one that stands for so many."""
+    friction = scene.friction
+    followed = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+    together = friction.law.broadcasts and friction.integrator == "exact"
+    columns = friction.columns() if together else {}
     for c in followed:
-        for law in scene.friction.laws():
-            yield c, law
+        if together:
+            for first in range(0, friction.count, _TOGETHER):
+                some = slice(first, min(first + _TOGETHER, friction.count))
+                yield c, friction.together(columns, some), some.stop - some.start
+        else:
+            for law in friction.laws():
+                yield c, law, None
 
 
 def _strokes(
-    scene: Scene, law: FrictionLaw, c: float, X_over_L: Sequence[float] | NDArray
+    scene: Scene, law: FrictionLaw, c: float, places: Sequence[NDArray], many: bool, advance: Integrator
 ) -> list[Stroke]:
-    friction = scene.friction
     V = c * scene.solid.c_s
-    return friction_along(
-        law, scene.motion.strokes, friction.pre_sliding, X_over_L, V, friction.integrator
-    )
+    return follow(law, scene.legs, scene.friction.pre_sliding, places, V, advance, many)
 
 
-def _joined(parts: list[NDArray]) -> NDArray:
-    return np.concatenate(parts)
+def _loops(scene: Scene, law: FrictionLaw, c: float, laws: int | None) -> tuple[list[Stroke], list[Work]]:
+    """Friction along every stroke, and what these take."""
+    friction, V = scene.friction, c * scene.solid.c_s
+    fine = [leg.start + (leg.end - leg.start) * FINE for leg in scene.legs]
+    advance = closely if friction.integrator == "exact" else INTEGRATORS[friction.integrator]
+    drawn = _strokes(scene, law, c, fine, laws is not None, advance)
+    taken = works(law, scene.legs, friction.pre_sliding, V, advance, laws is not None)
+    return drawn, taken
+
+
+class _Found:
+    """Loops, and what their strokes take, as they are found.
+
+    Attributes:
+        f: friction coefficient along each loop.
+        taken: by name of :class:`Work`, a row of strokes a loop.
+    """
+
+    def __init__(self) -> None:
+        self.f: list[NDArray] = []
+        self.taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
+
+    def add(self, drawn: list[Stroke], taken: list[Work], laws: int, wanted: int) -> None:
+        """The loops of so many laws, of which some are wanted."""
+        f = _joined([np.broadcast_to(stroke.f, (laws, len(FINE))) for stroke in drawn])
+        self.f += list(f[:wanted])
+        for name, rows in self.taken.items():
+            columns = [np.broadcast_to(getattr(stroke, name), (laws,)) for stroke in taken]
+            rows += list(np.stack(columns, axis=-1)[:wanted])
+
+    def archived(self, scene: Scene) -> dict[str, NDArray]:
+        """What strokes take, by path, times the load."""
+        N = scene.punch.load
+        dissipated, breakaway, slope = (N * np.array(rows) for rows in self.taken.values())
+        first = last_cycle(scene.legs)
+        cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)
+        return {
+            runs.LOOP_WORK.path: dissipated, runs.LOOP_CYCLE.path: cycle,
+            runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
+        }  # fmt: skip
+
+
+def _joined(parts: list[NDArray], axis: int = -1) -> NDArray:
+    return np.concatenate(parts, axis=axis)

@@ -73,6 +73,7 @@ class Plan:
         quantities: read off their solutions, in the order of the table.
         tasks: one a speed.
         strokes: number of strokes along which friction laws are followed.
+        integrated: seconds that laws without a formula take for that.
         fem: finite element work, None without.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
@@ -87,6 +88,7 @@ class Plan:
     fem: FemPlan | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
+    integrated: float = 0.0
 
     @property
     def states(self) -> int:

@@ -15,6 +15,8 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
+    if scene.slider:
+        result.append(f"slider: {scene.friction.count} motions of {scene.slider.duration:g} s")
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {plan.states} states")
@@ -55,13 +57,13 @@ def expense(plan: Plan) -> str:
     positions = sum(len(values) for values in plan.positions.values())
     archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers + positions))}"
     if not plan.fem:
-        seconds = cost.START_WITHOUT_FEM + _inside(plan) + cost.seconds_of_states(
+        seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
         )  # fmt: skip
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
-    speeds, states = _seconds_of_levels(fem) / ranks.size(), cost.STATE * plan.states
+    speeds, states = _seconds_of_levels(fem) / ranks.size(), cost.STATE * plan.states + plan.integrated
     sharing = 1 if fem.shared_speeds else ranks.size()
     inside = _inside(plan) * sharing / ranks.size()
     most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing

@@ -17,7 +17,7 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess import compare
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.hdf5 import reader
-from galinx.postprocess.quantities import column, runs, table
+from galinx.postprocess.quantities import runs, table
 from galinx.postprocess.quantities.quantity import NEVER, STATE
 from galinx.postprocess.quantities.states import SPEED
 from galinx.postprocess.schema import VERSION
@@ -52,12 +52,7 @@ def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
         yield f"it holds {found} states, its scene has {count}"
         return
     states = enumerate_states(scene)
-    expected = {column(name): values for name, values in states.columns.items()} | {
-        runs.LOOP_OF_STATE.path: states.loop,
-        runs.LOOP_X.path: states.travel,
-        runs.LOOP_F.path: states.loops,
-    }
-    for name, values in expected.items():
+    for name, values in states.datasets.items():
         if name not in data:
             if not older:  # whose layout has fewer
                 yield f"{name} is missing, its scene has it"

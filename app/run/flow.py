@@ -18,6 +18,7 @@ from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
 from galinx.app.run.methods import METHODS
 from galinx.app.run.sinks import Nowhere, Sink
+from galinx.app.run.slider import slide
 from galinx.app.run.solve import Work
 from galinx.app.run.told import of_scene
 from galinx.app.run.versions import libraries, machine
@@ -60,6 +61,11 @@ def compute(
         progress.say("friction")
         states = enumerate_states(scene, lambda laws, of: progress.done(laws, of, "friction loops"))
         _put_states(sink, scene, plan, states)
+    if scene.slider:
+        with clock("slider"):
+            progress.say("slider")
+            for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
+                sink.put(path, values)
     judge = Judge(scene, plan.rules)
     if plan.methods:
         judge.validity.see({column(name): values for name, values in states.columns.items()})
@@ -73,11 +79,8 @@ def compute(
 
 def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
     sink.put(runs.SCENE.path, scene.text)
-    for name, values in states.columns.items():
-        sink.put(column(name), values)
-    sink.put(runs.LOOP_OF_STATE.path, states.loop)
-    sink.put(runs.LOOP_X.path, states.travel)
-    sink.put(runs.LOOP_F.path, states.loops)
+    for path, values in states.datasets.items():
+        sink.put(path, values)
     for path, positions in plan.positions.items():
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:

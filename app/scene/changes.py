@@ -9,6 +9,7 @@ from tomlkit.items import Item
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
+from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 from galinx.solvers.solids import SOLIDS
 
@@ -88,7 +89,20 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
 
 def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Constants of the old solid where another takes its place, which they would override or not fit."""
+    """Constants of the old solid or friction law where another takes its place: they would not fit."""
+    return [*_of_old_solid(tree, changes), *_of_old_law(tree, changes)]
+
+
+def _of_old_law(tree: Any, changes: Mapping[str, Any]) -> list[str]:
+    law, section = changes.get("friction.model"), tree.get("friction")
+    if not isinstance(law, str) or law not in LAWS or not isinstance(section, dict):
+        return []
+    own = parameters(LAWS[law])
+    every = {key for model in LAWS.values() for key in parameters(model)}
+    return [f"friction.{key}" for key in section if key in every and key not in own]
+
+
+def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
     if "solid.material" in changes:
         return _CONSTANTS
     solid = tree.get("solid")

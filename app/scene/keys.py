@@ -8,6 +8,7 @@ from typing import Any
 from galinx.app.console.program import program
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.numbers import Numbers
+from galinx.app.scene.tables import OneOrMore, Rows, Wrapped
 from galinx.app.scene.values import Choice, Kind, Number, NumberList
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
@@ -149,13 +150,20 @@ class ModelSection(Section):
         value: Kind
         if known.options:
             value = Choice(known.options)
+        elif known.columns:
+            value = Rows(known.columns)
         elif known.count:
             value = NumberList(known.unit, known.count)
         else:
             value = (Numbers if self._several else Number)(known.unit, known.range)
         default = self._defaults.get(known.key, fields(model)[known.key].default)
-        if self._several and not known.options and default is not REQUIRED:
-            default = (default,)
+        if self._several:  # each then is a tuple of what laws have
+            if isinstance(value, Choice):
+                value = OneOrMore(value)
+            elif not known.single:
+                value = Wrapped(value)
+            if default is not REQUIRED:
+                default = (default,)
         return Key(value, known.about, default, known.note)
 
     def _made(self, values: dict[str, Any]) -> Any:

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from math import prod
 from typing import Any
@@ -13,7 +14,10 @@ from numpy.typing import NDArray
 from galinx.app.scene.values import Spread
 from galinx.postprocess.quantities.quantity import OWN_PRESSURE, PUNCH
 from galinx.solvers.friction import FrictionLaw
-from galinx.solvers.parameters import made
+from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path
+from galinx.solvers.friction.slider import Slider
+from galinx.solvers.friction.strokes import positions
+from galinx.solvers.parameters import made, parameters
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
 
@@ -62,7 +66,7 @@ class Friction:
         return prod(map(len, self.parameters.values()))
 
     def laws(self) -> Iterator[FrictionLaw]:
-        """Every law; the last parameter changes fastest.
+        """Every law by itself; the last parameter changes fastest.
 
         Raises:
             ValueError: a law refuses its parameters.
@@ -71,12 +75,26 @@ class Friction:
             yield made(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
-        """Parameters of every law by key, each (count,)."""
+        """Parameters of every law by key, each (count,), without tables, which all laws share."""
         inner, found = self.count, {}
+        known = parameters(self.law)
         for key, values in self.parameters.items():
             inner //= len(values)
-            found[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
+            if known[key].single:
+                found[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
         return found
+
+    def together(self, columns: dict[str, NDArray], some: slice) -> FrictionLaw:
+        """Some laws as one that stands for all of them.
+
+        Args:
+            columns: of this.
+            some: which.
+
+        Raises:
+            ValueError: a law refuses its parameters.
+        """
+        return made(self.law, {key: values[some, None] for key, values in columns.items()})
 
     @property
     def stress_ratio(self) -> float:
@@ -86,12 +104,21 @@ class Friction:
 
 @dataclass(frozen=True)
 class Motion:
-    """[motion]: ``c`` over the wave speed or ``speed`` [m/s], the other None; strokes and positions."""
+    """[motion]: ``c`` over the wave speed or ``speed`` [m/s], the other None; strokes and positions.
+
+    Attributes:
+        strokes: by name or partial.
+        X_over_L: positions on them.
+        rest: time at rest between strokes [s].
+        path: time [s] and position [m], point by point, instead of all of these; None for none.
+    """
 
     c: tuple[float, ...] | None
     speed: tuple[float, ...] | None
-    strokes: tuple[str, ...]
+    strokes: tuple[str | Partial, ...]
     X_over_L: tuple[float, ...]
+    rest: float = 0.0
+    path: tuple[tuple[float, float], ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -144,6 +171,7 @@ class Scene:
         title: free text.
         text: the TOML it came from, byte for byte as archived.
         half_plane, punch, friction, motion, solve, output: its sections.
+        slider: a mass on a spring, None for none.
     """
 
     title: str
@@ -154,11 +182,30 @@ class Scene:
     motion: Motion
     solve: Solve
     output: Output
+    slider: Slider | None = None
 
     @property
     def solid(self) -> Solid:
         """The elastic solid."""
         return self.half_plane.solid
+
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        """Strokes of the motion.
+
+        Raises:
+            ValueError: the motion has a fault.
+        """
+        if self.motion.path is not None:
+            return legs_of_path(self.motion.path, self.friction.pre_sliding)
+        return legs(self.motion.strokes, self.motion.rest)
+
+    @cached_property
+    def places(self) -> tuple[NDArray[np.float64], ...]:
+        """Positions over L of the states on each stroke, in the order of travel."""
+        if self.motion.path is not None:
+            return tuple(np.array([leg.end]) for leg in self.legs)
+        return tuple(positions(leg, self.motion.X_over_L) for leg in self.legs)
 
     @property
     def sha256(self) -> str:

@@ -45,6 +45,6 @@ def entry(key: Key) -> dict[str, Any]:
     unit = getattr(key.kind, "unit", None)
     about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
     found = key.kind.schema() | {"description": about}
-    if key.default is not REQUIRED and key.default is not None:
+    if key.default is not REQUIRED and key.default not in (None, ((),)):  # a table left out is none
         found["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
     return found

@@ -7,6 +7,7 @@ from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.numbers import Numbers
 from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve
+from galinx.app.scene.tables import Rows, Strokes
 from galinx.app.scene.values import (
     Choice,
     Choices,
@@ -20,7 +21,7 @@ from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import INTEGRATORS
-from galinx.solvers.friction.strokes import DIRECTION
+from galinx.solvers.friction.slider import Slider
 from galinx.solvers.parameters import Range, made
 from galinx.solvers.profiles import PROFILES, Profile
 from galinx.solvers.solids import SOLIDS, Solid
@@ -36,6 +37,14 @@ def _solid(
 
 def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
     return Punch(made(kind, values), load)
+
+
+def _slider(damping: float, **given: float | None) -> Slider | None:
+    if all(value is None for value in given.values()):
+        return None
+    if missing := [key for key, value in given.items() if value is None]:
+        raise ValueError(f"missing {', '.join(missing)}, which a slider needs")
+    return Slider(damping=damping, **given)  # type: ignore[arg-type]
 
 
 _SOLID_KEYS = {
@@ -81,7 +90,18 @@ _MOTION_KEYS = {
         "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
     ),
     "strokes": Key(
-        Choices(DIRECTION), "directions in order of time", ("forward", "backward", "forward")
+        Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
+        "a stroke `{to = 0.8}` goes on from where the one before ended; `speed` of its own is for "
+        "friction alone, `rest` is the time at rest before it",
+    ),
+    "rest": Key(
+        Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
+    ),
+    "path": Key(
+        Rows(("s", "m"), 2), "motion point by point, time and position", None,
+        "instead of `c` or `speed`, `strokes` and `X_over_L`, for friction alone; positions from 0 to "
+        "`friction.pre_sliding`",
+        without="none",
     ),
     "X_over_L": Key(
         Numbers("", Range(at_least=0.0, at_most=1.0)), "positions on the stroke", (0.2, 0.8),
@@ -120,11 +140,23 @@ _SOLVE_KEYS = {
     ),
 }  # fmt: skip
 
+_SLIDER_KEYS = {
+    "mass": Key(Number("kg/m", _POSITIVE), "mass of the slider, per depth", None),
+    "stiffness": Key(Number("N/m^2", _POSITIVE), "stiffness of the spring, per depth", None),
+    "damping": Key(
+        Number("N*s/m^2", Range(at_least=0.0)), "dashpot beside the spring, per depth", 0.0
+    ),
+    "drive_speed": Key(
+        Number("m/s", _POSITIVE), "speed at which the spring's other end is pulled", None
+    ),
+    "duration": Key(Number("s", _POSITIVE), "duration of the motion", None),
+}  # fmt: skip
+
 _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
-        "`yield`: where and at which load the solid yields",
+        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]",
     ),
     "points": Key(
         Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
@@ -144,6 +176,7 @@ SECTIONS: dict[str, Section] = {
     ),
     "friction": ModelSection("model", "dahl", LAWS, Friction, _FRICTION_KEYS, several=True),
     "motion": Section(Motion, _MOTION_KEYS),
+    "slider": Section(_slider, _SLIDER_KEYS),
     "solve": Section(Solve, _SOLVE_KEYS),
     "output": Section(Output, _OUTPUT_KEYS),
 }

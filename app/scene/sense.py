@@ -1,13 +1,18 @@
 """Does a scene make sense? Keys that contradict each other, and values that look unusual."""
 
+import json
 from collections.abc import Iterator
 
 import numpy as np
 
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE
+from galinx.postprocess.quantities.slider import SLIDER
 from galinx.solvers.parameters import parameters, values
 
+#: Words of output.quantities that need no contact.
+FRICTIONS = frozenset({FRICTION_ALONE, SLIDER})
 #: Usual lengths of a stroke [m].
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
@@ -16,16 +21,18 @@ _PRESSED = 0.1
 
 def contradictions(scene: Scene) -> list[str]:
     """Faults that no key has alone, one sentence each."""
-    faults = []
+    faults: list[str] = []
     asked, solve = set(scene.output.quantities), scene.solve
-    if scene.motion.c is not None and scene.motion.speed is not None:
-        faults.append("motion: c and speed exclude each other; keep one")
-    if scene.motion.c is None and scene.motion.speed is None:
-        faults.append("motion: expected c (over the shear wave speed) or speed (m/s)")
-    if asked - {"friction"} and not solve.methods:
+    faults += _of_motion(scene)
+    if (contact := sorted(asked - FRICTIONS)) and not solve.methods:
         faults.append(
-            "solve.methods is empty, but output.quantities asks for "
-            f"{', '.join(sorted(asked - {'friction'}))}; name closed_form, fem or both"
+            f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
+            "closed_form, fem or both"
+        )
+    if (SLIDER in asked) != (scene.slider is not None):
+        faults.append(
+            'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
+            "drive_speed and duration"
         )
     if ("interior" in asked) != bool(scene.output.points or scene.output.map):
         faults.append(
@@ -51,6 +58,31 @@ def contradictions(scene: Scene) -> list[str]:
     if solve.pressure != "closed_form" and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')
     return faults
+
+
+def _of_motion(scene: Scene) -> Iterator[str]:
+    motion, c_s = scene.motion, scene.solid.c_s
+    if motion.c is not None and motion.speed is not None:
+        yield "motion: c and speed exclude each other; keep one"
+    elif motion.path is not None and (motion.c is not None or motion.speed is not None):
+        yield "motion: path tells the speed, too; take c and speed away"
+    elif motion.path is None and motion.c is None and motion.speed is None:
+        yield "motion: expected c (over the shear wave speed) or speed (m/s)"
+    try:
+        own = [leg.speed for leg in scene.legs if leg.speed is not None]
+    except ValueError as error:
+        yield f"motion.{'strokes' if motion.path is None else 'path'}: {error}"
+        return
+    if own and max(own) >= c_s:
+        limit = f"the shear wave speed {c_s:.6g} m/s"
+        yield f"motion: found a stroke at {max(own):g} m/s, expected less than {limit}"
+    if own and set(scene.output.quantities) - FRICTIONS:
+        yield (
+            "motion: strokes with speeds of their own, and path, are for friction alone; take "
+            f"output.quantities = {json.dumps(sorted(FRICTIONS))}"
+        )
+    if not any(len(X) for X in scene.places):
+        yield "motion.X_over_L: found no position that a stroke passes, expected at least one"
 
 
 def oddities(scene: Scene) -> list[str]:

@@ -20,6 +20,9 @@ X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/
 #: share of the axes, which one name serves.
 _APART, _SAME = 0.2, 0.012
 
+#: Variation of friction, over its size, from which on zero is on the axis.
+_LEVEL = 0.2
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -105,7 +108,9 @@ def draw(axis: Axes, panel: Panel) -> None:
     """Draw the loops of a panel, without names of its axes."""
     alone = len(panel.loops) == 1
     f = np.array([loop.f for loop in panel.loops])
-    low, high = min(0.0, f.min()), max(0.0, f.max())
+    low, high = float(f.min()), float(f.max())
+    if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would leave nothing to be seen
+        low, high = min(0.0, low), max(0.0, high)
     margin = 0.06 * (high - low) or 1.0
     axis.set(xlim=(-0.03, 1.03), ylim=(low - margin, high + margin))
     axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)

@@ -5,6 +5,7 @@ from difflib import get_close_matches
 
 from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
     runs,
+    slider,
     states,
     stresses,
     validity,
@@ -35,10 +36,11 @@ def table() -> dict[str, Quantity]:
     of_laws = {
         column(key): Quantity(
             column(key), "none" if known.options else known.unit or "1", known.about, (STATE,),
-            symbol=known.symbol, range=known.range,
+            symbol=known.symbol or key, range=known.range,
         )
         for law in LAWS.values()
         for key, known in parameters(law).items()
+        if known.single
     }  # fmt: skip
     return of_laws | QUANTITIES
 

@@ -14,6 +14,8 @@ from galinx.texts import unseen
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
+#: What a law remembers, and strokes.
+INNER, STROKE = "inner variables", "strokes"
 
 #: What a dataset is made of.
 TEXT, WHOLE, NUMBER = "text", "int64", "float64"

@@ -1,6 +1,16 @@
 """What a run says of itself, and the friction loops that its states lie on."""
 
-from galinx.postprocess.quantities.quantity import FEM, LOOP, QUANTITIES, SPEED, STATE, STEP, Quantity
+from galinx.postprocess.quantities.quantity import (
+    ANYWHERE,
+    FEM,
+    LOOP,
+    QUANTITIES,
+    SPEED,
+    STATE,
+    STEP,
+    STROKE,
+    Quantity,
+)
 from galinx.solvers.parameters import Range
 
 #: Dimensions of what is told in words, and of times.
@@ -21,6 +31,25 @@ LOOP_X = Quantity(
 LOOP_F = Quantity(
     "loops/f", "1", "friction coefficient there, a row for each law and speed", (LOOP, STEP)
 )
+
+LOOP_WORK = Quantity(
+    "loops/dissipated", "J/m", "energy dissipated in each stroke, N times the integral of f over X",
+    (LOOP, STROKE),
+)  # fmt: skip
+LOOP_CYCLE = Quantity(
+    "loops/cycle_dissipated", "J/m",
+    "energy dissipated in a closed loop, the last strokes that come back to where they began; NaN for "
+    "none",
+    (LOOP,), nan_allowed=ANYWHERE,
+)  # fmt: skip
+LOOP_BREAKAWAY = Quantity(
+    "loops/breakaway", "N/m", "breakaway force, the largest against the motion in each stroke",
+    (LOOP, STROKE),
+)  # fmt: skip
+LOOP_STIFFNESS = Quantity(
+    "loops/tangent_stiffness", "N/m^2",
+    "tangent stiffness, N times the slope of f over X where each stroke begins", (LOOP, STROKE),
+)  # fmt: skip
 
 _COUNTS = ("cells", "unknowns", "degree", "factorisations", "back_substitutions", "iterations")
 

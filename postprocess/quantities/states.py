@@ -10,6 +10,7 @@ from galinx.postprocess.quantities.quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    INNER,
     INTENSITIES,
     LOCAL,
     OWN_PRESSURE,
@@ -36,6 +37,9 @@ SPEED = Quantity(
 )  # fmt: skip
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
 RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
+INNER_STATE = Quantity(
+    "states/inner_state", "1", "inner state of the friction law, as its page says", (STATE, INNER)
+)
 VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=_NOT_NEGATIVE)
 SPEED_LIMIT = Quantity(
     "states/speed_limit", "m/s", "speed of the wave along the surface, below which a punch has to be",

@@ -1,6 +1,17 @@
 """Friction laws, by the name that scenes use, and how they advance along strokes."""
 
-from galinx.solvers.friction import dahl  # noqa: F401 - each adds its law
+from galinx.solvers.friction import (  # noqa: F401 - each adds its law
+    bouc_wen,
+    coulomb,
+    dahl,
+    elasto_plastic,
+    gms,
+    lugre,
+    maxwell_slip,
+    rate_and_state,
+    stribeck,
+    table,
+)
 from galinx.solvers.friction.law import LAWS, FrictionLaw
 
 __all__ = ["LAWS", "FrictionLaw"]

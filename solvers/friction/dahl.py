@@ -1,12 +1,12 @@
 """Dahl's dynamic friction law (Eqs 2-5, 44-51)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
 
@@ -24,6 +24,7 @@ class Dahl(FrictionLaw):
 
     about: ClassVar[str] = "Dahl's law"
     depends_on_speed: ClassVar[bool] = False
+    broadcasts: ClassVar[bool] = True
 
     μ_C: float = parameter(
         "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
@@ -40,6 +41,10 @@ class Dahl(FrictionLaw):
     def __post_init__(self) -> None:
         check(self)
 
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.level, "sigma0_over_load": seen.slope}
+
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         """df/dd [1/m]."""
         y = 1.0 - s * np.asarray(z, dtype=float) / self.μ_C
@@ -49,30 +54,45 @@ class Dahl(FrictionLaw):
         return z[..., 0]
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """f after slip from f₀ = z, by the law's exact solution, (len(slip), 1).
+        """f after slip d from f₀ = z, by the law's exact solution, (len(slip), 1).
 
         δ = 1: y = y₀ exp(-λ d/μ_C); otherwise |y|^(1-δ) = |y₀|^(1-δ) - (1-δ) λ d/μ_C, and for δ < 1
         full slip, y = 0, is reached after a finite distance.
         """
-        x = self.λ * np.asarray(slip, dtype=float)[:, None] / self.μ_C
-        y0 = 1.0 - s * float(z[0]) / self.μ_C
-        p = 1.0 - self.δ
-        if y0 == 0.0:
-            decay = np.zeros_like(x)
-        elif abs(p) * max(1.0, abs(np.log(abs(y0)))) < 1e-9:
-            # Both formulas agree to the last digits here, and the power would divide by p ≈ 0.
-            decay = -x
-        else:
-            # |y| = |y₀| (1 - p x |y₀|^(-p))^(1/p), through log1p so that p → 0 keeps its digits.
-            base = np.maximum(-p * x * abs(y0) ** -p, -1.0)
-            with np.errstate(divide="ignore"):
-                decay = np.log1p(base) / p
+        y0, decay = self._decay(z, s, slip)
         # y = y₀ exp(decay); what is added to f keeps its digits where it is small.
-        return float(z[0]) - s * self.μ_C * y0 * np.expm1(decay)
+        return (z[..., 0] - s * self.μ_C * y0 * np.expm1(decay))[..., None]
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        """∫ s f dd = μ_C (d - ∫ y dd), and ∫ y dd = sgn(y₀) μ_C/λ (|y₀|^(2-δ) - |y|^(2-δ))/(2-δ)."""
+        y0, decay = self._decay(z, s, slip)
+        q = 2.0 - self.δ
+        near = np.abs(q) < 1e-12
+        with np.errstate(invalid="ignore"):
+            by_power = -np.expm1(q * decay) / np.where(near, 1.0, q)
+        y = np.where(near, -decay, by_power) * np.sign(y0) * np.abs(y0) ** q
+        return self.μ_C * (slip - np.where(y0 == 0.0, 0.0, y) * self.μ_C / self.λ)
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return s * self.rate(z[..., 0], s)
 
     def stiffness(self, z: NDArray, s: int, V: float = 0.0) -> float:
         y0 = max(1.0, abs(1.0 - s * float(z[0]) / self.μ_C))
         return self.λ * self.δ * y0 ** (self.δ - 1.0) / self.μ_C
+
+    def _decay(self, z: NDArray, s: int, slip: NDArray) -> tuple[NDArray, NDArray]:
+        """y₀, and ln(y/y₀) after the slip."""
+        x = self.λ * np.asarray(slip, dtype=float) / self.μ_C
+        y0 = 1.0 - s * np.asarray(z, dtype=float)[..., 0] / self.μ_C
+        p, size = 1.0 - self.δ, np.where(y0 == 0.0, 1.0, np.abs(y0))
+        # Both formulas agree to the last digits here, and the power would divide by p ≈ 0.
+        near = np.abs(p) * np.maximum(1.0, np.abs(np.log(size))) < 1e-9
+        # |y| = |y₀| (1 - p x |y₀|^(-p))^(1/p), through log1p so that p → 0 keeps its digits.
+        base = np.maximum(-p * x * size**-p, -1.0)
+        with np.errstate(divide="ignore"):
+            decay = np.log1p(base) / np.where(near, 1.0, p)
+        decay = np.where(near, -x, decay)
+        return y0, np.where(y0 == 0.0, 0.0, decay)
 
 
 LAWS.register("dahl", Dahl)

@@ -1,6 +1,7 @@
 """What a friction law is."""
 
-from typing import ClassVar, Protocol
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,20 +10,51 @@ from galinx.registry import Registry
 from galinx.solvers.parameters import parameters
 
 
+@dataclass(frozen=True)
+class Seen:
+    """What measured friction looks like, for a guess of parameters.
+
+    Attributes:
+        level, least: large and small |f| in sliding.
+        slope: |df/dX| where motion begins [1/m].
+        length: slip between reversals [m].
+        speed: [m/s].
+        rows: wanted in tables.
+    """
+
+    level: float
+    least: float
+    slope: float
+    length: float
+    speed: float
+    rows: int
+
+
 class FrictionLaw(Protocol):
     """A law of dynamic friction, per normal force: f = F/N.
 
     A law is a dataclass whose fields are made by :func:`galinx.solvers.parameters.parameter`; scenes set
-    them by their keys. Its inner state z, (n,), changes with the slip. Those that inherit from this
-    class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
+    them by their keys. Its inner state z, (n,), dimensionless, changes with the slip. Those that inherit
+    from this class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
 
     Attributes:
         about: what the law is called, with its source.
         depends_on_speed: False where f is the same at every speed; it is then computed once.
+        broadcasts: can one law stand for many? Their parameters are then (m, 1), their states
+            (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
+            slips as NumPy's rules of broadcasting say.
+        conventions: keys of parameters that are chosen, and no fit finds.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
+    broadcasts: ClassVar[bool] = False
+    conventions: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        """Parameters by key with which a fit may begin; defaults serve for those that are not there."""
+        return {}
 
     def rest(self) -> NDArray[np.float64]:
         """State before the first stroke, (n,)."""
@@ -40,12 +72,36 @@ class FrictionLaw(Protocol):
         """States after so much slip [m] from z, (len(slip), n); None where only the rate is known."""
         return None
 
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64] | None:
+        """∫ s f d(slip) [m] over so much slip from z, (len(slip),); None where no formula gives it."""
+        return None
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
+        """s df/dd [1/m] at states z (..., n), the tangent stiffness over N; None: by differences."""
+        return None
+
     def stiffness(self, z: NDArray, s: int, V: float) -> float | None:
         """Largest |∂(dz/d(slip))/∂z| [1/m] of a stroke that starts at z; None where it is not known.
 
         Runge-Kutta's steps are stable where it is known to be small.
         """
         return None
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Numbers that grow through zero, each once a stroke, where the rate is not smooth, (any,)."""
+        return np.zeros(0)
+
+    def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """dz/dt [1/s] in direction s = ±1 at the speed V >= 0 [m/s], (n,)."""
+        return V * self.rate(z, s, V)
+
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """State with which a motion in direction s begins, or goes on where the rate has switched."""
+        return z
+
+    def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
+        """State after a time at rest [s]; only laws that age change."""
+        return z
 
 
 class Laws(Registry[type[FrictionLaw]]):

@@ -11,7 +11,7 @@ from galinx.postprocess.errors import Occupied
 
 def test_named_arrays_have_units_and_the_archives_numbers(map_run):
     states = map_run.dataset
-    assert dict(states.sizes) == {"state": 12, "X_over_a": 217, "point": 420}
+    assert dict(states.sizes) == {"state": 12, "X_over_a": 217, "point": 420, "inner": 1}
     np.testing.assert_array_equal(states.fem_K_I_right, map_run.data["states/fem/K_I_right"])
     assert states.fem_normal_force.attrs["units"] == "N/m" and states.c.attrs["units"] == "1"
     assert states.interior_fem_sigma_XX.dims == ("state", "point")

@@ -115,3 +115,11 @@ def test_only_what_is_there_is_taken_away(key, message):
 def test_a_key_is_set_or_taken_away():
     with pytest.raises(BadInput, match=r"--set and --unset motion\.c exclude each other"):
         from_words(["motion.c=0.1"], ["motion.c"])
+
+
+def test_another_law_replaces_the_parameters_of_the_old_one():
+    text = changed(SCENE.read_text("utf-8"), {"friction.model": "coulomb"})
+    friction = parse(text).friction
+    assert [*friction.parameters] == ["mu_c"] and friction.pre_sliding == 1e-4
+    with pytest.raises(BadInput, match="mu_s: missing"):
+        parse(changed(SCENE.read_text("utf-8"), {"friction.model": "stribeck"}))

@@ -56,7 +56,7 @@ def test_defaults_leave_only_what_has_none():
         ({"friction.mu_c": "0.5.5"}, "0.5.5"),
         ({"friction.delta": 0}, "delta"),
         ({"friction.pre_sliding": "nan mm"}, "pre_sliding"),
-        ({"friction.model": "coulomb"}, "dahl"),
+        ({"friction.model": "amontons"}, "dahl"),
         ({"friction.integrator": "euler"}, "integrator"),
         ({"friction.sign": "other"}, "sign"),
         ({"motion.c": 1.0}, "motion.c"),

@@ -1,0 +1,163 @@
+"""The Bouc-Wen law of hysteresis."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
+from galinx.solvers.parameters import check, parameter
+
+#: y = -ln(1 - w) from which on the slip is known by its asymptote, and of full slip.
+_FAR, _FULL = 14.0, 700.0
+#: Steps of Newton's method that are always enough.
+_STEPS = 60
+
+
+@dataclass(frozen=True)
+class BoucWen(FrictionLaw):
+    """The Bouc-Wen law: a hysteresis between elastic and full slip of any sharpness::
+
+        dζ/dx = (1 - |ζ|^n (γ + (1-γ) sgn(ẋ ζ)))/x_y,   f = μ_C ζ
+
+    (R. Bouc, Acustica 24 (1971) 16; Y. K. Wen, Journal of the Engineering Mechanics Division 102 (1976)
+    249.) With w = s ζ: dw/dd = (1 - wⁿ)/x_y where w > 0, and (1 - (2γ-1) |w|ⁿ)/x_y where w < 0. n = 1 and
+    γ = 0 is Dahl's law with δ = 1. Its state is ζ.
+
+    Raises:
+        ValueError: a parameter is outside its range.
+    """
+
+    about: ClassVar[str] = "the Bouc-Wen law"
+    depends_on_speed: ClassVar[bool] = False
+
+    μ_C: float = parameter(
+        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
+    )
+    x_y: float = parameter(
+        "yield_displacement", "yield displacement x_y", "m", symbol="x_y", above=0.0,
+        note="the slope of f over slip where f = 0 is μ_C/x_y",
+    )  # fmt: skip
+    n: float = parameter(
+        "exponent", "exponent n", symbol="n", at_least=1.0, default=1.0, note="the larger, the sharper"
+    )
+    γ: float = parameter(
+        "gamma", "shape γ of unloading", symbol=r"\gamma", at_least=0.0, below=1.0, default=0.5,
+        note="0.5: unloading is a straight line",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.level, "yield_displacement": seen.level / seen.slope, "exponent": 1.2}
+
+    def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
+        """dζ/dd [1/m]."""
+        w = s * np.asarray(z, dtype=float)
+        return s * (1.0 - np.where(w > 0.0, 1.0, 2.0 * self.γ - 1.0) * np.abs(w) ** self.n) / self.x_y
+
+    def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
+        return self.μ_C * z[..., 0]
+
+    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        """Slip as a function of w, inverted: x = d/x_y = ∫ dw/(1 - k|w|ⁿ) = w ₂F₁(1, 1/n; 1+1/n; k|w|ⁿ).
+
+        k = 1 where w > 0, 2γ-1 where w < 0. From w₀ < 0 it unloads to zero first.
+        """
+        w0, x = s * float(z[0]), np.asarray(slip, dtype=float) / self.x_y
+        k = 2.0 * self.γ - 1.0
+        from_zero = np.zeros(()) if w0 < 0.0 else _loaded_after(_slip_to(min(w0, 1.0), self.n), self.n)
+        to_zero = _slip(-w0, k, self.n) if w0 < 0.0 else 0.0
+        loading = np.maximum(x - to_zero, 0.0)
+        start = 0.0 if w0 < 0.0 else _slip_to(min(w0, 1.0), self.n)
+        up = _loaded_after(start + loading, self.n)
+        # What it begins with is there to the last digit.
+        up = np.where(loading == 0.0, max(w0, 0.0), up + (max(w0, 0.0) - from_zero))
+        down = _unloaded_at(np.clip(to_zero - x, 0.0, None), -w0, k, self.n) if w0 < 0.0 else 0.0
+        return s * np.where(x < to_zero, -down, np.minimum(up, 1.0))[:, None]
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """From unloading to loading."""
+        return s * z
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        """∫ w dx = w²/2 ₂F₁(1, 2/n; 1+2/n; k|w|ⁿ) of both parts."""
+        ends = s * np.append(z[:1], self.exact(z, s, V, np.asarray(slip))[:, 0])
+        k, x = 2.0 * self.γ - 1.0, np.asarray(slip, dtype=float) / self.x_y
+        down = _moment(np.maximum(-ends, 0.0), k, self.n)
+        begun = _slip(np.maximum(-ends[0], 0.0), k, self.n)
+        loading = np.maximum(x - begun, 0.0)
+        short = _short(np.maximum(ends, 0.0), self.n)
+        return self.μ_C * self.x_y * (loading - (short[1:] - short[0]) - (down[0] - down[1:]))
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return s * self.μ_C * self.rate(z[..., 0], s)
+
+    def stiffness(self, z: NDArray, s: int, V: float) -> float:
+        return self.n * max(1.0, abs(float(z[0]))) ** (self.n - 1.0) / self.x_y
+
+
+def _slip(w: float | NDArray, k: float, n: float) -> NDArray[np.float64]:
+    """∫ dw/(1 - k wⁿ) from 0 to w >= 0."""
+    from scipy.special import hyp2f1  # slow to import
+
+    return w * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, k * np.power(w, n))
+
+
+def _moment(w: NDArray, k: float, n: float) -> NDArray[np.float64]:
+    """∫ w dw/(1 - k wⁿ) from 0 to w >= 0."""
+    from scipy.special import hyp2f1  # slow to import
+
+    return 0.5 * w**2 * hyp2f1(1.0, 2.0 / n, 1.0 + 2.0 / n, k * np.power(w, n))
+
+
+def _short(w: NDArray, n: float) -> NDArray[np.float64]:
+    """∫ (1 - w)/(1 - wⁿ) dw from 0 to w, what the work of loading is short of that at full slip."""
+    near = np.minimum(w, -np.expm1(-_FAR))
+    return _slip(near, 1.0, n) - _moment(near, 1.0, n) + (w - near) / n
+
+
+def _slip_of(y: NDArray, n: float) -> NDArray[np.float64]:
+    """The same for k = 1, by y = -ln(1 - w), which grows with the slip without end."""
+    near = np.minimum(y, _FAR)
+    ε, ε_near = np.exp(-y), np.exp(-near)
+    # Beyond, 1/(1 - wⁿ) is 1/(nε) (1 + (n-1)ε/2) to the last digits, with ε = 1 - w.
+    return _slip(-np.expm1(-near), 1.0, n) + (y - near + 0.5 * (n - 1.0) * (ε_near - ε)) / n
+
+
+def _slip_to(w: float, n: float) -> NDArray[np.float64]:
+    """Slip of loading from 0 to w."""
+    with np.errstate(divide="ignore"):
+        return _slip_of(np.minimum(-np.log1p(-np.asarray(w)), _FULL), n)
+
+
+def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
+    """w after a slip from 0, by Newton's method in y, in which slip is nearly a straight line."""
+    y = np.array(x, dtype=float)  # n = 1; for larger n, y is larger
+    for _ in range(_STEPS):
+        w = -np.expm1(-y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = np.where(y > _FAR, 1.0 / n, np.exp(-y) / -np.expm1(n * np.log(w)))
+        slope = np.where(y == 0.0, 1.0, slope)
+        step = (x - _slip_of(y, n)) / slope
+        y = np.maximum(y + step, 0.0)
+        if np.all(np.abs(step) <= 1e-15 * (1.0 + y)):
+            break
+    return -np.expm1(-y)
+
+
+def _unloaded_at(x: NDArray, most: float, k: float, n: float) -> NDArray[np.float64]:
+    """|w| from which unloading to zero takes a slip x, at most that which it began with."""
+    u = np.minimum(x, most)
+    for _ in range(_STEPS):
+        step = (x - _slip(u, k, n)) * (1.0 - k * u**n)
+        u = np.clip(u + step, 0.0, most)
+        if np.all(np.abs(step) <= 1e-16):
+            break
+    return u
+
+
+LAWS.register("bouc_wen", BoucWen)

@@ -1,0 +1,131 @@
+"""Generalised Maxwell slip."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.friction.law import LAWS, Seen
+from galinx.solvers.friction.maxwell_slip import check_elements, elements, spread
+from galinx.solvers.friction.stribeck import StribeckCurve
+from galinx.solvers.parameters import check, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class GeneralisedMaxwellSlip(StribeckCurve):
+    """Generalised Maxwell slip: elements that stick as springs, and slip towards Stribeck's curve::
+
+        stick: df_i = k_i dx, until |f_i| = α_i g(v)
+        slip:  df_i/dt = s C (α_i - |f_i|/g(v)), until v = 0
+        f = Σ f_i,   α_i = μ_i/Σμ_i,   g(v) = μ_C + (μ_S - μ_C) exp(-|v/v_S|^j)
+
+    (F. Al-Bender, V. Lampaert, J. Swevers, IEEE Transactions on Automatic Control 50 (2005) 1883.) At
+    vanishing speed, and for C → ∞, it is Maxwell slip. Its state is all f_i, then the direction in which
+    each slips, 0 where it sticks.
+
+    Raises:
+        ValueError: a parameter is outside its range.
+    """
+
+    about: ClassVar[str] = "generalised Maxwell slip"
+
+    elements: tuple[tuple[float, float], ...] = elements()
+    C: float = parameter(
+        "attraction_rate", "attraction rate C/N", "1/s", symbol="C/N", above=0.0,
+        note="how fast slipping elements come to Stribeck's curve",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check(self)
+        check_elements(self.elements)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        rate = 10.0 * seen.speed / seen.length
+        return {**super().guess(seen), "elements": spread(seen), "attraction_rate": rate}
+
+    @property
+    def k(self) -> NDArray[np.float64]:
+        """Stiffnesses over N [1/m], (n,)."""
+        return np.array(self.elements)[:, 0]
+
+    @property
+    def α(self) -> NDArray[np.float64]:
+        """Shares of the elements in steady sliding, (n,)."""
+        μ = np.array(self.elements)[:, 1]
+        return μ / μ.sum()
+
+    def rest(self) -> NDArray[np.float64]:
+        return np.zeros(2 * len(self.elements))
+
+    def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
+        """At rest all elements stick."""
+        if seconds <= 0.0:
+            return z
+        return np.concatenate([z[: len(self.elements)], np.zeros(len(self.elements))])
+
+    def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """df_i/dd [1/m], and no change of which slip."""
+        f, slipping = np.split(z, 2)
+        with np.errstate(divide="ignore"):
+            attracted = self.C * (self.α - s * f / self.g(V)) / V
+        return np.append(s * np.where(s * slipping > 0.0, attracted, self.k), 0.0 * f)
+
+    def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """df_i/dt [1/s], and no change of which slip."""
+        f, slipping = np.split(z, 2)
+        attracted = self.C * (self.α - s * f / self.g(V))
+        return np.append(s * np.where(s * slipping > 0.0, attracted, V * self.k), 0.0 * f)
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Each element that sticks comes to its limit."""
+        f, slipping = np.split(z, 2)
+        return np.where(s * slipping > 0.0, -1.0, s * f - self.α * self.g(V))
+
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """What has come to its limit slips."""
+        f, slipping = np.split(z, 2)
+        slips = (s * slipping > 0.0) | (s * f >= self.α * self.g(V) * (1.0 - 1e-9))
+        return np.append(f, s * slips)
+
+    def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return z[..., : len(self.elements)].sum(axis=-1)
+
+    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        """A straight line up to α g where an element sticks; where it slips, |f_i| - α g decays."""
+        w, reached, stuck, decay = self._pieces(z, s, V, np.asarray(slip, dtype=float)[:, None])
+        limit = self.α * self.g(V)
+        f = np.where(reached, limit + (w - limit) * np.exp(-decay), w + self.k * stuck)
+        slipping = reached | (w + self.k * stuck >= limit * (1.0 - 1e-14))
+        return np.concatenate([s * np.where(slipping & ~reached, limit, f), s * slipping], axis=1)
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        d = np.asarray(slip, dtype=float)[:, None]
+        w, reached, stuck, decay = self._pieces(z, s, V, d)
+        limit, over = self.α * self.g(V), V * self.g(V) / self.C
+        slipped = limit * d - (w - limit) * over * np.expm1(-decay)
+        built = w * stuck + 0.5 * self.k * stuck**2 + limit * (d - stuck)
+        return np.where(reached, slipped, built).sum(axis=1)
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
+        w, slipping = s * z[..., : len(self.k)], s * z[..., len(self.k) :] > 0.0
+        if (slipping | (w >= self.α * self.g(V))).any():
+            return None
+        return np.broadcast_to(self.k.sum(), w.shape[:-1])
+
+    def _pieces(
+        self, z: NDArray, s: int, V: float, d: NDArray
+    ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        """s f_i at the start, which slip from the start on, slip in stick of the others [m], and the
+        exponent of the decay of those."""
+        n, limit = len(self.elements), self.α * self.g(V)
+        w = s * z[:n]
+        # A speed at which less is borne than an element bears makes it slip at once.
+        reached = (s * z[n:] > 0.0) | (w > limit)
+        stuck = np.minimum(d, np.maximum(limit - w, 0.0) / self.k)
+        decay = d * (self.C / (V * self.g(V)) if V > 0.0 else 1e300)
+        return w, reached, stuck, decay
+
+
+LAWS.register("gms", GeneralisedMaxwellSlip)

@@ -1,0 +1,83 @@
+"""Friction that falls with the speed: Stribeck's curve, alone and as part of other laws."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
+from galinx.solvers.parameters import check, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class StribeckCurve(FrictionLaw):
+    """What laws have that follow Stribeck's curve in steady sliding::
+
+    g(V) = μ_C + (μ_S - μ_C) exp(-(V/v_S)^j)
+    """
+
+    μ_C: float = parameter(
+        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
+    )
+    μ_S: float = parameter(
+        "mu_s", "coefficient of static friction μ_S", symbol=r"\mu_S", above=0.0, usual=(1e-4, 10.0),
+        note="steady sliding at vanishing speed",
+    )  # fmt: skip
+    v_S: float = parameter("stribeck_velocity", "Stribeck velocity v_S", "m/s", symbol="v_S", above=0.0)
+    j: float = parameter(
+        "stribeck_exponent", "exponent of Stribeck's curve", symbol="j", above=0.0, default=2.0,
+        note="1: Tustin's form, 2: Gauss's",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @classmethod
+    def guess(cls, seen: Seen) -> dict[str, Any]:
+        return {"mu_c": seen.least, "mu_s": seen.level, "stribeck_velocity": seen.speed}
+
+    def g(self, V: float) -> NDArray[np.float64]:
+        """Coefficient of steady sliding at a speed [m/s], without viscous friction."""
+        return self.μ_C + (self.μ_S - self.μ_C) * np.exp(-np.power(V / self.v_S, self.j))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stribeck(StribeckCurve):
+    """Stribeck's curve with viscous friction, without memory::
+
+        f = s (g(V) + σ₂ V),   g(V) = μ_C + (μ_S - μ_C) exp(-(V/v_S)^j)
+
+    (B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083.) Its state stays
+    zero.
+
+    Raises:
+        ValueError: a parameter is outside its range.
+    """
+
+    about: ClassVar[str] = "Stribeck's curve"
+    broadcasts: ClassVar[bool] = True
+
+    σ2: float = parameter(
+        "sigma2_over_load", "viscous friction σ₂/N", "s/m", symbol=r"\sigma_2/N", at_least=0.0,
+        default=0.0,
+    )  # fmt: skip
+
+    def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Nothing changes."""
+        return np.zeros(np.shape(z))
+
+    def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return s * (self.g(V) + self.σ2 * V) + np.zeros(np.shape(z)[:-1])
+
+    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        return np.zeros(np.shape(self.g(V) + np.asarray(slip)))[..., None]
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        return (self.g(V) + self.σ2 * V) * np.asarray(slip, dtype=float)
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return 0.0 * self.friction(z, s, V)
+
+
+LAWS.register("stribeck", Stribeck)

@@ -1,0 +1,252 @@
+"""Friction laws in scenes: states, loops, what strokes take, contact; motions of all kinds."""
+
+import json
+import re
+import tomllib
+
+import numpy as np
+import pytest
+import random_laws as random
+from support import command
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.results.check import faults
+from galinx.app.scene.read import parse
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.motion import Partial
+from galinx.solvers.friction.strokes import friction_along
+from galinx.solvers.parameters import made
+
+STROKES = '["forward", {to = 0.2}, {to = 0.6}, {to = 0.2}, {to = 1.0}]'
+SCENE = """
+solid = {{material = "steel"}}
+punch = {{load = 2e4}}
+friction = {{model = "{model}", {friction}}}
+motion = {{{motion}}}
+solve = {{methods = ["closed_form"]}}
+output = {{quantities = {quantities}}}
+"""
+
+
+def toml(values):
+    return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items())
+
+
+def scene(model, friction, motion=f"speed = 2e-3, strokes = {STROKES}", quantities='["friction"]'):
+    return parse(SCENE.format(model=model, friction=toml(friction), motion=motion, quantities=quantities))
+
+
+@pytest.mark.parametrize("name", sorted(LAWS))
+def test_every_law_goes_from_the_scene_to_the_contact(name, tmp_path):
+    parameters = random.parameters(name, np.random.default_rng(5))
+    result = galinx.compute(scene(name, parameters, quantities='["friction", "sif"]'))
+    law = made(LAWS[name], parameters)
+    strokes = ["forward", Partial(0.2), Partial(0.6), Partial(0.2), Partial(1.0)]
+    known = friction_along(law, strokes, 1e-4, (0.2, 0.8), 2e-3)
+    f = np.concatenate([stroke.f for stroke in known])
+    data = result.data
+    assert [*data["states/motion"]] == ["FM1", "FM1", "BM1", "BM1", "FM2", "BM2", "FM3", "FM3"]
+    np.testing.assert_allclose(data["states/f"], f, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(data["states/g"], -f, rtol=0.0, atol=1e-10)
+    inner = np.concatenate([stroke.z for stroke in known])
+    np.testing.assert_allclose(data["states/inner_state"], inner, rtol=0.0, atol=1e-10)
+    assert result.dataset.inner_state.dims == ("state", "inner")
+    cot = 1.0 / np.tan(np.pi * data["states/alpha"])
+    response = result.scene.solid.response(data["states/c"][0])
+    np.testing.assert_allclose(cot, -f * response.q / response.n, rtol=0.0, atol=1e-9)
+    assert data["loops/f"].shape == (1, 505) and data["loops/dissipated"].shape == (1, 5)
+
+
+@pytest.mark.parametrize("name", sorted(LAWS))
+def test_loops_and_what_strokes_take_are_those_of_the_drawn_friction(name):
+    data = galinx.compute(scene(name, random.parameters(name, np.random.default_rng(6)))).data
+    X, f = data["loops/X_over_L"].reshape(5, -1), data["loops/f"].reshape(5, -1)
+    N, L = 2e4, 1e-4
+    work = N * L * (0.5 * (f[:, 1:] + f[:, :-1]) * np.diff(X)).sum(axis=1)
+    np.testing.assert_allclose(data["loops/dissipated"][0], work, rtol=2e-2, atol=1e-4 * N * L)
+    assert data["loops/cycle_dissipated"][0] == pytest.approx(data["loops/dissipated"][0, 1:].sum())
+    against = N * (np.sign(np.diff(X)[:, :1]) * f).max(axis=1)
+    np.testing.assert_allclose(data["loops/breakaway"][0], against, rtol=3e-2, atol=1e-9 * N)
+    assert (data["loops/breakaway"][0] >= against * (1.0 - 1e-12) - 1e-9 * N).all()
+    slope = N / L * (f[:, 1] - f[:, 0]) / (X[:, 1] - X[:, 0])
+    tangent = data["loops/tangent_stiffness"][0]
+    np.testing.assert_allclose(tangent, slope, rtol=0.3, atol=2e-2 * N / L)
+
+
+def test_lists_of_any_parameter_are_a_product_and_tables_are_the_same_for_all():
+    given = scene("gms", {
+        "mu_c": [0.3, 0.4], "mu_s": 0.5, "stribeck_velocity": [1e-3, 1e-2], "attraction_rate": 10.0,
+        "elements": [[1e4, 0.1], [2e4, 0.2]],
+    })  # fmt: skip
+    data = galinx.compute(given).data
+    assert len(data["states/f"]) == 4 * 8 and data["states/inner_state"].shape == (32, 4)
+    assert "states/elements" not in data
+    assert sorted(set(zip(data["states/mu_c"], data["states/stribeck_velocity"]))) == [
+        (0.3, 1e-3), (0.3, 1e-2), (0.4, 1e-3), (0.4, 1e-2),
+    ]  # fmt: skip
+    both = scene("rate_and_state", {
+        "reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.015,
+        "critical_slip": "20 um", "evolution": ["ageing", "slip"],
+    })  # fmt: skip
+    result = galinx.compute(both)
+    assert [*result.data["states/evolution"]] == ["ageing"] * 8 + ["slip"] * 8
+    grid = result.grid.f.sel(motion="FM1")
+    assert (grid.sel(evolution="ageing") != grid.sel(evolution="slip")).all()
+
+
+def test_a_law_of_the_speed_gives_another_friction_at_each():
+    data = galinx.compute(scene(
+        "stribeck", {"mu_c": 0.3, "mu_s": 0.6, "stribeck_velocity": "1 mm/s"},
+        'speed = ["1 mm/s", "1 m/s"], strokes = ["forward"], X_over_L = 1',
+    )).data  # fmt: skip
+    np.testing.assert_allclose(data["states/f"], [0.3 + 0.3 * np.exp(-1.0), 0.3], rtol=1e-14)
+
+
+def test_strokes_may_have_speeds_and_rests_of_their_own():
+    law = {
+        "reference_friction": 0.6,
+        "reference_speed": 1e-6,
+        "a": 0.01,
+        "b": 0.015,
+        "critical_slip": 1e-7,
+    }
+    motion = (
+        "speed = 1e-6, X_over_L = [0.5, 1], rest = 5, strokes = [{to = 0.5}, {to = 1, speed = 1e-5}, "
+    )
+    motion += "{to = 0.5, rest = 0}, {to = 1, rest = 90}]"
+    data = galinx.compute(scene("rate_and_state", law, motion)).data
+    steady = 0.6 + (0.01 - 0.015) * np.log(10.0)
+    np.testing.assert_allclose(data["states/speed"], [1e-6, 1e-5, 1e-5, 1e-6, 1e-6, 1e-6, 1e-6])
+    at_start = data["loops/f"].reshape(4, -1)[:, 0]
+    aged = 0.6 + 0.01 * np.log(10.0) + 0.015 * np.log(1.0 + 5.0 * 1e-6 / 1e-7)
+    before = 0.1  # ϑ after steady sliding at the higher speed
+    rested = 0.6 + 0.015 * np.log(1.0 + 90.0 * 1e-6 / 1e-7)
+    wanted = [0.6, aged, -(0.6 + 0.015 * np.log(before)), rested]
+    np.testing.assert_allclose(at_start, wanted, rtol=1e-12)
+    assert data["states/f"][2] == pytest.approx(steady, rel=1e-12)
+
+
+def test_a_motion_may_be_given_point_by_point():
+    path = [[0, 0], ["1 s", "0.05 mm"], [3, 5e-5], [4, 1e-4], [4.5, 0]]
+    motion = f"path = {json.dumps(path)}"
+    result = galinx.compute(scene("dahl", {"mu_c": 0.4, "sigma0_over_load": 2e4}, motion))
+    data = result.data
+    assert [*data["states/motion"]] == ["FM1", "FM2", "BM1"]
+    np.testing.assert_allclose(data["states/X_over_L"], [0.5, 1.0, 0.0])
+    np.testing.assert_allclose(data["states/speed"], [5e-5, 5e-5, 2e-4])
+    y = np.exp(-2e4 * 5e-5 / 0.4)
+    wanted = [0.4 * (1.0 - y), 0.4 * (1.0 - y**2), -0.4 * (1.0 - (2.0 - y**2) * y**2)]
+    np.testing.assert_allclose(data["states/f"], wanted, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    "motion, said",
+    [
+        ("speed = 1, strokes = [{to = 0}]", "stroke 1 goes to 0 L, where it begins"),
+        ("speed = 1, strokes = [{to = 1.5}]", "to of a stroke: found 1.5"),
+        ("speed = 1, strokes = [{two = 1}]", "found the key 'two' in a stroke"),
+        ("speed = 1, strokes = [{speed = 1}]", "found a stroke without to"),
+        ("speed = 1, strokes = [{to = 0.1}], X_over_L = 0.5", "no position that a stroke passes"),
+        ("speed = 1, strokes = [{to = 1, speed = 1e9}]", "found a stroke at 1e"),
+        ("speed = 1, path = [[0, 0], [1, 1e-5]]", "path tells the speed"),
+        ("path = [[0, 0], [0, 1e-5]]", "times that do not grow"),
+        ("path = [[0, 0], [1, 1e-3]]", "the position 0.001 m, expected 0 to"),
+        ("path = [[0, 0], [1, 0]]", "found one position in all rows"),
+        ("path = [[0, 0]]", "expected at least 2 rows"),
+        ("path = [[0, 0, 1], [1, 1, 1]]", "rows of 2 numbers"),
+    ],
+)  # fmt: skip
+def test_faults_of_motions_are_told(motion, said):
+    with pytest.raises(BadInput, match=re.escape(said)):
+        scene("coulomb", {"mu_c": 0.4}, motion)
+
+
+def test_speeds_of_strokes_are_for_friction_alone():
+    with pytest.raises(BadInput, match="are for friction alone"):
+        scene("coulomb", {"mu_c": 0.4}, "speed = 1, strokes = [{to = 1, speed = 2}]", '["sif"]')
+
+
+def test_rate_and_state_has_no_answer_at_rest():
+    law = {
+        "reference_friction": 0.6,
+        "reference_speed": 1e-6,
+        "a": 0.01,
+        "b": 0.015,
+        "critical_slip": 1e-7,
+    }
+    with pytest.raises(BadInput, match="friction: found the speed 0 m/s"):
+        galinx.compute(scene("rate_and_state", law, "c = 0"))
+
+
+@pytest.mark.parametrize("name", ["lugre", "maxwell_slip", "table", "rate_and_state", "bouc_wen"])
+def test_archives_of_laws_are_whole_drawn_and_reported(name, tmp_path):
+    given = scene(
+        name, random.parameters(name, np.random.default_rng(8)), quantities='["friction", "sif"]'
+    )
+    assert tomllib.loads(given.text)
+    (tmp_path / "s.toml").write_text(given.text, encoding="utf-8")
+    done = command("run", "s.toml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert faults(tmp_path / "s.h5") == []
+    result = galinx.load(tmp_path / "s.h5")
+    assert next(iter(result.drawings())).name == "friction"
+    result.report(tmp_path / "s.html")
+    assert LAWS[name].about in (tmp_path / "s.html").read_text(encoding="utf-8")
+
+
+SLIDER = """
+slider = {mass = 2, stiffness = "8 N/m^2", drive_speed = "0.1 m/s", duration = "20 s"}
+"""
+
+
+def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
+    quantities = '["friction", "slider"]'
+    text = SCENE.format(
+        model="coulomb", friction="mu_c = [2e-5, 4e-5]", motion="speed = 2e-3", quantities=quantities
+    )
+    (tmp_path / "s.toml").write_text(text + SLIDER, encoding="utf-8")
+    done = command("run", "s.toml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert faults(tmp_path / "s.h5") == []
+    result = galinx.load(tmp_path / "s.h5")
+    data = result.data
+    np.testing.assert_allclose(data["slider/period"], np.pi, rtol=1e-7)
+    np.testing.assert_allclose(data["slider/slip_per_cycle"], 0.1 * np.pi, rtol=1e-7)
+    np.testing.assert_allclose(data["slider/peak_velocity"], 0.2, rtol=1e-6)
+    for row, μ in enumerate((2e-5, 4e-5)):
+        later = np.maximum(data["slider/time"] - μ * 2e4 / 0.8, 0.0)
+        wanted = 0.1 * (1.0 - np.cos(2.0 * later))
+        np.testing.assert_allclose(data["slider/velocity"][row], wanted, atol=2e-4)
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "slider"]
+
+
+@pytest.mark.parametrize(
+    "words, slider, said",
+    [
+        ('["friction", "slider"]', "", "go together"),
+        ('["friction"]', SLIDER, "go together"),
+        ('["friction", "slider"]', "slider = {mass = 1, stiffness = 1}", "missing drive_speed, duration"),
+        ('["friction", "slider"]', SLIDER.replace("2,", "-2,"), "found -2, expected > 0"),
+    ],
+)
+def test_faults_of_sliders_are_told(words, slider, said):
+    text = SCENE.format(model="coulomb", friction="mu_c = 0.4", motion="speed = 1", quantities=words)
+    with pytest.raises(BadInput, match=re.escape(said)):
+        parse(text + slider)
+
+
+def test_what_a_law_refuses_is_bad_input_and_integration_has_its_price(monkeypatch):
+    from galinx.app.plan import states
+    from galinx.app.plan.plan import make_plan
+
+    wrong = scene("table", {"shape": [[1e-6, 0.1], [2e-6, 0.2]]})
+    with pytest.raises(BadInput, match="friction: shape: found the slips"):
+        make_plan(wrong)
+    law = {"mu_c": [0.3, 0.4, 0.5], "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma0_over_load": 2e4}
+    assert make_plan(scene("lugre", law)).integrated == 0.0
+    assert make_plan(scene("elasto_plastic", law)).integrated > 0.5
+    monkeypatch.setattr(states, "INTEGRATED_LOOPS", 2)
+    data = galinx.compute(scene("elasto_plastic", law)).data
+    assert data["loops/f"].shape == (2, 505)
+    assert sorted(set(data["loops/of_state"])) == [-1, 0, 1]

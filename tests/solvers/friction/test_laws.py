@@ -1,0 +1,200 @@
+"""Every law against its equations, integrated elsewhere, and laws that are others' limits."""
+
+import os
+
+import numpy as np
+import pytest
+import random_laws as random
+import reference
+
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
+from galinx.solvers.parameters import made
+
+#: Random sets of parameters, each with a motion of its own.
+SETS = 20 if os.environ.get("GALINX_THOROUGH") else 5
+PLACES = 6
+
+
+def follow(law, strokes, places=PLACES):
+    """f at places of each stroke, and ∫ f v dt over each, as in the reference."""
+    z, f, done = law.rest(), [], []
+    for s, V, length, rest in strokes:
+        z = law.pause(z, rest)
+        done.append(float(work(law, z, s, V, length, exactly)))
+        states = exactly(law, z, s, V, length, np.linspace(0.0, length, places))
+        f.append(law.friction(states, s, V))
+        z = states[-1]
+    return np.array(f), np.array(done)
+
+
+@pytest.mark.parametrize("name", random.EXACT)
+@pytest.mark.parametrize("seed", range(SETS))
+def test_exact_laws_are_their_equations(name, seed):
+    rng = np.random.default_rng([seed, *name.encode()])
+    parameters, strokes = random.parameters(name, rng), random.strokes(rng)
+    f, done = follow(made(LAWS[name], parameters), strokes)
+    f_wanted, wanted = getattr(reference, name)(strokes, PLACES, **parameters)
+    scale = np.abs(f_wanted).max()
+    np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-12 * max(scale, 1.0))
+    np.testing.assert_allclose(done, wanted, rtol=0.0, atol=1e-12 * max(scale, 1.0) * random.LENGTH)
+
+
+@pytest.mark.parametrize("name", random.INTEGRATED)
+@pytest.mark.parametrize("seed", range(SETS))
+def test_integrated_laws_are_their_equations(name, seed):
+    rng = np.random.default_rng([seed, *name.encode()])
+    parameters, strokes = random.parameters(name, rng), random.strokes(rng, one_speed=True)
+    strokes = [(s, V, 0.5 * length, 0.0) for s, V, length, _ in strokes]
+    f, _ = follow(made(LAWS[name], parameters), strokes)
+    f_wanted, _ = getattr(reference, name)(strokes, PLACES, **parameters)
+    np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(SETS))
+def test_curves_of_integrated_laws_are_as_good_as_a_figure_wants(seed):
+    """Interpolated between the steps of the scheme, across breakaway."""
+    rng = np.random.default_rng([seed, 5])
+    law = made(LAWS["elasto_plastic"], random.parameters("elasto_plastic", rng))
+    d = np.linspace(0.0, random.LENGTH, 23)
+    for z, s in ((0.0, 1), (-0.9 * law.μ_C, 1), (0.5 * law.μ_C, -1)):
+        found, wanted = (
+            advance(law, np.array([z]), s, 1e-3, random.LENGTH, d) for advance in (closely, adaptively)
+        )
+        np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-8)
+        assert found[0, 0] == z and not np.array_equal(found, wanted)
+
+
+def of(name, **parameters):
+    return made(LAWS[name], parameters)
+
+
+def both(one, other, rng, count=20, one_speed=False):
+    """The largest difference of f and of work over a length between two laws on random motions."""
+    worst = 0.0
+    for _ in range(count):
+        strokes = random.strokes(rng, one_speed=one_speed)
+        (f, done), (g, wanted) = follow(one, strokes), follow(other, strokes)
+        worst = max(worst, np.abs(f - g).max(), np.abs(done - wanted).max() / random.LENGTH)
+    return worst
+
+
+CURVE = {"mu_c": 0.4, "mu_s": 0.4, "stribeck_velocity": 1e-3}
+
+
+def test_lugre_without_damping_and_with_a_constant_curve_is_dahl():
+    rng = np.random.default_rng(1)
+    lugre = of("lugre", sigma0_over_load=3e4, **CURVE)
+    assert both(of("dahl", mu_c=0.4, sigma0_over_load=3e4), lugre, rng) <= 1e-12
+    damped = of("lugre", sigma0_over_load=3e4, sigma1_over_load=30.0, **CURVE)
+    assert both(lugre, damped, rng) > 1e-3
+
+
+def test_stribeck_with_a_constant_curve_is_coulomb():
+    rng = np.random.default_rng(2)
+    assert both(of("coulomb", mu_c=0.4), of("stribeck", **CURVE), rng) <= 1e-12
+    assert both(of("coulomb", mu_c=0.4), of("stribeck", **CURVE | {"mu_s": 0.6}), rng) > 1e-3
+
+
+def test_bouc_wen_of_the_first_power_is_known():
+    """γ = 0 is Dahl's law; γ = 1/2 unloads on a straight line, then builds up as an exponential."""
+    rng = np.random.default_rng(3)
+    dahl = of("dahl", mu_c=0.4, sigma0_over_load=0.4 / 3e-5)
+    assert both(dahl, of("bouc_wen", mu_c=0.4, yield_displacement=3e-5, gamma=0.0), rng) <= 1e-12
+    law, d = of("bouc_wen", mu_c=0.4, yield_displacement=3e-5), np.array([1e-5, 2.4e-5, 6e-5])
+    found = law.exact(np.array([-0.8]), 1, 0.0, d)[:, 0]
+    wanted = [-0.8 + 1.0 / 3.0, 0.0, 1.0 - np.exp(-1.2)]
+    np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("γ", [0.0, 0.3, 0.5, 0.9])
+@pytest.mark.parametrize("n", [1.0, 1.7, 2.0, 8.0])
+def test_bouc_wen_by_formula_and_integrated_agree(γ, n):
+    law = of("bouc_wen", mu_c=0.4, yield_displacement=3e-5, exponent=n, gamma=γ)
+    d = np.linspace(0.0, 1e-4, 7)
+    for z, s in ((-0.95, 1), (0.6, -1), (0.3, 1)):
+        found = adaptively(law, np.array([z]), s, 0.0, 1e-4, d)
+        # Of six pieces, each integrated to 1e-12.
+        np.testing.assert_allclose(law.exact(np.array([z]), s, 0.0, d), found, rtol=0.0, atol=6e-12)
+
+
+ELEMENTS = ((1e4, 0.1), (4e3, 0.15), (5e4, 0.15))
+
+
+def test_generalised_maxwell_slip_with_infinite_attraction_is_maxwell_slip():
+    rng = np.random.default_rng(4)
+    maxwell = of("maxwell_slip", elements=ELEMENTS)
+    gms = of("gms", elements=ELEMENTS, attraction_rate=1e15, **CURVE)
+    assert both(maxwell, gms, rng) <= 1e-12
+    slow = of("gms", elements=ELEMENTS, attraction_rate=10.0, **CURVE | {"mu_s": 0.6})
+    assert both(maxwell, slow, rng) > 1e-3
+
+
+def test_generalised_maxwell_slip_at_vanishing_speed_is_maxwell_slip():
+    law = of("gms", elements=ELEMENTS, attraction_rate=10.0, **CURVE | {"mu_s": 0.5})
+    larger = of("maxwell_slip", elements=tuple((k, 1.25 * μ) for k, μ in ELEMENTS))
+    z, w, d = law.rest(), larger.rest(), np.linspace(0.0, 1e-4, 9)
+    for s in (1, -1, 1):
+        z, w = (one.exact(state[-1] if state.ndim > 1 else state, s, 0.0, d)
+                for one, state in ((law, z), (larger, w)))  # fmt: skip
+        np.testing.assert_allclose(law.friction(z, s, 0.0), larger.friction(w, s), atol=1e-14)
+
+
+@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+@pytest.mark.parametrize("factor", [10.0, 0.1])
+def test_steps_of_the_speed_show_both_effects_of_rate_and_state(evolution, factor):
+    """f jumps by a ln(V/V') and ends (a - b) ln(V/V') away from where it was."""
+    law = of("rate_and_state", reference_friction=0.6, reference_speed=1e-6, a=0.01, b=0.015,
+             critical_slip=1e-5, evolution=evolution)  # fmt: skip
+    V, far = 3e-5, np.array([0.0, 1.0])
+    before = law.exact(law.rest(), 1, V, far)[-1]
+    after = law.exact(before, 1, factor * V, far)
+    f = law.friction(after, 1, factor * V) - law.friction(before, 1, V)
+    np.testing.assert_allclose(f, np.log(factor) * np.array([0.01, 0.01 - 0.015]), rtol=0.0, atol=1e-15)
+    steady = 0.6 + (0.01 - 0.015) * np.log(V / 1e-6)
+    assert law.friction(before, 1, V) == pytest.approx(steady, rel=1e-14)
+
+
+def test_rate_and_state_ages_at_rest_and_has_no_steady_state_there():
+    law = of("rate_and_state", reference_friction=0.6, reference_speed=1e-6, a=0.01, b=0.015,
+             critical_slip=1e-5)  # fmt: skip
+    aged = law.pause(law.rest(), 90.0)
+    healed = law.friction(aged, 1, 1e-6) - law.friction(law.rest(), 1, 1e-6)
+    assert healed == pytest.approx(0.015 * np.log(10.0), rel=1e-12)
+    with pytest.raises(ValueError, match="found the speed 0 m/s"):
+        law.exact(law.rest(), 1, 0.0, np.array([1.0]))
+
+
+def test_loads_below_breakaway_do_not_let_the_elasto_plastic_law_drift():
+    """Where Dahl's law creeps under a load that never slips it, the elasto-plastic law does not."""
+    curve = CURVE | {"sigma0_over_load": 4e4}
+    creeps, stays = of("lugre", **curve), of("elasto_plastic", breakaway_ratio=0.8, **curve)
+    drift = []
+    for law in (creeps, stays):
+        z = adaptively(law, law.rest(), 1, 1e-4, 6e-6, np.array([6e-6]))[-1]
+        first = z
+        for _ in range(20):
+            for s in (-1, 1):
+                z = adaptively(law, z, s, 1e-4, 3e-6, np.array([3e-6]))[-1]
+        drift.append(abs(float(z[0] - first[0])))
+    assert drift[0] > 1e-2 and drift[1] <= 1e-13
+
+
+@pytest.mark.parametrize(
+    "name, changes, said",
+    [
+        ("maxwell_slip", {"elements": ((1e4, 0.0),)}, "above 0"),
+        ("maxwell_slip", {"elements": ((1e4,),)}, "rows of 2 finite numbers"),
+        ("gms", {"elements": ((-1.0, 0.1),)}, "above 0"),
+        ("table", {"shape": ((1e-6, 0.1), (2e-6, 0.2))}, "grow from 0"),
+        ("table", {"shape": ((0.0, 0.1), (0.0, 0.2))}, "grow from 0"),
+        ("bouc_wen", {"gamma": 1.0}, "< 1"),
+        ("elasto_plastic", {"breakaway_ratio": 1.0}, "< 1"),
+        ("rate_and_state", {"evolution": "both"}, "'ageing' or 'slip'"),
+    ],
+)
+def test_parameters_outside_their_range_are_refused(name, changes, said):
+    good = random.parameters(name, np.random.default_rng(0))
+    made(LAWS[name], good)
+    with pytest.raises(ValueError, match=said):
+        made(LAWS[name], good | changes)

@@ -1,0 +1,164 @@
+"""What laws promise on random motions: independence of the rate, memory, drift, work, mirror images."""
+
+import os
+
+import numpy as np
+import pytest
+import random_laws as random
+
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.integrate import exactly, work
+from galinx.solvers.parameters import made
+
+SETS = range(20 if os.environ.get("GALINX_THOROUGH") else 5)
+ALL = (*random.EXACT, *random.INTEGRATED)
+
+
+def drawn(name, seed):
+    """A law, and the numbers that follow."""
+    rng = np.random.default_rng([seed, *name.encode(), 7])
+    return made(LAWS[name], random.parameters(name, rng)), rng
+
+
+def moved(law, z, way, V=1e-3):
+    """The state after some signed displacements [m]."""
+    for x in way:
+        if x:
+            z = exactly(law, z, int(np.sign(x)), V, abs(x), np.array([abs(x)]))[-1]
+    return z
+
+
+def there_and_back(law, z, x, V=1e-3):
+    """f at the ends of a displacement and of its return."""
+    out = moved(law, z, [x], V)
+    home = moved(law, out, [-x], V)
+    return float(law.friction(out, 1, V)), float(law.friction(home, 1, V)), home
+
+
+@pytest.mark.parametrize("name", random.RATE_INDEPENDENT)
+@pytest.mark.parametrize("seed", SETS)
+def test_laws_without_time_are_independent_of_the_rate(name, seed):
+    law, rng = drawn(name, seed)
+    assert not law.depends_on_speed
+    way = rng.uniform(-1.0, 1.0, 6) * random.LENGTH
+    at = [moved(law, law.rest(), way, V) for V in (1e-5, 3.0)]
+    np.testing.assert_array_equal(at[0], at[1])
+
+
+@pytest.mark.parametrize("name", ["lugre", "stribeck", "gms", "elasto_plastic", "rate_and_state"])
+def test_laws_of_the_speed_depend_on_it(name):
+    law, _ = drawn(name, 0)
+    assert law.depends_on_speed
+    way = [20.0 * random.LENGTH]
+    f = [law.friction(moved(law, law.rest(), way, V), 1, V) for V in (1e-4, 2e-2)]
+    assert abs(f[0] - f[1]) > 1e-3
+
+
+@pytest.mark.parametrize("seed", SETS)
+def test_maxwell_slip_remembers_points_of_reversal(seed):
+    """A minor loop closes; when it has, f goes on as if it had never been."""
+    law, rng = drawn("maxwell_slip", seed)
+    z = moved(law, law.rest(), [2.0 * random.LENGTH, -rng.uniform(0.3, 1.0) * random.LENGTH])
+    minor = rng.uniform(0.05, 0.3) * random.LENGTH
+    _, _, home = there_and_back(law, z, minor)
+    np.testing.assert_allclose(home, z, rtol=0.0, atol=1e-14)
+    inner = moved(law, z, [minor, -0.5 * minor, 0.4 * minor, -0.9 * minor])
+    np.testing.assert_allclose(inner, z, rtol=0.0, atol=1e-14)
+    beyond = [moved(law, start, [-0.2 * random.LENGTH]) for start in (home, z)]
+    np.testing.assert_allclose(beyond[0], beyond[1], rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["dahl", "lugre"])
+@pytest.mark.parametrize("seed", SETS)
+def test_dahl_and_lugre_drift(name, seed):
+    """Their minor loops do not close: they lie towards zero."""
+    law, rng = drawn(name, seed)
+    z = moved(law, law.rest(), [2.0 * random.LENGTH, -0.1 * random.LENGTH])
+    minor = rng.uniform(0.1, 0.3) * random.LENGTH
+    _, _, home = there_and_back(law, z, -minor)
+    assert np.abs(home - z).max() > 1e-4
+
+
+@pytest.mark.parametrize("name", [name for name in ALL if name != "table"])
+@pytest.mark.parametrize("seed", SETS)
+def test_work_in_a_closed_loop_is_never_negative(name, seed):
+    """Of loops that the state closes, too: what is stored is given back."""
+    law, rng = drawn(name, seed)
+    V, length = 1e-3, float(rng.uniform(0.1, 2.0) * random.LENGTH)
+    z, done = law.rest(), []
+    for n in range(60):
+        s = 1 if n % 2 == 0 else -1
+        if n >= 56:
+            done.append(float(work(law, z, s, V, length, exactly)))
+        z = exactly(law, z, s, V, length, np.array([length]))[-1]
+    assert done[0] + done[1] >= -1e-15 * length
+    assert done[0] + done[1] == pytest.approx(done[2] + done[3], rel=1e-2, abs=1e-3 * length)
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("seed", SETS)
+def test_a_mirrored_motion_has_mirrored_friction(name, seed):
+    law, rng = drawn(name, seed)
+    if name == "table":
+        law = LAWS["table"](law.shape)
+    z = [law.rest(), law.rest()]
+    for s, V, length, _ in random.strokes(rng, 3):
+        slip, f, done = np.linspace(0.0, length, 4), [], []
+        for i, sign in enumerate((s, -s)):
+            done.append(float(work(law, z[i], sign, V, length, exactly)))
+            states = exactly(law, z[i], sign, V, length, slip)
+            f.append(law.friction(states, sign, V))
+            z[i] = states[-1]
+        np.testing.assert_allclose(f[0], -f[1], rtol=0.0, atol=1e-14)
+        assert done[0] == pytest.approx(done[1], rel=1e-12, abs=1e-18)
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("seed", SETS)
+def test_work_and_slope_are_those_of_the_friction(name, seed):
+    """By quadrature and differences of f alone."""
+    law, rng = drawn(name, seed)
+    z, V = moved(law, law.rest(), [random.LENGTH, -0.37 * random.LENGTH]), 1e-3
+    length = float(rng.uniform(0.2, 1.0) * random.LENGTH)
+    at, weight = np.polynomial.legendre.leggauss(7)
+    pieces = np.linspace(0.0, length, 61)
+    half = 0.5 * np.diff(pieces)
+    places = (0.5 * (pieces[1:] + pieces[:-1]))[:, None] + half[:, None] * at
+    f = law.friction(exactly(law, z, 1, V, length, places.ravel()), 1, V).reshape(places.shape)
+    wanted = (f * half[:, None] * weight).sum()
+    found = float(work(law, z, 1, V, length, exactly))
+    # A kink within one of the 60 pieces costs up to 1/8 of its slope times the piece squared.
+    assert found == pytest.approx(wanted, rel=2e-4, abs=1e-6 * length)
+    h = 1e-6 * length
+    after = exactly(law, z, 1, V, length, np.array([0.0, h]))
+    slope = law.slope(z if name == "table" else after[0], 1, V)
+    if slope is not None:
+        differences = np.diff(law.friction(after, 1, V))[0] / h
+        assert float(slope) == pytest.approx(differences, rel=1e-4, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", [name for name in ALL if LAWS[name].broadcasts])
+def test_many_laws_at_once_are_each_of_them(name):
+    rng = np.random.default_rng(11)
+    one = [random.parameters(name, rng) for _ in range(5)]
+    together = {key: np.array([given[key] for given in one])[:, None] for key in one[0]}
+    laws, many = [made(LAWS[name], given) for given in one], made(LAWS[name], together)
+    single, z = [law.rest() for law in laws], np.broadcast_to(many.rest(), (5, 1, 1))
+    for s, V, length, rest in random.strokes(rng):
+        slip = np.linspace(0.0, length, 4)
+        z = many.pause(z, rest)
+        done = work(many, z, s, V, length, exactly)
+        slopes = many.slope(z, s, V)
+        z = many.exact(z, s, V, slip)
+        f = many.friction(z, s, V)
+        for i, law in enumerate(laws):
+            single[i] = law.pause(single[i], rest)
+            alone = float(work(law, single[i], s, V, length, exactly))
+            assert float(done[i]) == pytest.approx(alone, rel=1e-13)
+            if slopes is not None:
+                assert float(slopes[i, 0]) == pytest.approx(law.slope(single[i], s, V), rel=1e-13)
+            states = law.exact(single[i], s, V, slip)
+            np.testing.assert_array_equal(z[i], states)
+            np.testing.assert_array_equal(f[i], law.friction(states, s, V))
+            single[i] = states[-1]
+        z = z[:, -1:]

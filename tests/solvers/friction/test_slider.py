@@ -1,0 +1,113 @@
+"""The slider against published numbers, closed forms, another integration and its energy."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp, trapezoid
+
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.slider import Slider, cycle, pull
+from galinx.solvers.parameters import made
+
+CURVE = {"mu_c": 1.0, "mu_s": 1.5, "stribeck_velocity": 1e-3}
+BRISTLES = {"sigma0_over_load": 1e5, "sigma1_over_load": np.sqrt(1e5), "sigma2_over_load": 0.4}
+
+
+def of(name, **parameters):
+    return made(LAWS[name], parameters)
+
+
+def test_lugre_sticks_and_slips_as_published():
+    """Canudas de Wit et al. 1995, Table 1 and Fig 6, to the digits of another program."""
+    slider = Slider(1.0, 2.0, 0.0, 0.1, 30.0)
+    found = cycle(pull(slider, of("lugre", **CURVE, **BRISTLES), 1.0), 0.1)
+    assert f"{found.period:.4f}" == "6.3627"
+    assert f"{found.slip:.5f}" == "0.63627"
+    assert f"{found.peak:.5f}" == "0.36982"
+    assert abs(found.least) < 1e-3
+
+
+def test_a_slider_under_constant_friction_swings_about_the_drive():
+    """v = V (1 - cos ωt) after breakaway at k V t = N μ, and it sticks at no time."""
+    slider = Slider(2.0, 8.0, 0.0, 0.1, 20.0)
+    ride = pull(slider, of("coulomb", mu_c=0.5), 1.0)
+    found = cycle(ride, 0.1)
+    assert found.period == pytest.approx(np.pi, rel=1e-8)
+    assert found.peak == pytest.approx(0.2, rel=1e-7) and found.least < 1e-4
+    began = 0.5 / (8.0 * 0.1)
+    later = np.maximum(ride.t - began, 0.0)
+    np.testing.assert_allclose(ride.v, 0.1 * (1.0 - np.cos(2.0 * later)), atol=1e-7)
+
+
+def test_with_a_larger_friction_at_rest_it_sticks():
+    """It breaks away at N μ_S; Stribeck's curve with μ_S only at rest leaves Coulomb's motion."""
+    law = of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-6)
+    slider = Slider(2.0, 8.0, 0.0, 0.1, 40.0)
+    found = cycle(pull(slider, law, 1.0), 0.1)
+    swing = np.hypot(0.1, 0.2 / 8.0 * 2.0)  # of v, as (μ_S - μ_C) N/k is let go at once
+    assert found.peak == pytest.approx(0.1 + swing, rel=1e-3)
+    assert found.least == pytest.approx(0.0, abs=1e-9)
+    assert found.slip == pytest.approx(0.1 * found.period, rel=1e-9)
+
+
+def test_damping_ends_stick_slip():
+    slider = Slider(1.0, 2.0, 1.0, 0.1, 60.0)
+    ride = pull(slider, of("coulomb", mu_c=0.5), 1.0)
+    assert ride.v[-1] == pytest.approx(0.1, rel=1e-6) and np.isnan(cycle(ride, 0.1).period)
+
+
+def test_dahls_slider_is_the_equations_integrated_by_somebody_else():
+    """In one piece, with signed velocities and another scheme."""
+    slider, N, μ, λ = Slider(1.0, 2.0, 0.3, 0.1, 3.0), 1.0, 0.5, 50.0
+
+    def rates(t, y):
+        x, v, f = y
+        force = 2.0 * (0.1 * t - x) + 0.3 * (0.1 - v) - N * f
+        return [v, force, λ * v * (1.0 - np.sign(v) * f / μ)]
+
+    times = np.linspace(0.0, 3.0, 7)
+    wanted = solve_ivp(
+        rates, (0.0, 3.0), [0.0] * 3, "DOP853", times, rtol=1e-12, atol=1e-14, max_step=1e-2
+    )
+    ride = pull(slider, of("dahl", mu_c=μ, sigma0_over_load=λ), N)
+    for name, row in zip(("x", "v", "f"), wanted.y):
+        np.testing.assert_allclose(np.interp(times, ride.t, getattr(ride, name)), row, atol=2e-5)
+
+
+ELEMENTS = ((300.0, 0.3), (100.0, 0.3))
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        of("dahl", mu_c=0.6, sigma0_over_load=300.0), of("maxwell_slip", elements=ELEMENTS),
+        of("bouc_wen", mu_c=0.6, yield_displacement=2e-3, exponent=2.0),
+        of("elasto_plastic", **CURVE | {"stribeck_velocity": 1e-2}, sigma0_over_load=300.0),
+        of("gms", **CURVE | {"stribeck_velocity": 1e-1}, elements=ELEMENTS, attraction_rate=20.0),
+        of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-2),
+        of("table", shape=((0.0, -0.1), (5e-3, 0.4), (1e-2, 0.5))),
+        of("rate_and_state", reference_friction=0.6, reference_speed=1e-2, a=0.1, b=0.12,
+           critical_slip=0.02),
+    ],
+    ids=lambda law: type(law).__name__,
+)  # fmt: skip
+def test_the_drive_gives_what_friction_takes_and_the_spring_and_the_mass_hold(law):
+    slider, N = Slider(1.0, 20.0, 2.0, 0.1, 4.0), 1.3
+    ride = pull(slider, law, N)
+    assert ride.t[-1] == pytest.approx(4.0) and (np.diff(ride.t) >= 0.0).all()
+    e, over = 0.1 * ride.t - ride.x, 0.1 - ride.v
+    given = trapezoid(0.1 * (20.0 * e + 2.0 * over), ride.t)
+    taken = trapezoid(N * ride.f * ride.v + 2.0 * over**2, ride.t)
+    held = 0.5 * ride.v[-1] ** 2 + 10.0 * e[-1] ** 2
+    assert given == pytest.approx(taken + held, rel=1e-4)
+    np.testing.assert_allclose(
+        np.diff(ride.x), 0.5 * (ride.v[1:] + ride.v[:-1]) * np.diff(ride.t), atol=1e-5
+    )
+
+
+def test_what_rings_without_end_is_told(monkeypatch):
+    import galinx.solvers.friction.slider as module
+
+    monkeypatch.setattr(module, "PIECES", 3)
+    with pytest.raises(ValueError, match="stopped, started and switched 3 times"):
+        law = of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-2)
+        pull(Slider(2.0, 8.0, 0.0, 0.1, 40.0), law, 1.0)

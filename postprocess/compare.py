@@ -139,6 +139,18 @@ def _depth(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None
 
 
+def _ends(data: dict[str, Any], _: float) -> float:
+    size = data[of.HALF_WIDTH[CLOSED_FORM].path]
+    off = [data[row[FEM].path] - data[row[CLOSED_FORM].path] for row in (of.HALF_WIDTH, of.CENTRE)]
+    return float((np.abs(off) / size).max())
+
+
+def _largest_pressure(data: dict[str, Any], _: float) -> float | None:
+    fem, exact = (data[of.LARGEST[method].path] for method in (FEM, CLOSED_FORM))
+    off = np.abs(fem / exact - 1.0)
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
+
+
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -185,6 +197,14 @@ RULES: Registry[Rule] = Registry(
         "estimate": Rule(
             "estimated error of K_I and moments, relative",
             (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
+        ),
+        "ends": Rule(
+            "ends of the contact, over its half-width",
+            (*of.HALF_WIDTH.values(), *of.CENTRE.values()), _ends, tolerances=1.0,
+        ),
+        "largest pressure": Rule(
+            "largest contact pressure, relative", (*of.LARGEST.values(),), _largest_pressure,
+            tolerances=1.0,
         ),
         "exponents": Rule(
             "fitted edge exponents, absolute",

@@ -50,6 +50,7 @@ class Parameter:
         usual: where it usually lies; beyond, its unit may be another than meant.
         options: the texts that it may be; none for a number.
         count: of the numbers that it is, 0 for one number.
+        pairs: is it a list of pairs of numbers?
         optional: may all of these be left out?
         note: what documentation says beyond ``about``.
     """
@@ -64,6 +65,7 @@ class Parameter:
     count: int = 0
     optional: bool = False
     note: str = ""
+    pairs: bool = False
 
 
 def parameter(
@@ -96,6 +98,12 @@ def numbers(
     """So many numbers as a dataclass's field, a tuple; an empty one where they may be left out."""
     known = Parameter(key, about, unit, usual=usual, count=count, optional=optional, note=note)
     return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
+
+
+def pairs(key: str, about: str, unit: str, *, note: str = "") -> Any:
+    """Pairs of numbers of one unit as a dataclass's field, a tuple of tuples."""
+    known = Parameter(key, about, unit, note=note, pairs=True)
+    return dataclasses.field(metadata={_METADATA: known})
 
 
 def choice(key: str, about: str, options: tuple[str, ...], *, note: str = "") -> Any:
@@ -141,6 +149,9 @@ def check(model: Any) -> None:
             if value not in known.options:
                 options = " or ".join(map(repr, known.options))
                 raise ValueError(f"{field.name} = {value!r}: expected {options}")
+        elif known.pairs:
+            if any(len(pair) != 2 or not all(map(isfinite, pair)) for pair in value):
+                raise ValueError(f"{key}: expected pairs of finite numbers")
         elif known.count:
             left_out = known.optional and not value
             if not left_out and (len(value) != known.count or not all(map(isfinite, value))):

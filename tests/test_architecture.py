@@ -36,8 +36,8 @@ FILES = {
 }
 #: What the mechanics outside solvers/fem/ is made of.
 PURE = {
-    "solvers", "registry", "numpy", "scipy", "math", "abc", "dataclasses", "functools", "collections",
-    "typing"
+    "solvers", "registry", "numpy", "scipy", "math", "abc", "dataclasses", "functools", "itertools",
+    "collections", "typing",
 }  # fmt: skip
 #: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics.
 OTHERS = {"postprocess": {"solvers"}}

@@ -12,6 +12,7 @@ from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.postprocess.quantities.quantity import FOUND
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
@@ -114,7 +115,7 @@ def plan_fem(
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=solve.modes[-1], shared_speeds=shared,
+        mode=FOUND if scene.body.found else solve.modes[-1], shared_speeds=shared,
     )  # fmt: skip
 
 

@@ -132,7 +132,7 @@ def _crossings(scene: Scene, all_speeds: Sequence[float]) -> NDArray[np.float64]
     """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
     c = np.array(all_speeds)
     with np.errstate(divide="ignore"):
-        often = scene.friction.pre_sliding / (2.0 * scene.punch.profile.half_width * c)
+        often = scene.friction.pre_sliding / (2.0 * scene.body.half_width * c)
     return np.where(c > 0.0, often, np.nan)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from galinx.app.console.program import program
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.values import Choice, Kind, Number, NumberList
+from galinx.app.scene.values import Choice, Kind, Number, NumberList, Pairs
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
 
@@ -149,6 +149,8 @@ class ModelSection(Section):
         value: Kind
         if known.options:
             value = Choice(known.options)
+        elif known.pairs:
+            value = Pairs(known.unit)
         elif known.count:
             value = NumberList(known.unit, known.count)
         else:

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from math import prod
 from typing import Any
@@ -11,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.scene.values import Spread
-from galinx.postprocess.quantities.quantity import OWN_PRESSURE, PUNCH
+from galinx.postprocess.quantities.quantity import FINITE, FOUND, OWN_PRESSURE, PUNCH
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.parameters import made
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
+from galinx.solvers.solution import Body
 
 
 @dataclass(frozen=True)
@@ -159,6 +161,17 @@ class Scene:
     def solid(self) -> Solid:
         """The elastic solid."""
         return self.half_plane.solid
+
+    @cached_property
+    def body(self) -> Body:
+        """What slides over what; a pressure of the user's own is not among it."""
+        return Body(self.solid, self.punch.profile, self.punch.load, None, self.half_plane.yield_strength)
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Words by which quantities and rules say that they are of this mode."""
+        own = self.solve.own_pressure
+        return (*self.solve.modes, *(FOUND,) * self.body.found, *(FINITE,) * (own or self.body.finite))
 
     @property
     def sha256(self) -> str:

@@ -176,6 +176,21 @@ def _below(Y: float) -> float:
     return Y
 
 
+@dataclass(frozen=True)
+class Pairs:
+    """A list of pairs of numbers in ``unit``."""
+
+    unit: str
+
+    def __call__(self, value: Any) -> tuple[tuple[float, float], ...]:
+        if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+            raise ValueError(f"found {excerpt(value)}, expected a list of pairs")
+        return tuple((to_si(one, self.unit), to_si(other, self.unit)) for one, other in value)
+
+    def schema(self) -> dict[str, Any]:
+        return _pairs(0)
+
+
 class Points:
     """Pairs [X/a, Y/a] below the surface."""
 

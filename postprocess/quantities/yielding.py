@@ -9,7 +9,7 @@ from galinx.postprocess.quantities.quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    OWN_PRESSURE,
+    FINITE,
     PUNCH,
     QUANTITIES,
     STATE,
@@ -44,34 +44,34 @@ def _both(
 
 VON_MISES = _both(
     "von_mises", "N/(2a)", f"largest von Mises stress, on the surface and inside; {_INFINITE}",
-    lambda s, _: s.strength.von_mises.value, OWN_PRESSURE, "largest stresses",
+    lambda s, _: s.strength.von_mises.value, FINITE, "largest stresses",
 )  # fmt: skip
 VON_MISES_X = _both(
     "von_mises_X_over_a", "1",
     "place of the largest von Mises stress along the surface, over the half-width",
-    lambda s, _: s.strength.von_mises.X, OWN_PRESSURE, range=Range(),
+    lambda s, _: s.strength.von_mises.X, FINITE, range=Range(),
 )  # fmt: skip
 VON_MISES_Y = _both(
     "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
-    lambda s, _: s.strength.von_mises.Y, OWN_PRESSURE, range=_BELOW,
+    lambda s, _: s.strength.von_mises.Y, FINITE, range=_BELOW,
 )  # fmt: skip
 SHEAR = _both(
     "max_shear", "N/(2a)", f"largest shear stress in the plane, on the surface and inside; {_INFINITE}",
-    lambda s, _: s.strength.shear.value, OWN_PRESSURE, "largest stresses",
+    lambda s, _: s.strength.shear.value, FINITE, "largest stresses",
 )  # fmt: skip
 SHEAR_X = _both(
     "max_shear_X_over_a", "1", "place of the largest shear stress along the surface, over the half-width",
-    lambda s, _: s.strength.shear.X, OWN_PRESSURE, range=Range(),
+    lambda s, _: s.strength.shear.X, FINITE, range=Range(),
 )  # fmt: skip
 SHEAR_Y = _both(
     "max_shear_Y_over_a", "1", "place of the largest shear stress outwards, over the half-width",
-    lambda s, _: s.strength.shear.Y, OWN_PRESSURE, range=_BELOW,
+    lambda s, _: s.strength.shear.Y, FINITE, range=_BELOW,
 )  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, OWN_PRESSURE,
+    lambda s, _: s.strength.first_load, FINITE,
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",

@@ -1,7 +1,7 @@
 """What finite elements of a scene need: mesh, degrees, solver, memory."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,9 @@ from galinx.solvers.solution import Places
 
 #: Distance over a from a punch edge that no mesh resolves: rounding of positions.
 _NEAREST = 1e-12
+
+#: Distance over a from a free end within which cells need not be finer: stresses vary like its root.
+_NEAR_FREE_END = 1e-2
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -100,6 +103,8 @@ def plan_fem(
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
+    if scene.body.finite:
+        wanted = wanted_of_free_ends(wanted)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
@@ -129,6 +134,13 @@ def wanted_for(tolerance: float, places: Places, exponent: float, spread: float)
     farthest = float(np.hypot(X, Y).max())
     around = bool(len(places.around))
     return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, spread)
+
+
+def wanted_of_free_ends(wanted: Wanted) -> Wanted:
+    """The same where all stresses are finite: cells may be larger, and rounding harms less in these."""
+    if wanted.nearest is None:
+        return wanted
+    return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END), exponent=0.5)
 
 
 def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:

@@ -28,6 +28,7 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import ContactStates, Part, combined
 from galinx.solvers.fem.space import Space
 from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
 from galinx.solvers.solution import Surface
@@ -161,12 +162,13 @@ def _parabola(task: Task, loads: NDArray, K: NDArray) -> _Solved:
         loads: ∫σ_YY of every part, (states, 3).
         K: intensities of every part at both ends, (states, 2, 3).
     """
-    body = task.body
+    body, punch = task.body, task.body.profile
+    assert isinstance(punch, Parabolic)
     A = np.concatenate([loads[:, None], K], axis=1)
     amplitudes = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
     _, c1, c2 = amplitudes.T
     with np.errstate(invalid="ignore"):
-        h = np.sqrt(2.0 * body.profile.radius * c2 * body.displacement)
+        h = np.sqrt(2.0 * punch.radius * c2 * body.displacement)
     free = np.ones((len(A), 2), dtype=bool)
     return amplitudes, h, h * c1 / (2.0 * c2), free, c1**2 / (4.0 * c2)
 

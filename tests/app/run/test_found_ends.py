@@ -23,7 +23,8 @@ def scene(
     punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6
 ):
     return parse(
-        f"[solid]\n{solid}\n[punch]\nload = 5e4\n{punch}\n[friction]\nmu_c = {mu}\nsigma0_over_load = 6e4\n"
+        f"[solid]\n{solid}\n[punch]\nload = 5e4\n{punch}\n"
+        f"[friction]\nmu_c = {mu}\nsigma0_over_load = 6e4\n"
         f"[motion]\nc = {c}\nX_over_L = [0.1, 0.7]\n[solve]\n{solve}\n[output]\nquantities = {output}\n"
     )
 
@@ -67,7 +68,7 @@ def test_a_parabola_is_archived_with_its_ends_and_fields():
 
 
 def test_hertz_and_where_the_solid_yields_below():
-    """Johnson, Contact Mechanics: τ_max 0.300283 p₀ at 0.786151 a, von Mises 0.557516 p₀ at 0.704290 a."""
+    """τ_max 0.300283 p₀ at 0.786151 a, von Mises 0.557516 p₀ at 0.704290 a below the middle."""
     punch = 'profile = "parabolic"\nradius = 0.02'
     solid = 'E = "200 GPa"\nnu = 0.3\nrho = 7850\nyield_strength = "300 MPa"'
     result = galinx.compute(scene(punch, solid, "0", output='["sif", "yield"]', mu=1e-9))

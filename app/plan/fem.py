@@ -13,6 +13,8 @@ from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.quantities.quantity import FOUND
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
@@ -23,6 +25,10 @@ _NEAREST = 1e-12
 
 #: Distance over a from a free end within which cells need not be finer: stresses vary like its root.
 _NEAR_FREE_END = 1e-2
+
+#: Profiles that are combinations of few shapes whatever the contact is; and what plans call the mode in
+#: which every state of another has a mesh of its own.
+LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -44,7 +50,7 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         wanted: what the mesh has to be good for.
-        mode: ``"contact"``, ``"traction"`` or ``"own pressure"``.
+        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND`` or ``OWN_MESHES``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
     """
@@ -120,8 +126,14 @@ def plan_fem(
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=FOUND if scene.body.found else solve.modes[-1], shared_speeds=shared,
+        mode=_mode(scene), shared_speeds=shared,
     )  # fmt: skip
+
+
+def _mode(scene: Scene) -> str:
+    if not scene.body.found:
+        return scene.solve.modes[-1]
+    return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
 
 
 def wanted_for(tolerance: float, places: Places, exponent: float, spread: float) -> Wanted:

@@ -109,8 +109,8 @@ def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
         raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
     if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
         raise BadInput(
-            f"solve.methods: {about}; finite elements find the ends of parabolic and of tilted flat "
-            'punches only, the integral equation all: add "closed_form"'
+            f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
+            'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
         )
 
 

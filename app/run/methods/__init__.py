@@ -5,6 +5,7 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
+from galinx.app.plan.fem import LINEAR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
@@ -13,8 +14,6 @@ from galinx.postprocess.quantities import Quantity, states, stresses, validity, 
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH
 from galinx.registry import Registry
 from galinx.solvers.profiles import exponent
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body
 
 __all__ = ["METHODS", "MODES", "Method", "MethodKind"]
@@ -49,6 +48,9 @@ def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
     return ""
 
 
+#: What is read off the pressure, point by point.
+_OF_PRESSURE = (states.LARGEST[FEM], states.LARGEST_X[FEM])
+
 #: What is told of two sharp edges alone.
 _OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
 
@@ -79,8 +81,11 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if body.found and quantity is None and not isinstance(body.profile, (Flat, Parabolic)):
-        return "they find the ends of contacts of parabolic and of tilted flat punches only"
+    if body.found and not isinstance(body.profile, LINEAR):
+        if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
+            return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
+        if quantity and (quantity.asked_by or quantity in _OF_PRESSURE):
+            return "of such a contact finite elements find the ends and the forces"
     if why := _of_found_ends(body, quantity):
         return why
     if quantity is states.SLOPE and (body.pressure or not body.flat):

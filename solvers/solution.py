@@ -57,9 +57,14 @@ class Body:
         return ends_are_found(self.profile)
 
     @cached_property
+    def free(self) -> bool:
+        """Are both ends of the contact found, whatever the load is?"""
+        return not any(getattr(self.profile, "sharp", (True, True)))
+
+    @cached_property
     def finite(self) -> bool:
         """Are all stresses finite, at ends that are found and without a tip?"""
-        return not any(getattr(self.profile, "sharp", (True, True))) and not jumps(self.profile)
+        return self.free and not jumps(self.profile)
 
     @cached_property
     def half_width(self) -> float:

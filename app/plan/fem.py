@@ -109,7 +109,7 @@ def plan_fem(
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
-    if scene.body.finite:
+    if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
@@ -149,7 +149,7 @@ def wanted_for(tolerance: float, places: Places, exponent: float, spread: float)
 
 
 def wanted_of_free_ends(wanted: Wanted) -> Wanted:
-    """The same where all stresses are finite: cells may be larger, and rounding harms less in these."""
+    """The same where stresses at the ends are finite: cells may be larger, and rounding harms less in these."""
     if wanted.nearest is None:
         return wanted
     return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END), exponent=0.5)

@@ -24,7 +24,7 @@ from galinx.solvers.solids.solid import Response
 #: Positions nearer than this to where the pressure is infinite are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6
 #: Places at which a largest pressure is looked for, and how often nearer.
-_LOOKED_AT, _ROUNDS = 41, 6
+_LOOKED_AT, _ROUNDS = 41, 8
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         i = int(np.clip(np.argmax(p), 1, len(r) - 2))
         step = r[1] - r[0]
         low, high = r[i] - step, r[i] + step
-        if step < 1e-4:
+        if step < 1e-6:  # next to a kink the largest pressure may have a cusp
             break
     left, middle, right = p[i - 1 : i + 2]
     bend = left - 2.0 * middle + right

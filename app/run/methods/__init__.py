@@ -48,8 +48,8 @@ def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
     return ""
 
 
-#: What is read off the pressure, point by point.
-_OF_PRESSURE = (states.LARGEST[FEM], states.LARGEST_X[FEM])
+#: What finite elements give at points, of contacts on meshes of their own.
+_OF_CONTACT = (stresses.PRESSURE[FEM], *validity.TENSION[FEM])
 
 #: What is told of two sharp edges alone.
 _OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
@@ -84,8 +84,9 @@ def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None
     if body.found and not isinstance(body.profile, LINEAR):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
-        if quantity and (quantity.asked_by or quantity in _OF_PRESSURE):
-            return "of such a contact finite elements find the ends and the forces"
+        told = not quantity or quantity in _OF_CONTACT or not quantity.asked_by
+        if not told or quantity in states.LARGEST.values() or quantity in states.LARGEST_X.values():
+            return "of such a contact finite elements find the ends, the forces and the pressure"
     if why := _of_found_ends(body, quantity):
         return why
     if quantity is states.SLOPE and (body.pressure or not body.flat):

@@ -7,6 +7,7 @@ vanishing intensities at both ends are linear in their amplitudes. A pass or two
 coarse solution is near.
 """
 
+import dataclasses
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,13 +22,16 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.ladder import WorkDone
 from galinx.meshes.kind import DEGREES
 from galinx.meshes.kinks import with_kinks
-from galinx.postprocess.intensity import TERMS, end_intensity
+from galinx.postprocess.intensity import TERMS, end_intensity, places_at_end, towards_end
+from galinx.postprocess.pressure import contact_recovery
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
+from galinx.solvers.fem.space import Space
 from galinx.solvers.profiles import kinks
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
+from galinx.solvers.solution import Surface
 
 #: Degree at which a contact is looked for, and how much higher than for a flat punch the last one is.
 _COARSE, _MORE = 4, 2
@@ -56,6 +60,7 @@ class Contact:
         v0: indentation over N/(2μ).
         normal, tangential: resultants over N/2.
         unseen: change of both over the half-width that fewer terms at the ends make.
+        σ_YY: over N/(2a) at the places on the surface, NaN beside the punch; of the last degree.
     """
 
     centre: float = 0.0
@@ -65,6 +70,7 @@ class Contact:
     normal: float = 0.0
     tangential: float = 0.0
     unseen: float = 0.0
+    σ_YY: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty(0))
 
 
 class KinkedAtSpeed:
@@ -138,8 +144,8 @@ class KinkedAtSpeed:
         raise SolveError(
             f"finite elements of degree {degree} did not find the ends of the contact of a "
             f"{self.task.body.profile.words()} at g = {g:g} (dimensionless) in {_PASSES} passes: the "
-            f"last changed them by {contact.change:.3g} of the half-width {contact.half_width:.4g} m, wanted "
-            f"{wanted:.3g}"
+            f"last changed them by {contact.change:.3g} of the half-width {contact.half_width:.4g} m, "
+            f"wanted {wanted:.3g}"
         )
 
     def _kinks(self, contact: Contact, coarse: bool) -> NDArray[np.float64]:
@@ -198,10 +204,29 @@ class KinkedAtSpeed:
         contact.centre += contact.half_width * share * moved
         contact.half_width *= 1.0 + share * grown
         amplitudes = np.array([v0, 1.0, moved, grown])
+        if degree == self._degree:
+            contact.σ_YY = self._pressure(space, normal @ amplitudes, places, g)
         contact.v0, contact.normal = float(v0), float(normal.sum(axis=0) @ amplitudes)
         tangential = np.array([part.tangential[0].sum() for part in parts])
         contact.tangential = float(tangential @ amplitudes)
         return float(amplitude), float(lean)
+
+    def _pressure(self, space: Space, forces: NDArray, places: NDArray, g: float) -> NDArray[np.float64]:
+        """σ_YY at the places on the surface, NaN beside the punch.
+
+        Off kinks and ends the pressure of the nodal forces is as good as their moments: cells are small
+        and many there. At the ends it falls as the local analysis says.
+        """
+        X, local = self.task.places.X, FlatPunch(self.task.response, g)
+        gaps = 1.0 + places.min(initial=1.0), 1.0 - places.max(initial=-1.0)
+        at_ends = [places_at_end(gap) for gap in gaps]
+        wanted = np.concatenate([X, at_ends[0] - 1.0, 1.0 - at_ends[1]])
+        recovery = contact_recovery(space.contact.s, space.degree, space.chart, wanted)
+        found, *ends = np.split(forces @ recovery.raw, [len(X), len(X) + len(at_ends[0])])
+        for d, known, values, α in zip((1.0 + X, 1.0 - X), at_ends, ends, (local.β, local.α)):
+            near = (d > 0.0) & (d < known[0])
+            found[near] = towards_end(d[near], known, values, float(α) + 1.0)
+        return found
 
     def _shapes(self, contact: Contact, r: NDArray) -> NDArray[np.float64]:
         """P and its derivatives by m and h, times h, over N/(2μ) at the contact's nodes, (3, nodes)."""
@@ -274,6 +299,12 @@ class KinkedPunches:
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return self._all("v0")
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Contact stress alone."""
+        σ_YY = np.array([contact.σ_YY for contact in self.contacts])
+        return Surface(self.at.task.places, σ_YY, np.full_like(σ_YY, np.nan))
 
     @property
     def estimates(self) -> dict[str, NDArray[np.float64]]:

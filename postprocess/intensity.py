@@ -1,4 +1,4 @@
-"""A pressure at the ends of the contact, told from their neighbourhood alone: is it singular, how it falls.
+"""A pressure near the ends of the contact, from there alone: is it singular, how does it fall?
 
 Jacobi moments over the whole contact converge slowly where the pressure has a logarithm inside, at a kink
 of the punch's slope. So the pressure between the end and the nearest kink is expanded, with a weight

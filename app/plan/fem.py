@@ -149,7 +149,7 @@ def wanted_for(tolerance: float, places: Places, exponent: float, spread: float)
 
 
 def wanted_of_free_ends(wanted: Wanted) -> Wanted:
-    """The same where stresses at the ends are finite: cells may be larger, and rounding harms less in these."""
+    """The same where stresses at the ends are finite: larger cells do, in which rounding harms less."""
     if wanted.nearest is None:
         return wanted
     return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END), exponent=0.5)

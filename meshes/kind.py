@@ -42,7 +42,7 @@ class Wanted:
         nearest: least distance over a from a punch edge of a place where stresses are wanted; None where
             K_I and the pressure's moments are wanted alone.
         farthest: largest coordinate over a of such a place.
-        exponent: of the strongest singularity of the pressure, in (-1, -1/2].
+        exponent: of the strongest singularity of the pressure, in (-1, -1/2]; 1/2 where it has none.
         around: are such places all round the edges?
         spread: how far apart the planes are in which the solid's fields are analytic, see
             :class:`galinx.solvers.solids.solid.Response`.

@@ -86,24 +86,29 @@ def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
             corner's right angle opens to a straight line.
     """
     half = np.pi / 2.0
-    corner, growth = _corner(half, refinement, fan)
+    right, growth = corner(half, refinement, fan)
     ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
     η = np.linspace(-np.pi, 0.0, 2 * refinement.sectors + 1)
     columns = [
         [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
-    quads = np.concatenate([corner, _mirrored(corner), np.reshape(columns, (-1, 4, 2))])
+    quads = np.concatenate([right, _mirrored(right), np.reshape(columns, (-1, 4, 2))])
     # The mirrored cells' second and third vertices have changed places.
     growth = np.concatenate([growth, growth ** [1.0, -1.0], np.ones((len(columns), 2))])
     corners_of_all = quads.reshape(-1, 2)
-    ξ_label, η_label = (_labels(values) for values in corners_of_all.T)
+    return Pattern(joined(corners_of_all, ξ[-1]), growth)
+
+
+def joined(corners: NDArray[np.float64], Ξ: float) -> QuadMesh:
+    """The mesh of quadrilaterals by their corners, (4·cells, 2), in the rectangle up to ξ = Ξ."""
+    ξ_label, η_label = (labels(values) for values in corners.T)
     keys = ξ_label * (η_label.max() + 1) + η_label
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    points, cells = corners_of_all[first], inverse.reshape(-1, 4)
-    return Pattern(QuadMesh(points, cells, _tagged_edges(points, cells, ξ[-1])), growth)
+    points, cells = corners[first], inverse.reshape(-1, 4)
+    return QuadMesh(points, cells, tagged_edges(points, cells, Ξ))
 
 
-def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """Whole numbers that are equal where values are, but for rounding.
 
     Rounded values would not do: two that differ in the last digit can lie on the two sides of a step.
@@ -115,7 +120,7 @@ def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
     return labels
 
 
-def _corner(
+def corner(
     size: float, refinement: Refinement, fan: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2), (m, 2)."""
@@ -153,7 +158,7 @@ def _mirrored(quads: NDArray[np.float64]) -> NDArray[np.float64]:
     return flipped
 
 
-def _tagged_edges(
+def tagged_edges(
     points: NDArray[np.float64], cells: NDArray[np.int64], Ξ: float
 ) -> dict[int, NDArray[np.int64]]:
     edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)

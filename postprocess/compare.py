@@ -105,6 +105,17 @@ def _pressure(data: dict[str, Any], _: float) -> float:
     return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING)).max()
 
 
+def _found_pressure(data: dict[str, Any], _: float) -> float:
+    """Over each state's largest; next to a tip, where it is infinite, nothing is compared."""
+    under = under_punch(data[at.SURFACE_X.path])
+    X, (fem, exact) = data[at.SURFACE_X.path][under], _both(data, at.PRESSURE, under)
+    tip = X[np.abs(exact).argmax(axis=1)][:, None]
+    infinite = np.isnan(data[of.LARGEST[CLOSED_FORM].path])[:, None]
+    left_out = infinite & (np.abs(X - tip) < _NEAR_TIP)
+    size = np.where(left_out, 0.0, np.abs(exact)).max(axis=1, keepdims=True)
+    return (np.where(left_out, 0.0, np.abs(fem - exact)) / size).max()
+
+
 def _in_plane(data: dict[str, Any], _: float) -> float:
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
     return (np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])).max()
@@ -139,6 +150,18 @@ def _depth(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None
 
 
+def _ends(data: dict[str, Any], _: float) -> float:
+    size = data[of.HALF_WIDTH[CLOSED_FORM].path]
+    off = [data[row[FEM].path] - data[row[CLOSED_FORM].path] for row in (of.HALF_WIDTH, of.CENTRE)]
+    return float((np.abs(off) / size).max())
+
+
+def _largest_pressure(data: dict[str, Any], _: float) -> float | None:
+    fem, exact = (data[of.LARGEST[method].path] for method in (FEM, CLOSED_FORM))
+    off = np.abs(fem / exact - 1.0)
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
+
+
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -149,6 +172,9 @@ def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
 
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
+
+#: Distance over a from an infinite pressure within which it is not compared.
+_NEAR_TIP = 0.02
 
 #: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
 _VANISHING = 0.1
@@ -186,6 +212,14 @@ RULES: Registry[Rule] = Registry(
             "estimated error of K_I and moments, relative",
             (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
         ),
+        "ends": Rule(
+            "ends of the contact, over its half-width",
+            (*of.HALF_WIDTH.values(), *of.CENTRE.values()), _ends, tolerances=1.0,
+        ),
+        "largest pressure": Rule(
+            "largest contact pressure, relative", (*of.LARGEST.values(),), _largest_pressure,
+            tolerances=1.0,
+        ),
         "exponents": Rule(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
@@ -198,6 +232,12 @@ RULES: Registry[Rule] = Registry(
         "sigma_YY": Rule(
             "σ_YY pointwise, relative",
             (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure, tolerances=1.0,
+        ),
+        # Where exponents are not assumed; at a sharp edge the rule before is the stricter one.
+        "sigma_YY of found ends": Rule(
+            "σ_YY of contacts whose ends are found, over the largest further than 0.02 a from a tip",
+            (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _found_pressure,
+            tolerances=10.0,
         ),
         "sigma_XX": Rule(
             "σ_XX pointwise, over itself or the largest",

@@ -52,6 +52,23 @@ class JacobiPressure:
         return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0])).T
 
 
+def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
+    """Chebyshev coefficients of smooth factors that vanish at ends of the contact, without these zeros.
+
+    Args:
+        p: of the factors, (states, ``MOMENTS``).
+        zeros: does each vanish at r = -1 and at r = 1, (states, 2)?
+    """
+    found = np.array(p)
+    for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
+        quotient = np.zeros((MOMENTS, MOMENTS))
+        for k, row in enumerate(np.eye(MOMENTS)):
+            part = np.polynomial.chebyshev.chebdiv(row[: k + 1], divisor)[0]
+            quotient[k, : len(part)] = part
+        found = np.where(zeros[:, [end]], found @ quotient, found)
+    return found
+
+
 def chebyshev(r: NDArray) -> NDArray[np.float64]:
     """T_0 … T_8 at r in [-1, 1]: (len(r), ``MOMENTS``)."""
     return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), MOMENTS - 1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
-from galinx.solvers.profiles import Profile
+from galinx.solvers.profiles import Profile, ends_are_found, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 
@@ -51,19 +51,49 @@ class Body:
     pressure: LinearPressure | None = None
     yield_strength: float | None = None
 
+    @cached_property
+    def found(self) -> bool:
+        """Are ends of the contact found? Every state has a half-width of its own then."""
+        return ends_are_found(self.profile)
+
+    @cached_property
+    def free(self) -> bool:
+        """Are both ends of the contact found, whatever the load is?"""
+        return not any(getattr(self.profile, "sharp", (True, True)))
+
+    @cached_property
+    def finite(self) -> bool:
+        """Are all stresses finite, at ends that are found and without a tip?"""
+        return self.free and not jumps(self.profile)
+
+    @cached_property
+    def half_width(self) -> float:
+        """a [m]; where ends are found that of a contact at rest without friction."""
+        if not self.found:
+            return half_width(self.profile)
+        from galinx.solvers.sie.found import contacts
+
+        rest = contacts(self.solid.response(0.0), np.zeros(1), self.profile, self.compression)
+        return float(rest.of("half_width")[0])
+
+    @property
+    def compression(self) -> float:
+        """N/μ [m]."""
+        return self.load / self.solid.μ
+
     def height(self, X: NDArray) -> NDArray[np.float64]:
         """The profile's height over N/(2μ) at X over a."""
-        return self.profile.height(self.profile.half_width * X) / self.displacement
+        return self.profile.height(self.half_width * X) / self.displacement
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
         """Its derivative: μ v,X under the punch over N/(2a)."""
-        a = self.profile.half_width
+        a = self.half_width
         return self.profile.slope(a * X) * a / self.displacement
 
     @cached_property
     def flat(self) -> bool:
         """Is the punch flat? Its slope vanishes then wherever it is looked at."""
-        return not np.any(self.slope(np.linspace(-1.0, 1.0, 101)))
+        return not self.found and not np.any(self.slope(np.linspace(-1.0, 1.0, 101)))
 
     @property
     def force(self) -> float:
@@ -82,8 +112,8 @@ class Body:
 
     @property
     def stress(self) -> float:
-        """Unit of stresses [Pa]."""
-        return self.load / (2.0 * self.profile.half_width)
+        """Unit of stresses [Pa]; where ends are found each state has its own instead."""
+        return self.load / (2.0 * self.half_width)
 
 
 @dataclass(frozen=True)

@@ -74,6 +74,11 @@ def plot(
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
     result = load(archive)
     if ranks.is_root():
+        if si and result.scene.body.found:
+            raise errors.BadInput(
+                "--si: found a contact whose ends are found, and so another unit N/(2a) in every state; "
+                "leave it away, half-widths in m are among the parameters that are drawn"
+            )
         if si:
             wanted = replace(wanted, unit=1e-6 * unit_of_stress(result.scene))
         written = write(result.data, result.scene, wanted, files)

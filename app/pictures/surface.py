@@ -65,7 +65,10 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     varied = [name for name in told.varied() if name in fixed]
     figure = surface_figure(data[SURFACE_X.path], stresses(data, choice), columns, choice.size)
     caption = "Stresses along the surface, under the punch (grey) and beside it"
-    caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."
+    if scene.body.found:
+        caption += "; lengths are over each state's own half-width, from the middle of its contact."
+    else:
+        caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."
     if any(axis.child_axes for axis in figure.axes):
         caption += " Insets show where on the friction loop each curve sits."
     if varied:

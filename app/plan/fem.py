@@ -1,7 +1,7 @@
 """What finite elements of a scene need: mesh, degrees, solver, memory."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.postprocess.quantities.quantity import FOUND
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response
@@ -19,6 +22,13 @@ from galinx.solvers.solution import Places
 
 #: Distance over a from a punch edge that no mesh resolves: rounding of positions.
 _NEAREST = 1e-12
+
+#: Distance over a from a free end within which cells need not be finer: stresses vary like its root.
+_NEAR_FREE_END = 1e-2
+
+#: Profiles that are combinations of few shapes whatever the contact is; and what plans call the mode in
+#: which every state of another has a mesh of its own.
+LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -40,7 +50,7 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         wanted: what the mesh has to be good for.
-        mode: ``"contact"``, ``"traction"`` or ``"own pressure"``.
+        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND`` or ``OWN_MESHES``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
     """
@@ -99,6 +109,8 @@ def plan_fem(
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
+    if scene.body.free:
+        wanted = wanted_of_free_ends(wanted)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
@@ -114,8 +126,14 @@ def plan_fem(
     return FemPlan(
         mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=solve.modes[-1], shared_speeds=shared,
+        mode=_mode(scene), shared_speeds=shared,
     )  # fmt: skip
+
+
+def _mode(scene: Scene) -> str:
+    if not scene.body.found:
+        return scene.solve.modes[-1]
+    return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
 
 
 def wanted_for(tolerance: float, places: Places, exponent: float, spread: float) -> Wanted:
@@ -128,6 +146,13 @@ def wanted_for(tolerance: float, places: Places, exponent: float, spread: float)
     farthest = float(np.hypot(X, Y).max())
     around = bool(len(places.around))
     return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, spread)
+
+
+def wanted_of_free_ends(wanted: Wanted) -> Wanted:
+    """The same where stresses at the ends are finite: larger cells do, in which rounding harms less."""
+    if wanted.nearest is None:
+        return wanted
+    return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END), exponent=0.5)
 
 
 def wanted_of_pieces(wanted: Wanted, knots: NDArray) -> Wanted:

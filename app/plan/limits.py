@@ -1,7 +1,7 @@
 """Where a scene asks for what has no answer, or for one that will cost accuracy."""
 
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from math import inf
 
 import numpy as np
@@ -12,6 +12,7 @@ from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, Wanted
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
@@ -92,6 +93,24 @@ def check_mode(scene: Scene, body: Body) -> None:
         raise BadInput(
             'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
             'give solve.pressure, or take mode = "contact"'
+        )
+
+
+def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
+    """Can anything find the ends of the contact?
+
+    Raises:
+        BadInput: nothing can, or a pressure is given that would need them.
+    """
+    if not body.found:
+        return
+    about = f"found a {body.profile.words()}, whose contact ends where the pressure says"
+    if scene.solve.mode == "traction":
+        raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
+    if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
+        raise BadInput(
+            f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
+            'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
         )
 
 

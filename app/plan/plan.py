@@ -7,6 +7,7 @@ import numpy as np
 
 from galinx.app.plan.fem import FemPlan, plan_fem
 from galinx.app.plan.limits import (
+    check_found,
     check_mode,
     check_places,
     check_pressure,
@@ -52,9 +53,9 @@ def make_plan(scene: Scene) -> Plan:
     check_states(len(all_speeds) * count)
     check_sliders(scene)
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
-    strength = scene.half_plane.yield_strength
-    body = Body(scene.solid, scene.punch.profile, scene.punch.load, pressure, strength)
+    body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
+    check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
@@ -112,7 +113,7 @@ def _quantities(
             bool(methods)
             and quantity.solved
             and quantity.method in sources
-            and quantity.mode in scene.solve.modes
+            and quantity.mode in scene.modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in asked for need in quantity.needs)
         )

@@ -2,13 +2,16 @@
 
 from galinx.app import ranks
 from galinx.app.plan import cost
-from galinx.app.plan.fem import FemPlan, levels, unknowns
+from galinx.app.plan.fem import OWN_MESHES, FemPlan, levels, unknowns
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+
+#: Seconds of a state that has meshes of its own, some ten of them.
+_SECONDS_OF_OWN_MESHES = 7.0
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -30,6 +33,11 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
 
 
 def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
+    if fem.mode == OWN_MESHES:
+        return [
+            f"finite elements: {plan.states} states, each on confocal meshes of its own, graded "
+            f"towards the kinks of the punch; degrees 4 and up to {max(fem.degrees) + 2}"
+        ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
     result = [f"mesh: {scene.solve.mesh}, {cells} quadrilaterals, shared by all speeds"]
@@ -63,7 +71,8 @@ def expense(plan: Plan) -> str:
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
-    speeds, states = _seconds_of_levels(fem) / ranks.size(), cost.STATE * plan.states + plan.integrated
+    speeds = _seconds_of_levels(fem, plan.states) / ranks.size()
+    states = cost.STATE * plan.states + plan.integrated
     sharing = 1 if fem.shared_speeds else ranks.size()
     inside = _inside(plan) * sharing / ranks.size()
     most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
@@ -91,9 +100,11 @@ def _levels(fem: FemPlan) -> list[tuple[int, int]]:
     return [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
 
 
-def _seconds_of_levels(fem: FemPlan) -> float:
+def _seconds_of_levels(fem: FemPlan, states: int) -> float:
     """Seconds of the levels of every speed, one after the other."""
     mesh, direct = fem.pattern, fem.solver == "direct"
+    if fem.mode == OWN_MESHES:
+        return _SECONDS_OF_OWN_MESHES * states
     return sum(
         cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
         for p, k in _levels(fem)

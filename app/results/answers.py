@@ -14,7 +14,6 @@ from galinx.postprocess.quantities import runs, states, stresses, validity, yiel
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.scale import NEAR
 from galinx.solvers.contact import from_edge
-from galinx.solvers.solution import Body
 
 #: Of units, and where the one stands that means nothing.
 _PREFIXES, _MIDDLE = "pnµm kMGT", 4
@@ -37,7 +36,12 @@ class Answer:
 
 def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
     """The results that an archive has, finite elements first where there are both methods."""
-    return [*_of_states(data), *_of_surface(data, scene), *_of_limits(data, scene)]
+    return [
+        *_of_states(data),
+        *_of_contact(data, scene),
+        *_of_surface(data, scene),
+        *_of_limits(data, scene),
+    ]
 
 
 def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
@@ -46,7 +50,7 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
     intensities = [
         data[row.path] for row in (*_either(data, states.K_I_LEFT), *_either(data, states.K_I_RIGHT))
     ]
-    if intensities:
+    if intensities and np.any(intensities):
         both = np.array(intensities)
         smallest, largest = both.min(axis=0), both.max(axis=0)
         low, high = int(smallest.argmin()), int(largest.argmax())
@@ -59,16 +63,33 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
         yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
 
 
+def _unit_of_stress(data: dict[str, Any], scene: Scene) -> NDArray[np.float64]:
+    """N/(2a) [Pa] of every state, (states, 1)."""
+    of_states = _either(data, states.HALF_WIDTH)
+    if of_states:
+        return scene.punch.load / (2.0 * data[of_states[0].path][:, None])
+    return np.full((len(data[states.FRICTION.path]), 1), scene.body.stress)
+
+
+def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    """Of contacts whose ends are found."""
+    for row in _either(data, states.HALF_WIDTH):
+        yield Answer("Half-width of the contact", *_span(data[row.path], "m"))
+    for row in _either(data, states.CENTRE):
+        yield Answer("Middle of the contact, from the punch's axis", *_span(data[row.path], "m"))
+    for row in _either(data, states.LARGEST):
+        pressure = _unit_of_stress(data, scene)[:, 0] * data[row.path]
+        if np.isfinite(pressure).any():
+            yield Answer("Largest contact pressure", *_span(pressure, "Pa"))
+
+
 def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     if stresses.SURFACE_X.path not in data:
         return
-    stress, X = (
-        Body(scene.solid, scene.punch.profile, scene.punch.load).stress,
-        data[stresses.SURFACE_X.path],
-    )
+    stress, X = _unit_of_stress(data, scene), data[stresses.SURFACE_X.path]
     for row in _either(data, stresses.PRESSURE):
         middle = int(np.abs(X).argmin())
-        pressure = -stress * data[row.path][:, middle]
+        pressure = -stress[:, 0] * data[row.path][:, middle]
         yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
     away = from_edge(X) >= NEAR
     for row in _either(data, stresses.IN_PLANE):

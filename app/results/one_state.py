@@ -84,6 +84,12 @@ def chosen(
             )
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
+    if scene.body.found:
+        raise BadInput(
+            f"states: found a {scene.punch.profile.words()}, whose contact has another half-width in "
+            "every state; fields of single states are there for a given half-width only. Stresses "
+            'inside are archived by output.map and the quantity "interior"'
+        )
     wanted = degrees or [None] * len(numbers)
     _check(scene, wanted)
     columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
@@ -135,7 +141,7 @@ def displacement(scene: Scene, number: int, degree: int | None = None) -> Any:
         from galinx.solvers.fem.physical import in_physical_plane
 
         found = next(states)
-        half_width = body.profile.half_width
+        half_width = body.half_width
         return in_physical_plane(
             found.space, response, found.fields, found.weights, half_width, body.displacement
         )

@@ -145,7 +145,7 @@ def _told(scene: Scene, state: OneState) -> dict[str, Any]:
         **state.told,
         "speed": state.told["c"] * body.solid.c_s,
         "load": body.load,
-        "half_width": body.profile.half_width,
+        "half_width": body.half_width,
         "mean_pressure": body.stress,
         "degree": state.degree,
         "program": f"galinx {__version__}",
@@ -192,7 +192,7 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         if body.pressure:
             exact = GivenPressure(task.response, state.g, body.pressure)
         data["sigma_error"] = body.stress * _error(exact, sampled.points, found)
-    return StateField(body.profile.half_width * sampled.points, sampled.quads, data)
+    return StateField(body.half_width * sampled.points, sampled.quads, data)
 
 
 def _inside(points: NDArray) -> NDArray[np.bool_]:

@@ -5,7 +5,6 @@ from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
-from galinx.solvers.solution import Body
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
 
@@ -19,7 +18,7 @@ def scaling(scene: Scene | None) -> Scaling:
 
 def unit_of_stress(scene: Scene) -> float:
     """N/(2a) [Pa]."""
-    return Body(scene.solid, scene.punch.profile, scene.punch.load).stress
+    return scene.body.stress
 
 
 def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
@@ -33,11 +32,13 @@ def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
     Returns:
         None for what another quantity becomes.
     """
-    body = Body(scene.solid, scene.punch.profile, scene.punch.load)
+    body = scene.body
+    if body.found and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
+        return as_archived(row, name)  # over the state's own half-width, which stands beside it
     if row.unit == "N/(2a)":
         return Scaled(name, "Pa", body.stress)
     if row.path in _OVER_HALF_WIDTH:
-        return Scaled(name.removesuffix("_over_a"), "m", body.profile.half_width)
+        return Scaled(name.removesuffix("_over_a"), "m", body.half_width)
     if row is SPEED:
         return Scaled("speed", "m/s", body.solid.c_s)
     return None if row is VELOCITY else as_archived(row, name)

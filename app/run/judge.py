@@ -33,7 +33,7 @@ class Judge:
         limits = {
             name: rule.allowed(scene.solve.tolerance)
             for name, rule in rules.items()
-            if rule.mode in scene.solve.modes
+            if rule.mode in scene.modes
         }
         self._limits = {name: limit for name, limit in limits.items() if limit is not None}
         self._judged: dict[str, float] = {}

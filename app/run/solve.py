@@ -17,14 +17,14 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.found import local_exponents
 
 
 @dataclass(frozen=True)
 class Edges:
     """What is known of states without solving them: the local analysis of the punch's edges."""
 
-    local: FlatPunch
+    local: Any
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,9 @@ class Work:
     ) -> Part:
         g = self.g[rows]
         with self.clock(_STEPS["closed_form"]):
-            data = self._read(LOCAL, Edges(FlatPunch(task.response, g)), task)
+            body = task.body
+            local = local_exponents(task.response, g, body.profile, body.compression)
+            data = self._read(LOCAL, Edges(local), task)
         for name in self.methods:
             try:
                 if name not in failures:

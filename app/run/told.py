@@ -19,7 +19,7 @@ def of_scene(scene: Scene) -> dict[str, Any]:
         "title": scene.title,
         "material": half_plane.material or "",
         "solid": json.dumps(known, ensure_ascii=False),
-        "half_width": scene.punch.profile.half_width,
+        "half_width": scene.body.half_width,
         "load": scene.punch.load,
         "c_s": solid.c_s,
         "speed_limit": solid.limit() * solid.c_s,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.scene.values import Spread
-from galinx.postprocess.quantities.quantity import OWN_PRESSURE, PUNCH
+from galinx.postprocess.quantities.quantity import FINITE, FOUND, OWN_PRESSURE, PUNCH
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path
 from galinx.solvers.friction.slider import Slider
@@ -20,6 +20,7 @@ from galinx.solvers.friction.strokes import positions
 from galinx.solvers.parameters import made, parameters
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
+from galinx.solvers.solution import Body
 
 
 @dataclass(frozen=True)
@@ -206,6 +207,17 @@ class Scene:
         if self.motion.path is not None:
             return tuple(np.array([leg.end]) for leg in self.legs)
         return tuple(positions(leg, self.motion.X_over_L) for leg in self.legs)
+
+    @cached_property
+    def body(self) -> Body:
+        """What slides over what; a pressure of the user's own is not among it."""
+        return Body(self.solid, self.punch.profile, self.punch.load, None, self.half_plane.yield_strength)
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Words by which quantities and rules say that they are of this mode."""
+        own = self.solve.own_pressure
+        return (*self.solve.modes, *(FOUND,) * self.body.found, *(FINITE,) * (own or self.body.finite))
 
     @property
     def sha256(self) -> str:

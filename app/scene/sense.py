@@ -100,7 +100,7 @@ def oddities(scene: Scene) -> list[str]:
 
 def _too_much(scene: Scene) -> Iterator[str]:
     """A load that no solid bears: that half-width and load fit one another, no key can tell alone."""
-    mean = scene.punch.load / (2.0 * scene.punch.profile.half_width)
+    mean = scene.body.stress
     if mean > _PRESSED * scene.solid.μ:
         yield (
             f"punch: the mean pressure N/(2a) = {mean:.3g} Pa is {mean / scene.solid.μ:.2g} times the "

@@ -9,7 +9,7 @@ from galinx.postprocess.quantities.quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    OWN_PRESSURE,
+    FINITE,
     PUNCH,
     QUANTITIES,
     STATE,
@@ -53,16 +53,16 @@ def _largest(
     )
     return (
         _both(
-            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, OWN_PRESSURE,
+            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE,
             "largest stresses",
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
-            lambda s, _: of(s).X, OWN_PRESSURE, range=Range(),
+            lambda s, _: of(s).X, FINITE, range=Range(),
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, OWN_PRESSURE, range=_BELOW,
+            lambda s, _: of(s).Y, FINITE, range=_BELOW,
         ),
     )  # fmt: skip
 
@@ -77,7 +77,7 @@ FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, OWN_PRESSURE,
+    lambda s, _: s.strength.first_load, FINITE,
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",

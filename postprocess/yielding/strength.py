@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.yielding import edges
 from galinx.postprocess.yielding.peak import Levels, Peak
+from galinx.solvers.profiles import exponent
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body
 
@@ -17,11 +18,21 @@ from galinx.solvers.solution import Body
 Field = Callable[[NDArray], NDArray]
 
 
+#: Of a pressure without a jump, which ends within: at its very ends finite elements have no gradients.
+_SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
+
+
 def places(body: Body) -> NDArray[np.float64]:
     """Where the stresses of every state are looked at, over a, (n, 2)."""
+    knots = _knots(body)
+    return edges.places() if knots is None else Levels(knots).places
+
+
+def _knots(body: Body) -> NDArray[np.float64] | None:
+    """Where a pressure that is finite may change its course over a; None of a punch with edges."""
     if body.pressure:
-        return Levels(body.pressure.knots).places
-    return edges.places()
+        return body.pressure.knots
+    return _SMOOTH if body.finite else None
 
 
 class Strength:
@@ -33,16 +44,26 @@ class Strength:
         response: of the half-plane at that speed.
         g: σ_XY/σ_YY under the punch, (states,).
         local: exponents α at X = a and β at X = -a, (states,); of a punch.
+        half_width: of each state [m], (states,), where ends are found.
     """
 
-    def __init__(self, field: Field, body: Body, response: Response, g: NDArray, local: Any) -> None:
+    def __init__(
+        self,
+        field: Field,
+        body: Body,
+        response: Response,
+        g: NDArray,
+        local: Any,
+        half_width: NDArray | None = None,
+    ) -> None:
         self._field, self._body, self._local = field, body, local
         ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
         #: Which states have an infinite stress where the pressure ends in a jump, (states,).
         self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
         assert body.yield_strength
-        #: Yield strength in the unit of stresses.
-        self.strength = body.yield_strength / body.stress
+        unit = body.stress if half_width is None else body.load / (2.0 * half_width)
+        #: Yield strength in the unit of stresses, (states,).
+        self.strength = np.broadcast_to(body.yield_strength / unit, np.shape(g))
 
     @cached_property
     def von_mises(self) -> Peak:
@@ -56,14 +77,20 @@ class Strength:
 
     @property
     def first_load(self) -> NDArray[np.float64]:
-        """Load N per depth at which a pressure makes the solid yield somewhere [N/m], (states,)."""
-        largest = self.von_mises.value
-        return np.where(self.infinite, 0.0, self._body.load * self.strength / largest)
+        """Load N per depth at which a pressure makes the solid yield somewhere [N/m], (states,).
+
+        Stresses grow like the load; under a punch of the height c|X|^k like its power 1 - 1/k, because
+        the contact grows, too.
+        """
+        k = exponent(self._body.profile) if self._body.found else None
+        power = k / (k - 1.0) if k else 1.0
+        allowed = (self.strength / self.von_mises.value) ** power
+        return np.where(self.infinite, 0.0, self._body.load * allowed)
 
     @cached_property
     def _zones(self) -> edges.Zones:
         exponents = np.column_stack([self._local.β, self._local.α])
-        return edges.zones(self._over_strength, self._invariants[0] / self.strength, exponents)
+        return edges.zones(self._over_strength, self._invariants[0] / self.strength[:, None], exponents)
 
     @property
     def reach(self) -> NDArray[np.float64]:
@@ -73,16 +100,17 @@ class Strength:
     @property
     def depth(self) -> NDArray[np.float64]:
         """Depth over a to which the solid yields at the load, (states,)."""
-        if not self._body.pressure:
+        if _knots(self._body) is None:
             return self._zones.depth
-        there, peak = self._invariants[0] / self.strength, self.von_mises
+        there, peak = self._invariants[0] / self.strength[:, None], self.von_mises
         scaled = Peak(peak.value / self.strength, peak.X, peak.Y)
         return self._levels.depth(self._over_strength, there, scaled)
 
     @cached_property
     def _levels(self) -> Levels:
-        assert self._body.pressure
-        return Levels(self._body.pressure.knots)
+        knots = _knots(self._body)
+        assert knots is not None
+        return Levels(knots)
 
     @cached_property
     def _invariants(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -99,7 +127,7 @@ class Strength:
         return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
 
     def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
-        return self._von_mises(points) / self.strength
+        return self._von_mises(points) / self.strength[:, None]
 
     def _peak(self, stress: Callable[[NDArray], NDArray], there: NDArray) -> Peak:
         peak = self._levels.peak(stress, there)

@@ -8,8 +8,10 @@ the normal reactions caused by tangential forces r, friction asks for
     (I - g T) R = R₀.
 
 The Krylov space of (T, R₀) serves every g at that speed; a profile P that is not flat has one of its own.
+Of a contact whose ends are found P is a combination of some shapes, each with a space of its own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,7 +54,8 @@ class SlidingPunch:
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case and tells what that does to the others.
-        height: of the punch's profile over N/(2μ) at the contact nodes; None for a flat punch.
+        heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
+            that are combined, (shapes, nodes); None for a flat punch.
     """
 
     def __init__(
@@ -61,7 +64,7 @@ class SlidingPunch:
         response: Response,
         solver: str = "direct",
         negligible: float = 0.0,
-        height: NDArray[np.float64] | None = None,
+        heights: NDArray[np.float64] | None = None,
     ) -> None:
         self.space, self.response = space, response
         nodes = space.contact
@@ -73,17 +76,17 @@ class SlidingPunch:
         self._motions = [_ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
         self._far = [_product(A, _ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
-        shaped = None if height is None else _forces_of_profile(A, space, height)
+        shapes = [] if heights is None else list(np.atleast_2d(heights))
+        shaped = [_forces_of_profile(A, space, height) for height in shapes]
         b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
             self.factor = Factor(A, space.clock, definite=not space.mixed)
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
-        #: Of the flat punch, and of the profile.
+        #: Of the flat punch, and of each shape.
         self._spaces = [self._krylov_space(b, None, -1.0, negligible)]
-        if shaped:
-            self._spaces.append(self._krylov_space(shaped, shaped, 0.0, negligible))
+        self._spaces += [self._krylov_space(forces, forces, 0.0, negligible) for forces in shaped]
 
     @property
     def fields(self) -> list[PETSc.Vec]:
@@ -98,23 +101,29 @@ class SlidingPunch:
             flat: of a flat punch, whatever the profile is.
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
-        level, *shaped = [self._combined(space, g) for space in self._spaces[: 1 if flat else None]]
+        level, *shaped = self.parts(g, 0 if flat else None)
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
         v0 = (-2.0 - sum(part.normal.sum(axis=1) for part in shaped)) / level.normal.sum(axis=1)
-        scale = v0[:, None]
-        weights = [scale * level.weights, *(part.weights for part in shaped)]
-        normal = scale * level.normal + sum(part.normal for part in shaped)
-        tangential = scale * level.tangential + sum(part.tangential for part in shaped)
-        return ContactStates(g, np.concatenate(weights, axis=1), normal, tangential, v0)
+        return combined(g, [level, *shaped], np.column_stack([v0, *(np.ones_like(v0) for _ in shaped)]))
 
-    def _combined(self, space: KrylovSpace, g: NDArray[np.float64]) -> "_Part":
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
+        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
+
+        Args:
+            g: values of σ_XY/σ_YY, (states,).
+            shapes: that are wanted, all of them if not given.
+        """
+        wanted = self._spaces[: None if shapes is None else 1 + shapes]
+        return [self._of(space, g) for space in wanted]
+
+    def _of(self, space: KrylovSpace, g: NDArray[np.float64]) -> "Part":
         """What a Krylov space makes of friction."""
         y = self._contact_forces(space, g)
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
         tangential, normal = np.einsum("sk,kin->isn", weights, np.array(space.forces))
-        return _Part(weights, normal, tangential)
+        return Part(weights, normal, tangential)
 
     def release(self) -> None:
         """Free factor and fields; states that were asked for before can be asked for again."""
@@ -238,12 +247,27 @@ class SlidingPunch:
 
 
 @dataclass(frozen=True)
-class _Part:
+class Part:
     """Weights of a Krylov space's fields, (states, fields), and nodal forces, (states, nodes)."""
 
     weights: NDArray[np.float64]
     normal: NDArray[np.float64]
     tangential: NDArray[np.float64]
+
+
+def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactStates:
+    """States that are sums of a punch's parts, the first of which is the flat one.
+
+    Args:
+        g: values of σ_XY/σ_YY, (states,).
+        parts: of :meth:`SlidingPunch.parts`.
+        amplitudes: of each, (states, parts); the first is the indentation v₀.
+    """
+    by_part = [(part, amplitudes[:, [i]]) for i, part in enumerate(parts)]
+    weights = np.concatenate([share * part.weights for part, share in by_part], axis=1)
+    normal = sum(share * part.normal for part, share in by_part)
+    tangential = sum(share * part.tangential for part, share in by_part)
+    return ContactStates(g, weights, np.asarray(normal), np.asarray(tangential), amplitudes[:, 0])
 
 
 def _forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -> PETSc.Vec:

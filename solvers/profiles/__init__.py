@@ -1,6 +1,21 @@
 """Profiles of punches, by the name that scenes use."""
 
-from galinx.solvers.profiles import flat  # noqa: F401 - each adds its profile
-from galinx.solvers.profiles.profile import PROFILES, Profile
+from galinx.solvers.profiles import (  # noqa: F401 - each adds its profile
+    flat,
+    parabolic,
+    power,
+    rounded_flat,
+    table,
+    wedge,
+)
+from galinx.solvers.profiles.profile import (
+    PROFILES,
+    Profile,
+    ends_are_found,
+    exponent,
+    half_width,
+    jumps,
+    kinks,
+)
 
-__all__ = ["PROFILES", "Profile"]
+__all__ = ["PROFILES", "Profile", "ends_are_found", "exponent", "half_width", "jumps", "kinks"]

@@ -1,6 +1,7 @@
-"""The flat punch of the study."""
+"""The flat punch of the study, which may be tilted."""
 
 from dataclasses import dataclass
+from math import pi
 from typing import ClassVar
 
 import numpy as np
@@ -12,10 +13,10 @@ from galinx.solvers.profiles.profile import PROFILES
 
 @dataclass(frozen=True)
 class Flat:
-    """A flat punch with two sharp edges.
+    """A flat punch with two sharp edges, the base of which may be tilted.
 
     Raises:
-        ValueError: the half-width is not positive.
+        ValueError: the half-width is not positive, or the tilt is no small angle.
     """
 
     about: ClassVar[str] = "flat"
@@ -24,18 +25,35 @@ class Flat:
         "half_width", "half-width a", "m", symbol="a", above=0.0, usual=(1e-9, 0.5),
         note="dimensionless results do not depend on it",
     )  # fmt: skip
+    tilt: float = parameter(
+        "tilt", "tilt of the base, counterclockwise", "deg", symbol=r"\theta", default=0.0,
+        above=-45.0, below=45.0, usual=(-5.0, 5.0),
+        note="positive: the right edge is the higher one, and lifts off first",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         check(self)
 
+    @property
+    def sharp(self) -> tuple[bool, bool]:
+        """The lower edge always touches, the higher one may lift off."""
+        return self.tilt >= 0.0, self.tilt <= 0.0
+
+    @property
+    def rise(self) -> float:
+        """Slope of the base, dimensionless; the angle itself, as linear theory has it."""
+        return self.tilt * pi / 180.0
+
     def height(self, X: NDArray) -> NDArray[np.float64]:
-        return np.zeros_like(X)
+        lowest = -self.half_width if self.tilt >= 0.0 else self.half_width
+        return self.rise * (np.asarray(X) - lowest) if self.tilt else np.zeros_like(X)
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
-        return np.zeros_like(X)
+        return np.full_like(X, self.rise, dtype=float)
 
     def words(self) -> str:
-        return f"flat punch, half-width {self.half_width:g} m"
+        tilted = f", tilted by {self.tilt:g}° counterclockwise" * bool(self.tilt)
+        return f"flat punch, half-width {self.half_width:g} m{tilted}"
 
 
 PROFILES.register("flat", Flat)

@@ -1,6 +1,7 @@
 """What the profile of a punch is."""
 
-from typing import ClassVar, Protocol
+from collections.abc import Sequence
+from typing import Any, ClassVar, Protocol
 
 from numpy.typing import NDArray
 
@@ -10,15 +11,22 @@ from galinx.registry import Registry
 class Profile(Protocol):
     """A rigid punch: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
 
+    A profile whose contact does not end at two sharp corners says so by ``sharp``; it has no half-width
+    then and is convex. What else it may have is read by the functions below.
+
     Attributes:
         about: what kind of punch it is.
-        half_width: half the width a of the contact [m]; lengths are divided by it.
+        half_width: half the width a of the contact [m] between two sharp corners; lengths are divided
+            by it. Read by the first function below.
+        sharp: are the left and the right end of the contact sharp corners of the punch whatever the
+            load? (True, True) if it has none of it.
+        kinks: positions [m] at which the slope or its derivative jumps, in their order; none if it has
+            none of it.
+        jumps: does the slope itself jump there, so that the pressure is infinite? False if not given.
+        exponent: k of a height c|X|^k, by which results at other loads follow; None if it is no power.
     """
 
     about: ClassVar[str]
-
-    @property
-    def half_width(self) -> float: ...
 
     def height(self, X: NDArray) -> NDArray:
         """Gap [m] at X [m] from the middle when the lowest point touches, 0 where it is lowest."""
@@ -28,6 +36,31 @@ class Profile(Protocol):
 
     def words(self) -> str:
         """The punch in a sentence's middle, with units."""
+
+
+def half_width(profile: Any) -> float:
+    """Half the width of the contact [m] between two sharp corners."""
+    return profile.half_width
+
+
+def ends_are_found(profile: Any) -> bool:
+    """Does the contact end where the pressure says, and not at two sharp corners?"""
+    return not all(getattr(profile, "sharp", (True, True)))
+
+
+def kinks(profile: Any) -> Sequence[float]:
+    """Positions [m] at which the slope or its derivative jumps."""
+    return getattr(profile, "kinks", ())
+
+
+def jumps(profile: Any) -> bool:
+    """Does the slope itself jump at its kinks?"""
+    return getattr(profile, "jumps", False)
+
+
+def exponent(profile: Any) -> float | None:
+    """Of a height that is a power of |X|; None if it is none."""
+    return getattr(profile, "exponent", None)
 
 
 #: Profiles by the name that scenes use; every profile adds itself.

@@ -87,6 +87,8 @@ def test_scenes_of_a_page_are_valid(page):
             changes |= {f"{section}.{key}": value for key, value in keys.items()}
         if "motion.speed" in changes:
             changes["motion.c"] = None
+        if changes.get("punch.profile", "flat") != "flat":
+            changes["punch.half_width"] = None
         parse(changed(templates()["tables4_5"].text, changes), page.name)
 
 

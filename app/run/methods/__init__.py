@@ -5,19 +5,25 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
+from galinx.app.plan.fem import LINEAR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess.quantities import Quantity, states, stresses, validity
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities import Quantity, states, stresses, validity, yielding
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH
 from galinx.registry import Registry
+from galinx.solvers.profiles import exponent
 from galinx.solvers.solution import Body
 
 __all__ = ["METHODS", "MODES", "Method", "MethodKind"]
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
+    if plan.body.found:
+        from galinx.app.run.methods.found_ends import FoundEnds
+
+        return FoundEnds()
     from galinx.app.run.methods.closed_form import ClosedForm
 
     return ClosedForm()
@@ -29,7 +35,29 @@ def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
     return "σ_ZZ is not known without solid.stiffness_Z" if asked and not body.solid.knows_σ_ZZ else ""
 
 
+def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
+    """Why a contact whose ends are found has no such quantity, "" where it has."""
+    if not body.found or quantity is None:
+        return ""
+    if quantity.asked_by == stresses.YIELD and not body.finite:
+        return "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
+    if quantity in yielding.FIRST_LOAD.values() and not (exponent(body.profile) or 0.0) > 1.0:
+        return "known where the height is a power of |X|: the contact grows with the load"
+    if quantity.mode == PUNCH or quantity in _OF_SHARP_EDGES:
+        return "the ends of the contact are found"
+    return ""
+
+
+#: What finite elements give at points, of contacts on meshes of their own.
+_OF_CONTACT = (stresses.PRESSURE[FEM], *validity.TENSION[FEM])
+
+#: What is told of two sharp edges alone.
+_OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
+
+
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if body.found:
+        return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
     if body.pressure:
         return "the pressure is given" if quantity in _INTENSITIES else ""
     if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
@@ -53,6 +81,14 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if body.found and not isinstance(body.profile, LINEAR):
+        if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
+            return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
+        told = not quantity or quantity in _OF_CONTACT or not quantity.asked_by
+        if not told or quantity in states.LARGEST.values() or quantity in states.LARGEST_X.values():
+            return "of such a contact finite elements find the ends, the forces and the pressure"
+    if why := _of_found_ends(body, quantity):
+        return why
     if quantity is states.SLOPE and (body.pressure or not body.flat):
         return "the pressure is given" if body.pressure else "the punch is not flat"
     return _without_σ_ZZ(body, quantity)

@@ -12,7 +12,7 @@ from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Plan
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells
-from galinx.meshes.rings import TAGS
+from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.meshes.store import obtain
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
@@ -54,6 +54,15 @@ class Discretisation:
                     self.clock, self._progress.warn,
                 )  # fmt: skip
         return self._spaces[degree, cuts]
+
+    def space_on(self, pattern: QuadMesh, degree: int) -> Space:
+        """The space of a degree on a mesh of its own, which no other state has."""
+        with self.clock("mesh"):
+            check_cells(pattern)
+            mesh = distribute(pattern if self.comm.rank == 0 else None, self.comm)
+        return Space(
+            *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock, self._progress.warn
+        )
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
         """The mesh with every cell cut, shared out over ranks, and its facet tags."""

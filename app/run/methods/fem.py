@@ -8,16 +8,20 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
+from galinx.app.plan.fem import OWN_MESHES
 from galinx.app.plan.task import Plan, Task
-from galinx.app.run.methods import given, own_pressure, punch
+from galinx.app.run.methods import found_punch, given, kinked_punch, own_pressure, punch
 from galinx.app.run.methods.discretisation import Discretisation, quiet_compiler
 from galinx.app.run.methods.method import Pressure, Solver
 from galinx.clock import Clock
-from galinx.postprocess.quantities.quantity import OWN_PRESSURE
+from galinx.postprocess.quantities.quantity import FOUND, OWN_PRESSURE
 from galinx.solvers.fem.space import Space
 
 #: What solves at one speed, by the plan's mode: a module with functions ``solver`` and ``one_state``.
-MODES: dict[str, ModuleType] = {"contact": punch, "traction": given, OWN_PRESSURE: own_pressure}
+MODES: dict[str, ModuleType] = {
+    "contact": punch, "traction": given, OWN_PRESSURE: own_pressure, FOUND: found_punch,
+    OWN_MESHES: kinked_punch,
+}  # fmt: skip
 
 
 class FiniteElements:

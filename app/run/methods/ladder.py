@@ -54,7 +54,7 @@ class Ladder:
         self.work, self.task, self.degree = work, task, work.plan.degrees[task.number]
         self.levels: list[Any] = []
         self._solved = solved
-        self._work = _Work()
+        self._work = WorkDone()
 
     def add(self, g: NDArray, degree: int, cuts: int = 1) -> None:
         """Solve at a degree for all values of g; the factor before makes room."""
@@ -69,7 +69,7 @@ class Ladder:
 
     def record(self) -> dict[str, Any]:
         """Numbers of the work on all levels, and the size of the last."""
-        total = _Work(**vars(self._work))
+        total = WorkDone(**vars(self._work))
         for level in self.levels:
             total.count(level)
         space = self.levels[-1].space
@@ -81,7 +81,7 @@ class Ladder:
 
 
 @dataclass
-class _Work:
+class WorkDone:
     """Numbers of linear algebra, as they are archived."""
 
     factorisations: int = 0
@@ -90,7 +90,8 @@ class _Work:
     largest_residual: float = 0.0
     largest_condition: float = 0.0
 
-    def count(self, level: Level) -> None:
+    def count(self, level: Any) -> None:
+        """Count the work of what has a factor."""
         factor = level.factor
         self.factorisations += 1
         self.back_substitutions += factor.solves

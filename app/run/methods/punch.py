@@ -42,7 +42,7 @@ def one_state(
 ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
     """Space, fields, weights and pressure of one state."""
     space = work.space(degree, work.plan.cuts)
-    punch = SlidingPunch(space, task.response, work.plan.solver, height=profile_on(space, task.body))
+    punch = SlidingPunch(space, task.response, work.plan.solver, heights=profile_on(space, task.body))
     try:
         states = punch.states(g)  # the fields are complete after this
         recovery = contact_recovery(space.contact.s, space.degree, space.chart, np.empty(0))
@@ -66,13 +66,16 @@ class PunchLevel:
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         plan, self.task, self.space = work.plan, task, space
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        height = profile_on(space, task.body)
-        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, height)
+        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights())
         self.recovery = contact_recovery(space.contact.s, space.degree, space.chart, task.places.X)
         # The basis is complete before traces are taken, and the same whatever states are still to do.
         for first in range(0, len(g), work.chunk):
-            self.punch.states(g[first : first + work.chunk])
+            self.punch.parts(g[first : first + work.chunk])
         self._gauges = StressGauges(work, task, space, self.punch.fields)
+
+    def heights(self) -> NDArray[np.float64] | None:
+        """The punch's over N/(2μ) at the contact nodes, or of shapes; None for a flat punch."""
+        return profile_on(self.space, self.task.body)
 
     @property
     def factor(self) -> Any:

@@ -1,0 +1,91 @@
+"""The singular integral equation of punches whose contact ends where the pressure says."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.plan.task import Task
+from galinx.app.run.methods.closed_form import Punches
+from galinx.app.run.methods.method import Solver
+from galinx.postprocess.yielding.strength import Strength
+from galinx.solvers.sie.found import Contacts, Exponents, contacts
+from galinx.solvers.solution import Surface
+
+
+class FoundEnds:
+    """Every task has its solution at once."""
+
+    @contextmanager
+    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
+        yield _AtSpeed(task)
+
+
+@dataclass(frozen=True)
+class _AtSpeed:
+    task: Task
+
+    def states(self, g: NDArray) -> "FoundPunches":
+        return FoundPunches(self.task, g)
+
+    def record(self) -> dict[str, Any]:
+        return {}
+
+
+class FoundPunches(Punches):
+    """Punches with several frictions, each with its own half-width and middle."""
+
+    @cached_property
+    def _contacts(self) -> Contacts:
+        body = self.task.body
+        return contacts(self.task.response, self.g, body.profile, body.compression)
+
+    @cached_property
+    def local(self) -> Any:
+        """Exponents at the ends."""
+        return Exponents(self._contacts.of("α"), self._contacts.of("β"))
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the contact [m], (states,)."""
+        return self._contacts.of("half_width")
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self._contacts.of("centre")
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end, 0 at one that is found, (states, 2)."""
+        return self._contacts.of("K_I")
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        return self._contacts.largest()
+
+    @cached_property
+    def surface(self) -> Surface:
+        places = self.task.places
+        σ_YY = np.full((len(self.g), len(places.X)), np.nan)
+        σ_YY[:, places.under] = self._contacts.σ_YY(places.X[places.under])
+        return Surface(places, σ_YY, self._contacts.σ_XX(places.X))
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        return self._by_batches(self._contacts.inside)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        found, task = self._contacts, self.task
+
+        def field(points: NDArray) -> NDArray[np.float64]:
+            return found.stresses(points[..., 0], points[..., 1])
+
+        return Strength(field, task.body, task.response, self.g, self.local, self.half_width)

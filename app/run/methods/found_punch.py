@@ -1,0 +1,292 @@
+"""Punches whose contact ends where the pressure says, by finite elements at one speed.
+
+The half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its width is, and
+what is held under the punch is a combination of few shapes: 1, s and s² for a parabola, 1 and s for a
+tilted flat base. Load and vanishing intensities at free ends are linear in their amplitudes, from which
+half-width and middle follow. Every friction and every load is found in the basis of the speed.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.plan.task import Task
+from galinx.app.run.methods import gauge
+from galinx.app.run.methods.discretisation import Discretisation
+from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.gauge import Gauge
+from galinx.app.run.methods.method import Pressure
+from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
+from galinx.postprocess.pressure import JacobiPressure, chebyshev, from_moments, without_zeros
+from galinx.postprocess.yielding.strength import Strength
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.punch import ContactStates, Part, combined
+from galinx.solvers.fem.space import Space
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.found import Exponents
+from galinx.solvers.solution import Surface
+
+#: Positions at which a largest pressure is looked for.
+_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+
+
+@contextmanager
+def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FoundAtSpeed"]:
+    """Raise the degree until the measured error of sample states is within tolerance."""
+    with climbed(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
+        yield FoundAtSpeed(ladder, error)
+
+
+@contextmanager
+def one_state(
+    work: Discretisation, task: Task, g: float, degree: int
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state, lengths over its half-width from its middle."""
+    level = FoundLevel(work, task, work.space(degree, work.plan.cuts), np.array([g]))
+    try:
+        found = level.found(np.array([g]))
+        yield (
+            level.space,
+            level.punch.fields,
+            found.contact.weights[0],
+            lambda X: found.pressure.σ_YY(X)[0],
+        )
+    finally:
+        level.destroy()
+
+
+@dataclass(frozen=True)
+class FoundStates:
+    """States whose ends are found.
+
+    Attributes:
+        contact: nodal forces and weights; v₀ of the punch's lowest point.
+        half_width, centre: of the contact [m], (states,).
+        free: which of the left and the right end are free, (states, 2).
+        factor: Chebyshev coefficients of the pressure over a flat punch's weight, (states, moments).
+        local: exponents of a flat punch.
+    """
+
+    contact: ContactStates
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    factor: NDArray[np.float64]
+    local: FlatPunch
+
+    @property
+    def exponents(self) -> Exponents:
+        """Of the pressure at the right and the left end."""
+        return Exponents(self.local.α + self.free[:, 1], self.local.β + self.free[:, 0])
+
+    @cached_property
+    def pressure(self) -> JacobiPressure:
+        ends = self.exponents
+        return JacobiPressure(ends.α, ends.β, without_zeros(self.factor, self.free))
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end, 0 at a free one, (states, 2)."""
+        found = -0.5 * self.factor @ chebyshev(np.array([-1.0, 1.0])).T
+        return np.where(self.free, 0.0, found)
+
+
+class FoundLevel(PunchLevel):
+    """Punches at one degree; see :class:`PunchLevel`."""
+
+    def heights(self) -> NDArray[np.float64]:
+        s = self.space.chart.surface_position(self.space.contact.s)
+        return s[None] if isinstance(self.task.body.profile, Flat) else np.stack([s, s**2])
+
+    def found(self, g: NDArray) -> FoundStates:
+        """The states with these values of σ_XY/σ_YY.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
+        solve = _tilted if isinstance(self.task.body.profile, Flat) else _parabola
+        K = np.stack([self._intensities(part, local) for part in parts], axis=2)
+        loads = np.stack([part.normal.sum(axis=1) for part in parts], axis=1)
+        amplitudes, h, m, free, lowest = solve(self.task, loads, K)
+        if not np.all((h > 0.0) & np.isfinite(h)):
+            raise SolveError("no contact of a finite half-width carries the load")
+        contact = combined(g, parts, amplitudes)
+        factor = self._factor(contact.normal, local)
+        deeper = ContactStates(
+            g, contact.weights, contact.normal, contact.tangential, contact.v0 + lowest
+        )
+        return FoundStates(deeper, h, m, free, factor, local)
+
+    def _factor(self, normal: NDArray, local: FlatPunch) -> NDArray[np.float64]:
+        return from_moments(normal @ self.recovery.moments, local.α, local.β).c
+
+    def _intensities(self, part: Part, local: FlatPunch) -> NDArray[np.float64]:
+        """At the left and the right end, (states, 2)."""
+        return from_moments(part.normal @ self.recovery.moments, local.α, local.β).K_I
+
+    def measured(self, g: NDArray) -> list[Gauge]:
+        found = self.found(g)
+        moments = found.contact.normal @ self.recovery.moments
+        whole = JacobiPressure(found.local.α, found.local.β, found.factor)
+        of_pressure = gauge.of_pressure(whole, moments)
+        lengths = np.column_stack([found.half_width, found.centre])
+        size = np.tile(found.half_width[:, None], 2)
+        return [
+            Gauge(
+                of_pressure.word,
+                np.concatenate([of_pressure.values, lengths], axis=1),
+                np.concatenate([of_pressure.scale, size], axis=1),
+            ),
+            *self._gauges.of(g, found.contact.weights, found.pressure.σ_YY(self.task.places.X)),
+        ]
+
+
+#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, and by how much the lowest
+#: point of the punch lies below the level of the first shape, over N/(2μ).
+_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray]
+
+
+def _parabola(task: Task, loads: NDArray, K: NDArray) -> _Solved:
+    """v = -v₀ + c₁ s + c₂ s² with the load, and without intensity at both ends.
+
+    Args:
+        task: the speed.
+        loads: ∫σ_YY of every part, (states, 3).
+        K: intensities of every part at both ends, (states, 2, 3).
+    """
+    body, punch = task.body, task.body.profile
+    assert isinstance(punch, Parabolic)
+    A = np.concatenate([loads[:, None], K], axis=1)
+    amplitudes = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
+    _, c1, c2 = amplitudes.T
+    with np.errstate(invalid="ignore"):
+        h = np.sqrt(2.0 * punch.radius * c2 * body.displacement)
+    free = np.ones((len(A), 2), dtype=bool)
+    return amplitudes, h, h * c1 / (2.0 * c2), free, c1**2 / (4.0 * c2)
+
+
+def _tilted(task: Task, loads: NDArray, K: NDArray) -> _Solved:
+    """v = -v₀ + c₁ s with the load; c₁ is known, or what leaves no intensity at the higher edge."""
+    body, punch = task.body, task.body.profile
+    assert isinstance(punch, Flat)
+    side = 1 if punch.rise > 0.0 else 0
+    c1 = np.full(len(loads), punch.rise * punch.half_width / body.displacement)
+    v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
+    lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
+    A = np.stack([loads, K[:, side]], axis=1)
+    given_up = np.linalg.solve(A, np.tile([-2.0, 0.0], (len(A), 1))[..., None])[..., 0]
+    amplitudes = np.where(lifted[:, None], given_up, np.column_stack([v0, c1]))
+    h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
+    free = np.zeros((len(loads), 2), dtype=bool)
+    free[:, side] = lifted
+    centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
+    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1])
+
+
+class FoundAtSpeed(PunchesAtSpeed):
+    """Punches at one speed, found to the tolerance."""
+
+    def states(self, g: NDArray) -> Any:
+        return FoundPunches(self, g, self.level.found(g))
+
+
+@dataclass(frozen=True)
+class FoundPunches:
+    """Punches with several frictions, each with its own half-width and middle.
+
+    Attributes:
+        at: their speed.
+        g: σ_XY/σ_YY, (states,).
+        found: ends, nodal forces and weights.
+    """
+
+    at: FoundAtSpeed
+    g: NDArray[np.float64]
+    found: FoundStates
+
+    @property
+    def local(self) -> Exponents:
+        return self.found.exponents
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the contact [m], (states,)."""
+        return self.found.half_width
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.found.centre
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end, (states, 2)."""
+        return self.found.K_I
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        p = -self.found.pressure.σ_YY(_LOOKED_AT)
+        i = np.clip(p.argmax(axis=1), 1, len(_LOOKED_AT) - 2)
+        places = _LOOKED_AT[i[:, None] + [-1, 0, 1]]
+        for _ in range(6):
+            three = np.stack([-self.found.pressure.σ_YY(x)[k] for k, x in enumerate(places)])
+            half = (places[:, 2] - places[:, 0]) / 2.0
+            divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
+            bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
+            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
+            to_left, to_middle = top - places[:, 0], top - places[:, 1]
+            value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
+            half = np.maximum(half / 8.0, 1e-4)
+            places = top[:, None] + half[:, None] * np.array([-1.0, 0.0, 1.0])
+        infinite = ~self.found.free.all(axis=1)
+        return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return self.found.contact.normal.sum(axis=1)
+
+    @property
+    def tangential_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return self.found.contact.tangential.sum(axis=1)
+
+    @property
+    def v0(self) -> NDArray[np.float64]:
+        """Indentation of the punch's lowest point over N/(2μ), (states,)."""
+        return self.found.contact.v0
+
+    @cached_property
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        return self.at.error.of(self.g)
+
+    @cached_property
+    def surface(self) -> Surface:
+        contact, places = self.found.contact, self.at.task.places
+        raw = contact.normal @ self.at.level.recovery.raw
+        σ_YY = self.found.pressure.σ_YY(places.X)
+        return self.at.displacement.surface(self.g, contact.weights, σ_YY, raw)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        return self.at.displacement.inside(self.found.contact.weights)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        at, weights = self.at, self.found.contact.weights
+        field = at.displacement.at
+        return Strength(
+            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local,
+            self.half_width,
+        )  # fmt: skip

@@ -1,0 +1,45 @@
+"""A wedge with two equal flanks."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.parameters import check, parameter
+from galinx.solvers.profiles.profile import PROFILES
+
+
+@dataclass(frozen=True)
+class Wedge:
+    """A wedge of the height ``slope_of_flanks``·|X|; the pressure at its tip is infinite.
+
+    Raises:
+        ValueError: the slope is not positive.
+    """
+
+    about: ClassVar[str] = "wedge"
+    sharp: ClassVar[tuple[bool, bool]] = (False, False)
+    kinks: ClassVar[tuple[float, ...]] = (0.0,)
+    jumps: ClassVar[bool] = True
+    exponent: ClassVar[float] = 1.0
+
+    slope_of_flanks: float = parameter(
+        "slope", "slope of both flanks", "", symbol="s", above=0.0, usual=(1e-6, 0.2),
+        note="of an angle θ to the surface, tan θ; linear theory wants it small",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def height(self, X: NDArray) -> NDArray[np.float64]:
+        return self.slope_of_flanks * np.abs(X)
+
+    def slope(self, X: NDArray) -> NDArray[np.float64]:
+        return self.slope_of_flanks * np.sign(X)
+
+    def words(self) -> str:
+        return f"wedge, slope of its flanks {self.slope_of_flanks:g}"
+
+
+PROFILES.register("wedge", Wedge)

@@ -1,0 +1,301 @@
+"""Contacts whose ends are found: where they end, and the pressure under the punch.
+
+Exact for parabolas and tilted flat punches, by quadrature for every other convex profile. Lengths are
+over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.errors import SolveError
+from galinx.solvers.profiles import jumps, kinks
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.ends import Balance, free_ends
+from galinx.solvers.sie.panels import FreeEnds
+from galinx.solvers.sie.weighted import Weighted
+from galinx.solvers.solids.solid import Response
+
+#: Positions nearer than this to where the pressure is infinite are taken at this distance, over a.
+NEXT_TO_TIP = 1e-6
+#: Places at which a largest pressure is looked for, and how often nearer.
+_LOOKED_AT, _ROUNDS = 41, 8
+
+
+@dataclass(frozen=True)
+class Group:
+    """Some states whose pressure is of one kind.
+
+    Attributes:
+        rows: numbers of these states.
+        pressure: a potential with ``σ_YY`` and ``hilbert``; of several states, or of the only one.
+        α, β: exponents at the right and the left end, (rows,).
+        half_width, centre: of the contact [m], (rows,).
+        K_I: at the left and the right end, (rows, 2).
+        infinite: places over the half-width at which the pressure is infinite inside the contact.
+    """
+
+    rows: NDArray[np.int64]
+    pressure: Any
+    α: NDArray[np.float64]
+    β: NDArray[np.float64]
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    K_I: NDArray[np.float64]
+    infinite: Sequence[float] = ()
+
+    def off(self, r: NDArray) -> NDArray[np.float64]:
+        """Positions, none where the pressure is infinite."""
+        for at in self.infinite:
+            side = np.where(r < at, -1.0, 1.0)
+            r = np.where(np.abs(r - at) < NEXT_TO_TIP, at + side * NEXT_TO_TIP, r)
+        return r
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts at one speed with several frictions.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY, (states,).
+        groups: all states.
+    """
+
+    response: Response
+    g: NDArray[np.float64]
+    groups: tuple[Group, ...]
+
+    def of(self, name: str) -> NDArray[np.float64]:
+        """``α``, ``β``, ``half_width``, ``centre`` or ``K_I`` of every state."""
+        parts = [getattr(group, name) for group in self.groups]
+        found = np.empty((len(self.g), *parts[0].shape[1:]))
+        for group, part in zip(self.groups, parts):
+            found[group.rows] = part
+        return found
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress at r in (-1, 1), (states, points)."""
+        found = np.empty((len(self.g), len(r)))
+        for group in self.groups:
+            found[group.rows] = group.pressure.σ_YY(group.off(r))
+        return found
+
+    def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
+        """In-plane stress on the whole surface, off the ends, (states, points)."""
+        found, answer = np.empty((len(self.g), len(r))), self.response
+        for group in self.groups:
+            at, σ_YY = group.off(r), np.zeros((len(group.rows), len(r)))
+            under, g = np.abs(r) < 1.0, self.g[group.rows, None]
+            σ_YY[:, under] = group.pressure.σ_YY(at[under])
+            u_X = answer.q * σ_YY + (answer.n12 + answer.m * g) * group.pressure.hilbert(at)
+            found[group.rows] = answer.σ_XX(u_X, σ_YY, g * σ_YY)
+        return found
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        found = np.empty((3, len(self.g), X.shape[1]))
+        for group in self.groups:
+            of_each = group.rows if len(X) > 1 else [0]
+            g = self.g[group.rows, None]
+            found[:, group.rows] = self.response.inside(group.pressure, g, X[of_each], Y[of_each])
+        return found
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """The same at points with Y <= 0, those of the surface among them."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        on = np.broadcast_to(Y == 0.0, (len(self.g), X.shape[1]))
+        found = self.inside(X, np.where(Y == 0.0, -1.0, Y))
+        for group in self.groups:
+            for row in group.rows[on[group.rows].any(axis=1)].tolist():
+                r = X[row if len(X) > 1 else 0, on[row]]
+                alone = self._alone(row, group)
+                σ_YY = np.zeros((1, len(r)))
+                σ_YY[:, np.abs(r) < 1.0] = alone.σ_YY(r[np.abs(r) < 1.0])
+                found[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
+        return found
+
+    def _alone(self, row: int, group: Group) -> "Contacts":
+        """One state."""
+        i = int(np.flatnonzero(group.rows == row)[0])
+        pressure = group.pressure
+        if isinstance(pressure, Weighted):
+            α, β, A, B = (
+                np.asarray(part)[i : i + 1] for part in (pressure.α, pressure.β, pressure.A, pressure.B)
+            )
+            pressure = Weighted(α, β, A, B, pressure.order)
+        some = slice(i, i + 1)
+        alone = Group(
+            np.array([0]), pressure, group.α[some], group.β[some], group.half_width[some],
+            group.centre[some], group.K_I[some], group.infinite,
+        )  # fmt: skip
+        return Contacts(self.response, self.g[row : row + 1], (alone,))
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest contact pressure, and where; NaN where it is infinite: (states,) each."""
+        value, place = np.full((2, len(self.g)), np.nan)
+        for group in self.groups:
+            finite = (group.α > 0.0) & (group.β > 0.0) & (not group.infinite)
+            if finite.all():
+                value[group.rows], place[group.rows] = _largest(group)
+        return value, place
+
+
+def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest pressure and its place, by looking nearer and nearer; a parabola at last."""
+    if isinstance(group.pressure, Weighted):
+        place = (group.β - group.α) / (group.β + group.α)
+        return -group.pressure.σ_YY(place[:, None])[:, 0], place
+    low, high = -1.0, 1.0
+    for _ in range(_ROUNDS):
+        r = np.linspace(low, high, _LOOKED_AT)[1:-1]
+        p = -group.pressure.σ_YY(group.off(r))
+        i = int(np.clip(np.argmax(p), 1, len(r) - 2))
+        step = r[1] - r[0]
+        low, high = r[i] - step, r[i] + step
+        if step < 1e-6:  # next to a kink the largest pressure may have a cusp
+            break
+    left, middle, right = p[i - 1 : i + 2]
+    bend = left - 2.0 * middle + right
+    u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
+    top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
+    return np.array([max(top, middle)]), np.array([r[i] + u * step])
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """Exponents of the pressure at the right and the left end, (states,) each."""
+
+    α: NDArray[np.float64]
+    β: NDArray[np.float64]
+
+
+def local_exponents(response: Response, g: NDArray, profile: Any, load: float) -> Exponents | FlatPunch:
+    """What the local analysis says of the ends: as of a flat punch at sharp ones, one more at others."""
+    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
+    if all(sharp):
+        return flat
+    try:
+        found = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
+    except SolveError:
+        found = None  # told of by the method that solves
+    if found:
+        return Exponents(found.of("α"), found.of("β"))
+    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
+
+
+def contacts(response: Response, g: NDArray, profile: Any, load: float) -> Contacts:
+    """The contacts of a punch.
+
+    Args:
+        response: of the half-plane at a speed.
+        g: σ_XY/σ_YY under the punch, (states,).
+        profile: of the punch; its ends are found.
+        load: N/μ [m].
+
+    Raises:
+        SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
+    """
+    g = np.atleast_1d(np.asarray(g, dtype=float))
+    n = response.n + g * response.n12
+    if not np.all(n > 0.0):
+        raise SolveError(
+            f"at c = {response.c:g} and σ_XY/σ_YY = {g[np.argmin(n)]:g} the surface does not resist a "
+            "punch (not below the Rayleigh speed): no contact of finite width carries a load"
+        )
+    if isinstance(profile, Flat):
+        return Contacts(response, g, _tilted(response, g, n, profile, load))
+    if isinstance(profile, Parabolic):
+        return Contacts(response, g, (_parabolas(response, g, n, profile, load),))
+    return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
+
+
+def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: float) -> Group:
+    flat = FlatPunch(response, g)
+    a, b = 1.0 + flat.α, 1.0 + flat.β
+    h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
+    A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
+    pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
+    return Group(np.arange(len(g)), pressure, a, b, h, h * (b - a), np.zeros((len(g), 2)))
+
+
+def _tilted(response: Response, g: NDArray, n: NDArray, profile: Flat, load: float) -> tuple[Group, ...]:
+    """Flat punches with both edges in contact, or with one lifted off."""
+    flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
+    sin, α, β = flat._sin, flat.α, flat.β
+    a, b = 1.0 + α, 1.0 + β
+    A, B = 2.0 * sin / np.pi, -θ * sin / n * (2.0 * half / load)
+    lifted = (A + 2.0 * a * B > 0.0) | (A - 2.0 * b * B > 0.0)
+    order = np.where(lifted, 0, -1)
+    # One end given, one found: the contact starts at the lower edge.
+    share = a if θ > 0.0 else b
+    h = np.where(lifted, load * n / (2.0 * np.pi * share * abs(θ)) if θ else half, half)
+    centre = np.where(lifted, np.sign(θ) * (h - half), 0.0)
+    α, β = (np.where(lifted, α + (θ > 0.0), α), np.where(lifted, β + (θ < 0.0), β))
+    A = np.where(lifted, sin / (np.pi * share), A + B * (flat.α - flat.β))
+    B = np.where(lifted, 0.0, B)
+    found = []
+    for kind in (-1, 0):
+        rows = np.flatnonzero(order == kind)
+        if len(rows):
+            column = np.s_[rows, None]
+            pressure = Weighted(α[column], β[column], A[column], B[column], kind)
+            K = pressure.K_I[:, 0]
+            found.append(Group(rows, pressure, α[rows], β[rows], h[rows], centre[rows], K))
+    return tuple(found)
+
+
+def _by_quadrature(
+    response: Response, g: NDArray, n: NDArray, profile: Any, load: float
+) -> Sequence[Group]:
+    """Any convex profile, state after state, equal ones once."""
+    flat, found, start = FlatPunch(response, g), [], None
+    _, first, inverse = np.unique(g, return_index=True, return_inverse=True)
+    for k, i in enumerate(first.tolist()):
+        a = float(1.0 + flat.α[i])
+        balance = Balance(profile, a, load * float(n[i]) / np.sin(np.pi * a))
+        m, h = start = free_ends(balance, start)
+        _check_reach(profile, m - h, m + h)
+        pressure, tips = pressure_of(balance, response, float(g[i]), m, h, load)
+        for row in np.flatnonzero(inverse == k).tolist():
+            group = Group(
+                np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
+                np.array([m]), np.zeros((1, 2)), tips,
+            )  # fmt: skip
+            found.append(group)
+    return found
+
+
+def pressure_of(
+    balance: Balance, response: Response, g: float, m: float, h: float, load: float
+) -> tuple[FreeEnds, tuple[float, ...]]:
+    """The pressure of a contact, and where it is infinite inside, over the half-width."""
+    panels, profile = balance.panels(m, h), balance.profile
+    unit = 2.0 * h / load
+
+    def slope(r: NDArray) -> NDArray[np.float64]:
+        return unit * np.asarray(profile.slope(m + h * r), dtype=float)
+
+    pressure = FreeEnds(panels, slope(panels.t), slope, response.n + g * response.n12, g * response.q)
+    tips = tuple((x - m) / h for x in kinks(profile)) if jumps(profile) else ()
+    return pressure, tips
+
+
+def _check_reach(profile: Any, left: float, right: float) -> None:
+    """Does a table say what is needed?
+
+    Raises:
+        SolveError: the contact is wider.
+    """
+    first, last = getattr(profile, "reach", (-np.inf, np.inf))
+    if left < first or right > last:
+        raise SolveError(
+            f"the contact would reach from X = {left:g} m to {right:g} m, but the punch is known from "
+            f"{first:g} m to {last:g} m only; give more of its shape, or a smaller load"
+        )

@@ -1,0 +1,294 @@
+"""The pressure that answers any slope of a contact with two free ends, by quadrature in panels.
+
+With f = μ v,X under the punch over the contact [-1, 1], w = (1 - s)^a (1 + s)^b, a + b = 1, and
+N̂ = n + g n₁₂ the potential of the pressure that vanishes at both ends is
+
+    Φ(z) = -(sin πa/(π N̂)) X(z) ∫ f(t)/(w(t) (t - z)) dt,     X = (z - 1)^a (z + 1)^b.
+
+In the coordinate x = log((1 - t)/(1 + t)), which resolves both ends alike, this is a convolution,
+
+    Φ = -(sin πa/(π N̂)) e^(-iπa) T(y),   T(y) = ∫ f e^(b ξ)/(1 - e^ξ) dx,   ξ = x - y,
+
+y = log((1 - z)/(1 + z)), 0 < Im y <= π below the surface. Panels end where the slope or its derivative
+jumps; in one that is near y the smooth rest of the integrand is a sum of Legendre polynomials, whose
+Cauchy integrals are Legendre's functions of the second kind.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Gauss points of a panel, their weights, and from values there to coefficients of Legendre polynomials.
+_NODES = 20
+_τ, _w = np.polynomial.legendre.leggauss(_NODES)
+_TO_LEGENDRE = (
+    (np.arange(_NODES) + 0.5)[:, None] * np.polynomial.legendre.legvander(_τ, _NODES - 1).T * _w
+)
+
+#: Longest panel; |x| beyond which f is that of the end and the rest is known; grading next to a place
+#: where the slope is not smooth, and how far it goes.
+_LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
+
+#: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
+_NEAR = 2.4
+
+#: A step over Im y from which on two values are far enough from one another to be subtracted.
+_APART = 0.05
+
+
+def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
+    """Where panels end in x.
+
+    Args:
+        kinks: positions in (-1, 1) at which the slope or its derivative jumps.
+        rough: is the slope no smooth function on both sides of them, but a power?
+    """
+    inside = kinks[np.abs(kinks) < 1.0]
+    at = np.sort(np.log1p(-inside) - np.log1p(inside))
+    at = at[np.abs(at) < _REACH]
+    if rough:
+        steps = _GRADING ** np.arange(_STEPS)
+        at = np.concatenate([at, *(x + np.concatenate([-steps, steps]) for x in at)])
+    fixed = np.unique(np.concatenate([[-_REACH, _REACH], at]))
+    parts = [
+        np.linspace(x0, x1, int(np.ceil((x1 - x0) / _LONGEST)) + 1)[:-1] for x0, x1 in pairwise(fixed)
+    ]
+    return np.concatenate([*parts, [_REACH]])
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Quadrature over the contact.
+
+    Attributes:
+        a: exponent of w at the right end, in (0, 1).
+        ends: of the panels in x.
+    """
+
+    a: float
+    ends: NDArray[np.float64]
+
+    @property
+    def b(self) -> float:
+        return 1.0 - self.a
+
+    @cached_property
+    def middle(self) -> NDArray[np.float64]:
+        return (self.ends[1:] + self.ends[:-1]) / 2.0
+
+    @cached_property
+    def half(self) -> NDArray[np.float64]:
+        return np.diff(self.ends) / 2.0
+
+    @cached_property
+    def x(self) -> NDArray[np.float64]:
+        """Gauss points, (panels, nodes)."""
+        return self.middle[:, None] + self.half[:, None] * _τ
+
+    @cached_property
+    def t(self) -> NDArray[np.float64]:
+        """Positions in the contact, with both ends as the last two: (panels·nodes + 2,)."""
+        return np.append(-np.tanh(self.x / 2.0).ravel(), [1.0, -1.0])
+
+    @cached_property
+    def weights(self) -> NDArray[np.float64]:
+        """Of ∫ F(t)/w(t) dt = Σ weights·F, F at :attr:`t`."""
+        density = np.exp(self.b * self.x - np.logaddexp(0.0, self.x))
+        inner = self.half[:, None] * _w * density
+        tails = np.exp(-_REACH * np.array([self.b, self.a])) / [self.b, self.a]
+        return np.append(inner.ravel(), tails)
+
+    def transform(self, f: NDArray, y: NDArray) -> NDArray[Any]:
+        """T(y), a principal value where y is real.
+
+        Args:
+            f: at :attr:`t`, (nodes,), or (points, nodes) where it is another for every y.
+            y: (points,).
+        """
+        return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, False)
+
+    def derivative(self, f: NDArray, y: NDArray) -> NDArray[np.complex128]:
+        """dT/dy off the real axis; of one f."""
+        return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, True)
+
+    def _transform(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
+        values = f[:, :-2].reshape(len(y), *self.x.shape)
+        ζ = (y[:, None] - self.middle) / self.half
+        root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
+        near = np.abs(ζ + root) < _NEAR
+        kernel = _kernel(self.b, np.where(near[..., None], 1.0, self.x - y[:, None, None]), derived)
+        by_panel = np.einsum("pkn,pkn,n->pk", values, kernel, _w) * self.half
+        found = np.where(near, 0.0, by_panel).sum(axis=1)
+        point, panel = np.nonzero(near)
+        ξ = self.x[panel] - y[point][:, None]
+        simple, double = _smooth(self.b, ξ, derived)
+        of_panel = values[point, panel]
+        # Of two panels that meet the distances from there are the same number, and logarithms cancel.
+        left, right = (y[point] - self.ends[panel + i] for i in (0, 1))
+        Q, Q_derived = _second_kind(ζ[point, panel], left, right, self.half[panel], derived)
+        near_part = -2.0 * np.einsum("ik,ik->i", (of_panel * simple) @ _TO_LEGENDRE.T, Q)
+        if derived:
+            twice = np.einsum("ik,ik->i", (of_panel * double) @ _TO_LEGENDRE.T, Q_derived)
+            near_part = near_part - 2.0 * twice / self.half[panel]
+        np.add.at(found := found.astype(np.result_type(found, near_part)), point, near_part)
+        return found + self._tails(f, y, derived)
+
+    def _tails(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
+        """Beyond the panels, where f is that of the ends: two terms of a power series are all of it."""
+        found: Any = 0.0
+        for value, rate, ξ, sign in (
+            (f[:, -2], self.b, -_REACH - y, 1.0), (f[:, -1], self.a, y - _REACH, -1.0)
+        ):  # fmt: skip
+            for k in (rate, rate + 1.0):
+                term = np.exp(k * ξ) / k
+                found = found + value * (-k * term if derived else sign * term)
+        return found
+
+
+def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
+    """k = e^(bξ)/(1 - e^ξ), or -dk/dξ, stable for every ξ."""
+    lower = ξ.real < 0.0
+    falling = np.where(lower, ξ, -ξ)
+    E, rest = np.exp(falling), -np.expm1(falling)
+    # For ξ > 0: k = -e^(-(1 - b) ξ)/(1 - e^(-ξ)).
+    kernel = np.where(lower, 1.0, -1.0) * np.exp(np.where(lower, b, 1.0 - b) * falling) / rest
+    if not derived:
+        return kernel
+    # k' = k (b + e^ξ/(1 - e^ξ))
+    inner = np.where(lower, E, -1.0) / rest
+    return -kernel * (b + inner)
+
+
+def _smooth(b: float, ξ: NDArray, derived: bool) -> tuple[NDArray[Any], NDArray[Any]]:
+    """What multiplies 1/ξ, and 1/ξ², in the kernel, or in its derivative over -ξ.
+
+    The kernel is κ/ξ with κ = -e^(bξ) ξ/(e^ξ - 1); its negative derivative κ/ξ² - κ'/ξ.
+    """
+    small = np.abs(ξ) < 1e-3
+    safe = np.where(small, 1.0, ξ)
+    E = np.expm1(safe)
+    ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / E)  # ξ/(e^ξ - 1)
+    κ = -np.exp(b * ξ) * ratio
+    if not derived:
+        return κ, κ
+    slope = np.where(small, -0.5 + ξ / 6.0 - ξ**3 / 180.0, (E - safe * (E + 1.0)) / E**2)
+    return np.exp(b * ξ) * (b * ratio + slope), κ
+
+
+def _second_kind(
+    ζ: NDArray, left: NDArray, right: NDArray, half: NDArray, derived: bool
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Q_k(ζ) with ∫ P_k(τ)/(τ - ζ) dτ = -2 Q_k, principal values for real ζ, and dQ_k/dζ: (n, nodes).
+
+    Args:
+        ζ: in a panel's own coordinate.
+        left, right: distances from its ends, of which ``half`` is half the difference.
+        half: half its length.
+        derived: are derivatives wanted?
+    """
+    left, right = _off(left), _off(right)
+    if np.iscomplexobj(ζ):
+        first = 0.5 * (np.log(left) - np.log(right))
+    else:
+        first = 0.5 * np.log(np.abs(left / right))
+    Q = [first, ζ * first - 1.0]
+    for k in range(1, _NODES - 1):
+        Q.append(((2 * k + 1) * ζ * Q[k] - k * Q[k - 1]) / (k + 1))
+    if not derived:
+        return np.stack(Q, axis=-1), np.stack(Q, axis=-1)
+    steepness = -(half**2) / (left * right)
+    D = [steepness, first + ζ * steepness]
+    for k in range(1, _NODES - 1):
+        D.append(D[k - 1] + (2 * k + 1) * Q[k])
+    return np.stack(Q, axis=-1), np.stack(D, axis=-1)
+
+
+def _off(distance: NDArray) -> NDArray[Any]:
+    """Not quite at a panel's end: the logarithms of two panels cancel there, infinite ones would not."""
+    return np.where(np.abs(distance) < 1e-300, 1e-300, distance)
+
+
+@dataclass(frozen=True)
+class FreeEnds:
+    """The pressure of a contact [-1, 1] with two free ends, over N/(2h).
+
+    Attributes:
+        panels: of the contact.
+        f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
+        slope: the same at any positions in the contact.
+        n, Q: n + g n₁₂ and g q of the half-plane.
+        infinite: positions at which the pressure is infinite.
+    """
+
+    panels: Panels
+    f: NDArray[np.float64]
+    slope: Any
+    n: float
+    Q: float
+    infinite: Sequence[float] = ()
+
+    @property
+    def _factor(self) -> float:
+        return float(np.sin(np.pi * self.panels.a) / (np.pi * self.n))
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress at r in (-1, 1), (points,)."""
+        f = self.slope(r)
+        # Without f(r) nothing cancels towards the ends.
+        T = self.panels.transform(self.f - f[:, None], np.log1p(-r) - np.log1p(r))
+        return -self._factor * np.sin(np.pi * self.panels.a) * T
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface, (points,)."""
+        found, inside, beside = np.empty(len(r)), np.abs(r) < 1.0, np.abs(r) > 1.0
+        under, end = r[inside], ~inside & ~beside
+        found[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
+        found[end] = self.slope(r[end]) / self.n
+        found[beside] = self.at(r[beside] - 0.0j).real
+        return found
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        flat = np.ravel(z).astype(complex)
+        found = self._phase * self.panels.transform(self.f, _seen(flat))
+        return found.reshape(np.shape(z))
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
+        y, shape = _seen(z), np.shape(z)
+        moved = _seen(z + share * step)
+        δ = np.asarray(-step / (1.0 - z) - step / (1.0 + z), dtype=complex)
+        if share != 0.0:
+            δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
+        small = np.abs(share * δ) < _APART * np.minimum(y.imag, moved.imag)
+        found = np.empty(shape, dtype=complex)
+        τ, w = np.polynomial.legendre.leggauss(6)
+        found[small] = sum(
+            weight * self.panels.derivative(self.f, y[small] + node * share * δ[small])
+            for node, weight in zip((τ + 1.0) / 2.0, w / 2.0)
+        ) * δ[small]  # fmt: skip
+        apart = [self.panels.transform(self.f, some[~small]) for some in (y, moved)]
+        if share != 0.0:
+            found[~small] = (apart[1] - apart[0]) / share
+        return (self._phase * found).reshape(shape)
+
+    @property
+    def _phase(self) -> complex:
+        return complex(-self._factor * np.exp(-1j * np.pi * self.panels.a))
+
+
+def _seen(z: NDArray) -> NDArray[np.complex128]:
+    """log((1 - z)/(1 + z)) with its imaginary part in (0, π] below the surface and beside the contact."""
+    y = np.log((1.0 - z) / (1.0 + z))
+    return y.real + 1j * np.abs(y.imag)
+
+
+def _log1p(x: NDArray) -> NDArray[np.complex128]:
+    from scipy.special import log1p  # NumPy's loses digits for small complex arguments
+
+    return np.asarray(log1p(x))

@@ -1,6 +1,6 @@
 """Tables as text."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, validity, yielding
+from galinx.postprocess.quantities import Quantity, runs, slider, validity, yielding
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, TEXT
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
@@ -37,6 +37,11 @@ class Sheet:
 #: Columns of the states' table after what tells states apart: (head, quantity, form).
 _EITHER = [("K_I", of.K_I_BOTH, "{:.6f}"), ("error", of.TRUE_ERROR, "{:.1e}")]
 _ALONE = [("K(-a)", of.K_I_LEFT[FEM], "{:.6f}"), ("K(a)", of.K_I_RIGHT[FEM], "{:.6f}")]
+_ENDS = [
+    (head, row, "{:.4e}")
+    for head, rows in (("a (m)", of.HALF_WIDTH), ("centre (m)", of.CENTRE))
+    for row in (rows[FEM], rows[CLOSED_FORM])
+]
 _BOTH = [
     ("estimate", of.ESTIMATE, "{:.1e}"), ("v₀ (m)", of.INDENTATION, "{:.4e}"),
     ("α", of.ALPHA, "{:.4f}"), ("β", of.BETA, "{:.4f}"),
@@ -49,8 +54,10 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
     shown = {_head(row, scaling): (row, _form(row)) for row in varied.values()}
     results = _EITHER if of.K_I_BOTH.path in data else _ALONE
-    for head, row, form in (("f", of.FRICTION, "{:+.4f}"), *results, *_BOTH):
-        if row.path in data:
+    shown["f"] = of.FRICTION, "{:+.4f}"
+    for head, row, form in (*results, *_ENDS, *_BOTH):
+        # Nothing but zeros are the intensities of ends that are found.
+        if row.path in data and head not in shown and data[row.path].any():
             shown[head] = row, form
     factors = {path: _told(row, scaling).factor for path, row in apart.items() if row.type != TEXT}
     series = [
@@ -79,6 +86,8 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     notes.append(f"dimensionless where no unit stands{of_speed}")
     if "error" in shown:
         notes.append("K_I: closed form, at both edges; error and estimate: of finite elements, relative")
+    if "a (m)" in shown:
+        notes.append("a, centre: half-width of the contact, and its middle from the punch's axis")
     if "α" in shown:
         notes.append("α, β: exponents of the pressure at X = a and X = -a")
     return Sheet(title or "States", ["state", *shown], rows, notes)
@@ -136,3 +145,50 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
         "exact: closed form, FE: finite elements",
     ]
     return Sheet("Yield, and where answers hold", ["", "by", "unit", "least", "most"], rows, notes)
+
+
+def loops_sheet(data: dict[str, Any]) -> Sheet:
+    """What the first friction laws take and bear."""
+    varied = [
+        row
+        for path, row in parameters(data).items()
+        if row not in (of.MOTION, of.POSITION) and len(np.unique(data[path])) > 1
+    ]
+    of_state, count = data[runs.LOOP_OF_STATE.path], min(len(data[runs.LOOP_F.path]), LIMIT)
+    states = [int(np.argmax(of_state == n)) for n in range(count)]
+    heads = ["loop", *(_head(row, as_archived) for row in varied)]
+    rows = [
+        [str(n), *(_form(row).format(data[row.path].tolist()[state]) for row in varied)]
+        for n, state in enumerate(states)
+    ]
+    for head, row, reduced in _OF_LOOPS:
+        if row.path in data:
+            heads.append(head)
+            for cells, values in zip(rows, data[row.path]):
+                cells.append(f"{reduced(values):.5g}")
+    notes = [
+        "work: dissipated in all strokes, and in a closed loop where there is one; breakaway: largest"
+    ]
+    notes.append("of all strokes; stiffness: where the first stroke begins; all per depth")
+    return Sheet("Friction loops", heads, rows, notes)
+
+
+#: Of loops, by what a table calls them, and what it tells of the strokes.
+_OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
+    ("work (J/m)", runs.LOOP_WORK, np.sum),
+    ("closed loop (J/m)", runs.LOOP_CYCLE, float),
+    ("breakaway (N/m)", runs.LOOP_BREAKAWAY, np.max),
+    ("stiffness (N/m²)", runs.LOOP_STIFFNESS, lambda values: values[0]),
+)
+_OF_SLIDERS = (
+    ("period (s)", slider.PERIOD), ("slip per cycle (m)", slider.SLIP),
+    ("peak (m/s)", slider.PEAK), ("least (m/s)", slider.LEAST),
+)  # fmt: skip
+
+
+def sliders_sheet(data: dict[str, Any]) -> Sheet:
+    """Stick-slip of the first sliders, one for each law."""
+    columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
+    rows = [[str(n), *(f"{value:.6g}" for value in values)] for n, values in enumerate(zip(*columns))]
+    heads = ["law", *(head for head, _ in _OF_SLIDERS)]
+    return Sheet("Stick-slip of the slider", heads, rows, ["peak, least: of the velocity; nan: no cycle"])

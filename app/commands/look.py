@@ -17,12 +17,12 @@ from galinx.app.console.terminal import print_sheets, print_warnings
 @click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
 @options.si
 def show(archive: Path, as_json: bool, si: bool) -> int:
-    """Show the states and the verdict of ARCHIVE, where it yields, and where its answers hold.
+    """Show states, friction loops and verdict of ARCHIVE, where it yields, and where its answers hold.
 
     Example: ./run.sh show tables.h5 --si
     """
     from galinx.app.results.si import scaling
-    from galinx.postprocess.tables import limits_sheet, states_sheet
+    from galinx.postprocess.tables import limits_sheet, loops_sheet, sliders_sheet, states_sheet
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -31,7 +31,8 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
         if as_json:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
-            sheets = states_sheet(data, attributes["title"], scaled), limits_sheet(data, scaled)
+            states = states_sheet(data, attributes["title"], scaled)
+            sheets = states, loops_sheet(data), sliders_sheet(data), limits_sheet(data, scaled)
             print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
             print_warnings(attributes)
     return errors.GOOD

@@ -170,6 +170,8 @@ def parts(X: NDArray) -> tuple[NDArray, NDArray, NDArray]:
 def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for the regular part; the singular ends run out of the picture."""
     regular = values[:, from_edge(X) > _EDGE]
+    if np.nanmax(np.abs(values)) <= 1.05 * np.nanmax(np.abs(regular)):
+        regular = values  # nothing runs out: the ends of the contact are smooth
     low, high = np.nanmin(regular), np.nanmax(regular)
     if 0.0 < -high < 0.2 * (high - low):  # zero is near
         high = 0.0

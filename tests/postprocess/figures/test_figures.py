@@ -12,6 +12,7 @@ from galinx.app.pictures.choice import size
 from galinx.app.study.drawings import of_study
 from galinx.postprocess.figures.canvas import Room, Size, TooSmall, content, panels
 from galinx.postprocess.figures.style import DPI
+from galinx.postprocess.figures.surface import limits
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -90,6 +91,14 @@ def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run, laws_r
     for run in (map_run, sweep_run, laws_run):
         legible(run.drawings())
         legible(run.drawings(size=size("3.5in")))
+
+
+def test_ends_of_the_contact_are_in_the_picture_where_nothing_is_infinite():
+    X = np.cos(np.linspace(1e-3, np.pi - 1e-3, 301))
+    smooth, sharp = -np.sqrt(1.0 - X**2)[None], -1.0 / np.sqrt(1.0 - X**2)[None]
+    low, high = limits(X, smooth)
+    assert low < smooth.min() and high > smooth.max()
+    assert limits(X, sharp)[0] > 0.1 * sharp.min()
 
 
 def test_an_inset_goes_where_no_curve_is():

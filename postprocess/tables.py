@@ -166,11 +166,11 @@ def loops_sheet(data: dict[str, Any]) -> Sheet:
             heads.append(head)
             for cells, values in zip(rows, data[row.path]):
                 cells.append(f"{reduced(values):.5g}")
-    notes = [
-        "work: dissipated in all strokes, and in a closed loop where there is one; breakaway: largest"
-    ]
-    notes.append("of all strokes; stiffness: where the first stroke begins; all per depth")
-    return Sheet("Friction loops", heads, rows, notes)
+    note = (
+        "work: dissipated in all strokes, and in a closed loop where there is one; breakaway: largest of "
+        "all strokes; stiffness: where the first stroke begins; all per depth"
+    )
+    return Sheet("Friction loops", heads, rows, [note])
 
 
 #: Of loops, by what a table calls them, and what it tells of the strokes.

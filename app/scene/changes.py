@@ -11,6 +11,7 @@ from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
+from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS
 
 #: What a material gives, or may not have.
@@ -89,17 +90,24 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
 
 def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Constants of the old solid or friction law where another takes its place: they would not fit."""
-    return [*_of_old_solid(tree, changes), *_of_old_law(tree, changes)]
+    """Constants of the old model where another takes its place: they would not fit."""
+    return [
+        *_of_old_solid(tree, changes),
+        *_of_old_model("friction.model", LAWS, tree, changes),
+        *_of_old_model("punch.profile", PROFILES, tree, changes),
+    ]
 
 
-def _of_old_law(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    law, section = changes.get("friction.model"), tree.get("friction")
-    if not isinstance(law, str) or law not in LAWS or not isinstance(section, dict):
+def _of_old_model(
+    choice: str, models: Mapping[str, Any], tree: Any, changes: Mapping[str, Any]
+) -> list[str]:
+    section = choice.partition(".")[0]
+    model, keys = changes.get(choice), tree.get(section)
+    if not isinstance(model, str) or model not in models or not isinstance(keys, dict):
         return []
-    own = parameters(LAWS[law])
-    every = {key for model in LAWS.values() for key in parameters(model)}
-    return [f"friction.{key}" for key in section if key in every and key not in own]
+    own = parameters(models[model])
+    every = {key for known in models.values() for key in parameters(known)}
+    return [f"{section}.{key}" for key in keys if key in every and key not in own]
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:

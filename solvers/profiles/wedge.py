@@ -25,8 +25,9 @@ class Wedge:
     exponent: ClassVar[float] = 1.0
 
     slope_of_flanks: float = parameter(
-        "slope", "slope of both flanks", "", symbol="s", above=0.0, usual=(1e-6, 0.2),
-        note="of an angle θ to the surface, tan θ; linear theory wants it small",
+        "slope", "slope of both flanks", "rad", symbol="s", above=0.0, usual=(1e-6, 0.2),
+        note='a number, or an angle to the surface as `"1 deg"`, which stands for its slope, as linear '
+        "theory has it; it wants it small",
     )  # fmt: skip
 
     def __post_init__(self) -> None:

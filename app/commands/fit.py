@@ -37,7 +37,7 @@ def fit(
     [mm],f" for one stroke from rest, or "time [s],position [mm],f" for any motion. f is friction over
     load. The section [friction] of a scene and a figure with the residuals are written into a folder.
 
-    Example: ./run.sh fit dahl measured.csv -o fit
+    Example: ./run.sh fit dahl scenes/slip.csv -o fit
     """
     from galinx.app.results.fitted import figure, fitted, section
     from galinx.postprocess.figures.canvas import save

@@ -38,6 +38,7 @@ GOOD = {
     "csv": (["quick.h5"], [["--states"], ["--si"]]),
     "plot": (None, []),
     "fields": (None, []),
+    "fit": (None, []),
     "paper": (None, []),
     "stress": (None, []),
 }

@@ -19,7 +19,7 @@ from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
 #: What rounding does, over what of it breaks the mirror image.
-_ROUNDING = 2.0
+_ROUNDING = 3.0
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9

@@ -192,7 +192,10 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
         "print([signal.getsignal(number) == signal.SIG_IGN for number in stop.SIGNALS])"
     )
     done = subprocess.run(
-        ["bash", "-c", "trap '' HUP; exec \"$@\"", "bash", sys.executable, "-c", script],
+        [
+            "env", "--default-signal=INT,TERM", "bash", "-c", "trap '' HUP; exec \"$@\"", "bash",
+            sys.executable, "-c", script,
+        ],
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stdout == "[False, False, True]\n", done.stderr

@@ -20,6 +20,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.words import expense, lines
 from galinx.app.scene.read import parse
+from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
@@ -84,7 +85,8 @@ def test_a_mutated_scene_runs_or_is_refused_with_a_message(text):
         return
     data = result.data
     assert np.isfinite(data["states/f"]).all()
-    assert (np.abs(data["states/f"]) <= np.max(data["states/mu_c"]) * (1.0 + 1e-12)).all()
+    if scene.friction.law is Dahl:
+        assert (np.abs(data["states/f"]) <= np.max(data["states/mu_c"]) * (1.0 + 1e-12)).all()
     if "states/closed_form/K_I" in data:
         K_I = data["states/closed_form/K_I"]
         assert ((K_I >= 0.0) & (1.0 / np.pi >= K_I)).all()

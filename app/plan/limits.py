@@ -22,6 +22,21 @@ _INNER = 0.6
 _NARROWEST = 1e-9
 
 
+def check_size(body: Body, methods: Collection[str]) -> None:
+    """Are stresses, strains and displacements numbers that a computer can hold?
+
+    Raises:
+        BadInput: one is not.
+    """
+    least, most = np.finfo(float).tiny, np.finfo(float).max
+    told = {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement} if methods else {}
+    if wrong := [f"{value:g} {unit}" for unit, value in told.items() if not least <= value <= most]:
+        raise BadInput(
+            f"punch: load {body.load:g} N/m on the half-width {body.half_width:g} m makes "
+            f"{listed(wrong)}, expected numbers from {least:.0e} to {most:.0e}"
+        )
+
+
 def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
     """Warnings about speeds.
 

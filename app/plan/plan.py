@@ -11,6 +11,7 @@ from galinx.app.plan.limits import (
     check_mode,
     check_places,
     check_pressure,
+    check_size,
     check_speeds,
     check_states,
     warnings_of,
@@ -55,6 +56,7 @@ def make_plan(scene: Scene) -> Plan:
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
     body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
+    check_size(body, methods)
     check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)

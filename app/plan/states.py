@@ -200,7 +200,7 @@ def _columns(scene: Scene, f: NDArray) -> dict[str, NDArray]:
 
 def _crossings(scene: Scene, lengths: NDArray, c: NDArray) -> NDArray[np.float64]:
     """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         often = lengths * scene.friction.pre_sliding / (2.0 * scene.body.half_width * c)
     return np.where(c > 0.0, often, np.nan)
 

@@ -46,6 +46,7 @@ class Wanted:
         around: are such places all round the edges?
         spread: how far apart the planes are in which the solid's fields are analytic, see
             :class:`galinx.solvers.solids.solid.Response`.
+        bends: is the surface under the punch not straight, nor the pressure that of a flat one?
     """
 
     tolerance: float
@@ -54,6 +55,7 @@ class Wanted:
     exponent: float = -0.5
     around: bool = False
     spread: float = 0.0
+    bends: bool = False
 
 
 @dataclass(frozen=True)
@@ -123,8 +125,16 @@ class MeshKind:
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5)
+        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5, self._cuts_middle(wanted))
         return Refinement(levels, ratio, sectors, columns, pieces)
+
+    def _cuts_middle(self, wanted: Wanted) -> bool:
+        """Is the outermost ring cut, which meets in the middle of the contact?
+
+        A curve is not resolved there otherwise. Where it is, the degree may be lower: of a parabola K_I
+        and moments were seen to be 1e3 times as exact at a degree, for 8 cells more in 108.
+        """
+        return wanted.bends and self.rings
 
     def _apart(self, wanted: Wanted) -> float:
         """How much it matters that the solid's fields live in planes apart."""
@@ -163,6 +173,7 @@ class MeshKind:
         degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
         # The first sector more does more than is asked of it.
         degree -= _APART < self._apart(wanted) < 1.4 * _APART
+        degree -= self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:

@@ -111,6 +111,8 @@ def plan_fem(
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
+        # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
+        wanted = replace(wanted, bends=_mode(scene) == FOUND)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)

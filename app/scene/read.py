@@ -9,6 +9,7 @@ from galinx import files
 from galinx.app.console.program import program
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import excerpt, nearest, short
+from galinx.app.scene.files_of_rows import filled
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.repeated import repeated
 from galinx.app.scene.scene import Scene
@@ -30,7 +31,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
     """Read and check a scene file.
 
     Args:
-        path: the file.
+        path: the file. Files of rows that it names are looked for beside it.
         changes: new values by ``"section.key"``; they stand in the scene's text.
 
     Raises:
@@ -57,6 +58,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         from galinx.app.scene.changes import changed  # an import that only changes pay for
 
         text = changed(text, changes, str(path))
+    text = filled(text, SECTIONS, path.parent, str(path))
     return parse(text, str(path))
 
 

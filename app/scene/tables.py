@@ -11,7 +11,7 @@ from galinx.solvers.parameters import Range
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of numbers, as [[1, 2], [3, 4]]."""
+    """Rows of numbers, as [[1, 2], [3, 4]]; a scene in a file may name a file of them, `"rows.csv"`."""
 
     units: tuple[str, ...]
     at_least: int = 1
@@ -20,6 +20,8 @@ class Rows:
         wide = len(self.units)
         units = ", ".join(unit or "dimensionless" for unit in self.units)
         expected = f"at least {self.at_least} rows of {wide} numbers ({units})"
+        if isinstance(value, str):
+            expected += "; or, where the scene is a file itself, a file of these whose name ends in .csv"
         if not isinstance(value, list) or len(value) < self.at_least:
             raise ValueError(f"found {excerpt(value)}, expected {expected}")
         for row in value:
@@ -31,7 +33,8 @@ class Rows:
     def schema(self) -> dict[str, Any]:
         wide = len(self.units)
         row = {"type": "array", "items": Number().schema(), "minItems": wide, "maxItems": wide}
-        return {"type": "array", "items": row, "minItems": self.at_least}
+        rows = {"type": "array", "items": row, "minItems": self.at_least}
+        return {"anyOf": [rows, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}]}
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
 """PETSc's direct solver with the checks that PETSc leaves to its caller."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
+import numpy as np
 from petsc4py import PETSc
 
 from galinx.clock import Clock
@@ -107,16 +108,46 @@ class Factor:
             self.condition = self._mumps.getMumpsRinfog(10)
             return x
 
+    def solve_all(self, loads: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
+        """Solutions of A x = b for several b at once, for which the factor is read once.
+
+        Raises:
+            SolveError: a solution is not finite, or does not solve its system.
+        """
+        if len(loads) == 1 or not self.solves:
+            # The first alone gives the condition number, which several at once do not.
+            first, rest = self.solve(loads[0]), loads[1:]
+            return [first, *(self.solve_all(rest) if rest else [])]
+        with self._clock("back-substitutions"):
+            rows = (loads[0].getLocalSize(), loads[0].getSize())
+            B = PETSc.Mat().createDense((rows, (PETSc.DECIDE, len(loads))), comm=self.A.comm)
+            B.setUp()
+            B.getDenseArray()[:] = np.column_stack([b.array_r for b in loads])
+            B.assemble()
+            X = B.duplicate()
+            self._mumps.matSolve(B, X)
+            found = []
+            for b, column in zip(loads, X.getDenseArray().T):
+                x = self.A.createVecRight()
+                x.setArray(column)
+                self._check(x, b)
+                found.append(x)
+            B.destroy(), X.destroy()
+            return found
+
     def _solve(self, b: PETSc.Vec) -> PETSc.Vec:
         x = self.A.createVecRight()
         self._ksp.solve(b, x)
-        self.solves += 1
         reason = self._ksp.getConvergedReason()
         if reason <= 0:
             raise SolveError(
                 f"the linear solve failed, PETSc's converged reason {reason}: the right-hand side or the "
                 "matrix is not finite, or memory ran out"
             )
+        self._check(x, b)
+        return x
+
+    def _check(self, x: PETSc.Vec, b: PETSc.Vec) -> None:
         self.A.mult(x, self._residual)
         self._residual.aypx(-1.0, b)
         residual = self._residual.norm() / b.norm()
@@ -126,7 +157,7 @@ class Factor:
                 f"{RESIDUAL_LIMIT:g}: the matrix is singular or nearly so"
             )
         self.largest_residual = max(self.largest_residual, residual)
-        return x
+        self.solves += 1
 
     def destroy(self) -> None:
         """Free the factor's memory now; petsc4py would wait for a collective garbage collection."""

@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.solvers.errors import SolveError
+
 #: Contact forces are found to this relative residual; the last digits are rounding.
 TOLERANCE = 1e-13
 LIMIT = 120
@@ -49,6 +51,26 @@ class KrylovSpace:
         self.complete = bool(self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j]))
         if not self.complete:
             self._V.append(w / self._H[j + 1, j])
+
+    def converged(self, g: NDArray) -> NDArray[np.float64] | None:
+        """Coefficients y of R = V y for every g, (states, m); None where the space is too small.
+
+        Raises:
+            SolveError: it has grown to its limit.
+        """
+        m = len(self.fields) - 1
+        if not m:
+            return None
+        y, left = self.solve(g)
+        worst = int(np.argmax(left))
+        if self.complete or left[worst] <= TOLERANCE:
+            return y
+        if m == LIMIT:
+            raise SolveError(
+                f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
+                f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {TOLERANCE:g}"
+            )
+        return None
 
     def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
         """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""

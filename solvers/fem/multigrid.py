@@ -1,6 +1,6 @@
 """Conjugate gradients with algebraic multigrid: for matrices whose factor does not fit into memory."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +93,10 @@ class Multigrid:
             )
         self.largest_residual = max(self.largest_residual, residual)
         return x
+
+    def solve_all(self, loads: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
+        """Solutions of A x = b for several b, one after the other."""
+        return [self.solve(b) for b in loads]
 
     def destroy(self) -> None:
         """Free what PETSc holds."""

@@ -18,9 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.direct import Factor
-from galinx.solvers.fem.krylov import LIMIT, TOLERANCE, KrylovSpace
+from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
@@ -85,8 +84,7 @@ class SlidingPunch:
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
         #: Of the flat punch, and of each shape.
-        self._spaces = [self._krylov_space(b, None, -1.0, negligible)]
-        self._spaces += [self._krylov_space(forces, forces, 0.0, negligible) for forces in shaped]
+        self._spaces = self._krylov_spaces([b, *shaped], negligible)
 
     @property
     def fields(self) -> list[PETSc.Vec]:
@@ -114,11 +112,10 @@ class SlidingPunch:
             shapes: that are wanted, all of them if not given.
         """
         wanted = self._spaces[: None if shapes is None else 1 + shapes]
-        return [self._of(space, g) for space in wanted]
+        return [self._of(space, g, y) for space, y in zip(wanted, self._contact_forces(wanted, g))]
 
-    def _of(self, space: KrylovSpace, g: NDArray[np.float64]) -> "Part":
-        """What a Krylov space makes of friction."""
-        y = self._contact_forces(space, g)
+    def _of(self, space: KrylovSpace, g: NDArray, y: NDArray) -> "Part":
+        """What a Krylov space makes of friction, by the coefficients of the contact forces."""
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
@@ -136,74 +133,92 @@ class SlidingPunch:
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
 
-    def _krylov_space(
-        self, b: PETSc.Vec, load: PETSc.Vec | None, v: float, negligible: float
-    ) -> KrylovSpace:
-        """That of a punch without friction.
+    def _krylov_spaces(self, forces: list[PETSc.Vec], negligible: float) -> list[KrylovSpace]:
+        """Those of punches without friction: of the flat one at v = -1, and of shapes.
 
         Args:
-            b: forces of what is held; it is no longer needed afterwards.
-            load, v: see :meth:`_refine`.
+            forces: of what is held; they are no longer needed afterwards.
             negligible: see the class.
         """
-        field = self._displacement(b)
-        rough = self._reactions(field)
-        self._refine(field, load, v)
-        forces = self._reactions(field)
-        change = np.linalg.norm(forces - rough) / np.linalg.norm(rough)
-        b.destroy()
-        return KrylovSpace(field, forces, bool(change > negligible))
+        fields = self._displacements(forces)
+        rough = [self._reactions(field) for field in fields]
+        # Under the flat punch all of the contact moves alike, and no other load acts.
+        self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
+        spaces = []
+        for field, before, b in zip(fields, rough, forces):
+            after = self._reactions(field)
+            change = np.linalg.norm(after - before) / np.linalg.norm(before)
+            spaces.append(KrylovSpace(field, after, bool(change > negligible)))
+            b.destroy()
+        return spaces
 
-    def _contact_forces(self, space: KrylovSpace, g: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Coefficients y of R = V y for every g, (states, m); the Krylov space grows as they need."""
+    def _contact_forces(
+        self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]
+    ) -> list[NDArray[np.float64]]:
+        """Coefficients y of R = V y for every g, (states, m), in each Krylov space.
+
+        The spaces grow as they need, those that do together: one pass over the factor serves them.
+        """
         if not np.any(g):
-            return np.zeros((len(g), 0))
+            return [np.zeros((len(g), 0)) for _ in spaces]
+        found: list[NDArray | None] = [None for _ in spaces]
         while True:
-            m = len(space.fields) - 1
-            if m:
-                y, left = space.solve(g)
-                worst = int(np.argmax(left))
-                if space.complete or left[worst] <= TOLERANCE:
-                    return y
-            if m == LIMIT:
-                raise SolveError(
-                    f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                    f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {TOLERANCE:g}"
-                )
-            self._extend(space)
+            for i, space in enumerate(spaces):
+                if found[i] is None:
+                    found[i] = space.converged(g)
+            short = [space for space, y in zip(spaces, found) if y is None]
+            if not short:
+                return [y for y in found if y is not None]
+            self._extend(short)
 
-    def _extend(self, space: KrylovSpace) -> None:
-        """The displacement and the forces of one more tangential load."""
-        nodes = self.space.contact
-        b = self.factor.A.createVecLeft()
-        b.setValues(nodes.dofs(0), space.last[nodes.owned])
-        b.assemble()
-        field = self._displacement(b)
-        if space.refines:
-            self._refine(field, b, 0.0)
-        b.destroy()
-        space.take(field, self._reactions(field))
+    def _extend(self, spaces: Sequence[KrylovSpace]) -> None:
+        """The displacement and the forces of one more tangential load of each."""
+        nodes, loads = self.space.contact, []
+        for space in spaces:
+            b = self.factor.A.createVecLeft()
+            b.setValues(nodes.dofs(0), space.last[nodes.owned])
+            b.assemble()
+            loads.append(b)
+        fields = self._displacements(loads)
+        refined = [i for i, space in enumerate(spaces) if space.refines]
+        self._refine([fields[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
+        for space, field, b in zip(spaces, fields, loads):
+            b.destroy()
+            space.take(field, self._reactions(field))
 
-    def _displacement(self, b: PETSc.Vec) -> PETSc.Vec:
-        """The displacement for nodal forces b, with what the held displacements cause."""
-        u = self.factor.solve(b)
-        held = self.space.held_dofs
-        u.setValues(held, b.getValues(held))  # an iterative solver only comes near them
-        u.assemble()
-        return u
+    def _displacements(self, forces: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
+        """The displacements for nodal forces, with what the held displacements cause."""
+        fields, held = self.factor.solve_all(forces), self.space.held_dofs
+        for u, b in zip(fields, forces):
+            u.setValues(held, b.getValues(held))  # an iterative solver only comes near them
+            u.assemble()
+        return fields
 
-    def _refine(self, u: PETSc.Vec, load: PETSc.Vec | None, v: float) -> None:
-        """Solve once more for what a displacement leaves of its forces.
+    def _refine(
+        self, fields: Sequence[PETSc.Vec], loads: Sequence[PETSc.Vec | None], v: Sequence[float]
+    ) -> None:
+        """Solve once more for what displacements leave of their forces.
 
         The contact moves far before the body deforms, the farther the nearer the Rayleigh speed, and what
         forces that motion seems to need is rounding. The residual is taken without it: what is left of
         the displacement is zero under a flat punch, and the far boundary moves instead.
 
         Args:
-            u: the displacement, in place.
-            load: nodal forces, those of a profile's held displacements among them.
+            fields: the displacements, in place.
+            loads: nodal forces, those of a profile's held displacements among them.
             v: normal displacement of the contact where all of it moves alike.
         """
+        left = [self._residual(*of_one) for of_one in zip(fields, loads, v)]
+        wrong = [(u, residual) for u, residual in zip(fields, left) if residual.norm() > 0.0]
+        if wrong:
+            for (u, _), correction in zip(wrong, self.factor.solve_all([b for _, b in wrong])):
+                u.axpy(1.0, correction)
+                correction.destroy()
+        for residual in left:
+            residual.destroy()
+
+    def _residual(self, u: PETSc.Vec, load: PETSc.Vec | None, v: float) -> PETSc.Vec:
+        """What a displacement leaves of its forces, see :meth:`_refine`."""
         held = self.space.held_dofs
         t = (self._contact_motion(u)[0], v)
         w = self._without(u, t)
@@ -214,11 +229,8 @@ class SlidingPunch:
             residual.axpy(1.0, load)
         residual.maxpy(t, self._far)
         _set_zero(residual, held)
-        if residual.norm() > 0.0:
-            correction = self.factor.solve(residual)
-            u.axpy(1.0, correction)
-            correction.destroy()
-        w.destroy(), residual.destroy()
+        w.destroy()
+        return residual
 
     def _contact_motion(self, u: PETSc.Vec) -> tuple[float, float]:
         """Mean displacement of the contact nodes."""

@@ -24,6 +24,8 @@ _STEPS, _HALVINGS, _ROUNDING = 60, 40, 1e-14
 _ε, _LARGEST = 1e-6, (0.5, 1.5)
 #: Doublings of the half-width within which a load is looked for, and of the centre over it.
 _DOUBLINGS, _FARTHER = 60, 12
+#: Logarithm of the load carried over that wanted from which Newton's method serves.
+_ROUGHLY = 3.0
 
 
 @dataclass(frozen=True)
@@ -112,16 +114,23 @@ def _newton(residual: Callable[..., NDArray], point: NDArray, value: NDArray) ->
 
 def _first(balance: Balance) -> NDArray[np.float64]:
     """A contact that carries about the load: m/h and log h."""
-    size, direction = np.log(1e-3), 0
+    size = float(np.log(1e-3))
+    narrow, wide = -np.inf, np.inf
     for _ in range(_DOUBLINGS):
         lean = _lean(balance, size)
         carried = balance.residual(lean, size)[1]
         # Infinite: in a flat part, which carries nothing unless the contact is wider.
-        wider = 1 if not np.isfinite(carried) or carried < 0.0 else -1
-        if direction and wider != direction and np.isfinite(carried):
+        if not np.isfinite(carried) or carried < 0.0:
+            narrow = size
+        else:
+            wide = size
+        found = np.isfinite(narrow) and np.isfinite(wide)
+        if found and np.isfinite(carried) and abs(carried) < _ROUGHLY:
             return np.array([lean, size])
-        direction = direction or wider
-        size += wider * np.log(2.0)
+        if found:
+            size = (narrow + wide) / 2.0
+        else:
+            size += np.log(2.0) if np.isfinite(narrow) else -np.log(2.0)
     raise SolveError(
         f"no contact of a {balance.profile.words()} carries the load: half-widths up to "
         f"{np.exp(size):.3g} m were tried; the profile has to be convex"
@@ -140,8 +149,12 @@ def _lean(balance: Balance, size: float) -> float:
         if pulled(-far) <= 0.0 <= pulled(far):
             break
         far *= 2.0
-    low, high = -far, far
-    for _ in range(12 + int(np.log2(far))):
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if pulled(middle) < 0.0 else (low, middle)
-    return (low + high) / 2.0
+    # Where a flat part holds all of the contact nothing pulls: the middle of these places is taken.
+    edges = []
+    for beyond in (np.less, np.less_equal):
+        low, high = -far, far
+        for _ in range(12 + int(np.log2(far))):
+            middle = (low + high) / 2.0
+            low, high = (middle, high) if beyond(pulled(middle), 0.0) else (low, middle)
+        edges.append((low + high) / 2.0)
+    return float(np.mean(edges))

@@ -169,3 +169,18 @@ def test_what_cannot_be_is_refused():
     assert any("punch.slope = 1.5" in text for text in steep.warnings)
     plan = make_plan(galinx.template("tables4_5", WEDGE | {"solve.mesh": "graded"}))
     assert any("such a contact needs meshes of its own" in text for text in plan.skipped)
+
+
+@pytest.mark.parametrize("c", [0.0, 0.5, 0.88])
+def test_a_parabola_asks_for_no_larger_systems_than_a_flat_punch(c):
+    parabola, flat = (
+        galinx.compute(scene(punch, c=str(c), solve='methods = ["fem"]', mu=0.3))
+        for punch in ('profile = "parabolic"\nradius = 0.02', "half_width = 1e-3")
+    )
+    for name in ("unknowns", "degree", "factorisations"):
+        path = f"run/fem/{name}"
+        assert 0 < parabola.data[path][0] <= flat.data[path][0], name
+    # Three shapes need three times the solutions, which share passes over the factor.
+    assert (
+        parabola.data["run/fem/back_substitutions"][0] <= 3.6 * flat.data["run/fem/back_substitutions"][0]
+    )

@@ -27,6 +27,35 @@ def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
         Factor(A, Clock()).solve(b)
 
 
+@pytest.mark.parametrize("entry", [1e-300, 5.0])
+def test_several_solutions_at_once_are_those_of_one_after_the_other(entry):
+    from petsc4py import PETSc
+
+    rng = np.random.default_rng(0)
+    dense = rng.standard_normal((30, 30))
+    dense = dense @ dense.T + np.eye(30)
+    dense[0], dense[:, 0], dense[0, 0] = 0.0, 0.0, entry
+    A = PETSc.Mat().createAIJ((30, 30), nnz=30, comm=PETSc.COMM_SELF)
+    A.setValues(range(30), range(30), dense)
+    A.assemble()
+    loads = []
+    for numbers in rng.standard_normal((4, 30)):
+        b = A.createVecLeft()
+        b.setArray(numbers)
+        loads.append(b)
+    factor = Factor(A, Clock())
+    if entry < 1.0:  # the second solution has no finite numbers
+        loads[0].setValue(0, 0.0), loads[2].setValue(0, 1e300)
+        with pytest.raises(SolveError, match=r"\|b - Ax\|/\|b\| = nan"):
+            factor.solve_all(loads)
+        return
+    found = [x.array for x in factor.solve_all(loads)]
+    assert factor.solves == 4 and factor.condition > 1.0 and 0.0 < factor.largest_residual < 1e-12
+    for x, b in zip(found, loads):
+        np.testing.assert_allclose(x, np.linalg.solve(dense, b.array), rtol=1e-11)
+        np.testing.assert_allclose(x, factor.solve(b).array, rtol=1e-12)
+
+
 def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
     expected = small_punch().states(0.5).normal
     monkeypatch.setattr(linear, "WORKSPACE", (-80, 400))

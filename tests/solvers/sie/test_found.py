@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from found_reference import exponents, parabola, solved
 from random_solids import random_solid, stiffness
+from scipy.integrate import quad
 from stroh import Stroh
 
 from galinx.solvers.errors import SolveError
@@ -251,3 +252,37 @@ def test_what_has_no_contact_says_so():
 
     with pytest.raises(SolveError, match="convex"):
         contacts(MovingFrame(2.0, 0.5), np.zeros(1), Hollow(), LOAD)
+
+
+def moment_of_shoulders(k, a, left, right):
+    """∫ s^k |s - end of the flat part| sign(s)/w ds outside a flat part, by QUADPACK."""
+
+    def of_right(s):
+        return s**k * (s - right) * (1.0 + s) ** (a - 1.0)
+
+    def of_left(s):
+        return s**k * (s - left) * (1.0 - s) ** -a
+
+    exact = {"weight": "alg", "epsabs": 0.0, "epsrel": 1e-12}
+    found = quad(of_right, right, 1.0, wvar=(0.0, -a), **exact)[0]
+    return found + quad(of_left, -1.0, left, wvar=(a - 1.0, 0.0), **exact)[0]
+
+
+@pytest.mark.parametrize("b", [1e-6, 1e-4, 3e-3])
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.84, 0.985, 0.999])
+def test_a_contact_little_wider_than_the_flat_part_is_found(b, share):
+    response, R, h, φ = Isotropic(2e11, 0.3, 7850.0).response(0.0), 0.01, b / share, np.arcsin(share)
+    # The load of the conditions in closed form, without friction.
+    load = h**2 / (response.n * R) * (np.pi / 2.0 - φ - share * np.sqrt(1.0 - share**2))
+    all_g = np.array([0.0, -0.8, 0.8])
+    found = contacts(response, all_g, rounded(b, R), load)
+    assert found.of("half_width")[0] == pytest.approx(h, rel=1e-13)
+    assert abs(found.of("centre")[0]) <= 1e-15 * h
+    ends = zip(all_g[1:], found.of("centre")[1:], found.of("half_width")[1:])
+    for g, m, h in ends:
+        a, left, right = 1.0 + float(FlatPunch(response, g).α), (-b - m) / h, (b - m) / h
+        assert -1.0 < left < right < 1.0
+        lifted, carried = (moment_of_shoulders(k, a, left, right) for k in (0, 1))
+        assert abs(lifted) <= 1e-9 * carried
+        n = response.n + g * response.n12
+        assert h**2 / R * np.sin(np.pi * a) / n * carried == pytest.approx(load, rel=1e-9)

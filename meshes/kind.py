@@ -125,7 +125,7 @@ class MeshKind:
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5, self._cuts_middle(wanted))
+        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5) + self._cuts_middle(wanted)
         return Refinement(levels, ratio, sectors, columns, pieces)
 
     def _cuts_middle(self, wanted: Wanted) -> bool:
@@ -172,8 +172,7 @@ class MeshKind:
         stresses = wanted.nearest is not None
         degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
         # The first sector more does more than is asked of it.
-        degree -= _APART < self._apart(wanted) < 1.4 * _APART
-        degree -= self._cuts_middle(wanted)
+        degree -= _APART < self._apart(wanted) < 1.4 * _APART or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:

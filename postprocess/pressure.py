@@ -167,7 +167,7 @@ def contact_recovery(
     facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
     density = _density_of_forces(s, facets, degree)  # symmetric
     start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
-    nodes = (s[facets[0]] - start[0]) / length[0]
+    nodes = _reference_nodes(s, facets)
 
     inside = under_punch(r)
     at = chart.surface_coordinate(r[inside])
@@ -194,7 +194,7 @@ def contact_recovery(
 def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:
     """Inverse of the contact's mass matrix per surface coordinate: forces to σ_YY dX/ds at nodes."""
     t, w = np.polynomial.legendre.leggauss(degree + 1)
-    nodes = (s[facets[0]] - s[0]) / (s[facets[0, -1]] - s[0])
+    nodes = _reference_nodes(s, facets)
     basis = _lagrange(nodes, (t + 1.0) / 2.0)
     unit_mass = basis.T * (w / 2.0) @ basis
     banded = np.zeros((degree + 1, len(s)))
@@ -203,6 +203,12 @@ def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.f
         for k in range(degree + 1):
             banded[degree - k, row[k:]] += np.diagonal(mass, k)
     return solveh_banded(banded, np.eye(len(s)))
+
+
+def _reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
+    """Nodes of a facet over its length, from the widest: rounding of positions spoils the smallest."""
+    widest = facets[np.argmax(s[facets[:, -1]] - s[facets[:, 0]])]
+    return (s[widest] - s[widest[0]]) / (s[widest[-1]] - s[widest[0]])
 
 
 def _lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:

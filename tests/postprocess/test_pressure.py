@@ -65,3 +65,16 @@ def test_a_pressure_is_recovered_from_its_nodal_forces():
     np.testing.assert_allclose(forces @ maps.moments, [-np.pi] + 8 * [0.0], atol=1e-9)
     # The second term of the pressure at an edge bends d^(-1/2) by a quarter of the distance.
     np.testing.assert_allclose(maps.exponents(forces[None]), [[-0.5, -0.5]], atol=1e-2 / 4.0)
+
+
+def test_rounding_of_the_smallest_cells_positions_stays_there():
+    """They have a few digits only; facets of 1e-11 a beside the edges tell nothing of the others."""
+    ends = np.array([-1.0, -1.0 + 1e-11, -1.0 + 1e-5, -0.5, 0.5, 1.0 - 1e-5, 1.0 - 1e-11, 1.0])
+    nodes = (1.0 - np.cos(np.pi * np.arange(5) / 4.0)) / 2.0
+    inner = ends[:-1, None] + np.diff(ends)[:, None] * nodes[:-1]
+    s = np.append(inner.ravel(), 1.0)
+    moved = s.copy()
+    moved[1:4] = np.nextafter(moved[1:4], 1.0)
+    chart, r = MESHES["graded"].chart, np.array([-0.9, 0.0, 0.7])
+    one, other = (pressure.contact_recovery(positions, 4, chart, r).raw for positions in (s, moved))
+    np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())

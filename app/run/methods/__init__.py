@@ -20,13 +20,13 @@ __all__ = ["METHODS", "MODES", "Method", "MethodKind"]
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
+    from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
+
     if plan.body.found:
-        from galinx.app.run.methods.found_ends import FoundEnds
+        from galinx.app.run.methods.found_ends import FoundPunches
 
-        return FoundEnds()
-    from galinx.app.run.methods.closed_form import ClosedForm
-
-    return ClosedForm()
+        return ClosedForm(FoundPunches)
+    return ClosedForm(with_given_ends)
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:

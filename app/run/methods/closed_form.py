@@ -23,25 +23,38 @@ TERMS = 40
 _TOGETHER = 20_000
 
 
+@dataclass(frozen=True)
 class ClosedForm:
-    """Every task has its solution at once."""
+    """Every task has its solution at once.
+
+    Attributes:
+        solution: of a task and values of σ_XY/σ_YY.
+    """
+
+    solution: Callable[[Task, NDArray], Any]
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        yield _AtSpeed(task)
+        yield _AtSpeed(task, self.solution)
 
 
 @dataclass(frozen=True)
 class _AtSpeed:
     task: Task
+    solution: Callable[[Task, NDArray], Any]
 
     def states(self, g: NDArray) -> Any:
-        if self.task.body.pressure:
-            return OwnPressures(self.task, g)
-        return (FlatPunches if self.task.body.flat else ShapedPunches)(self.task, g)
+        return self.solution(self.task, g)
 
     def record(self) -> dict[str, Any]:
         return {}
+
+
+def with_given_ends(task: Task, g: NDArray) -> Any:
+    """Punches whose contact has its ends, and pressures of one's own."""
+    if task.body.pressure:
+        return OwnPressures(task, g)
+    return (FlatPunches if task.body.flat else ShapedPunches)(task, g)
 
 
 @dataclass(frozen=True)

@@ -1,39 +1,15 @@
 """The singular integral equation of punches whose contact ends where the pressure says."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.task import Task
 from galinx.app.run.methods.closed_form import Punches
-from galinx.app.run.methods.method import Solver
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.found import Contacts, Exponents, contacts
 from galinx.solvers.solution import Surface
-
-
-class FoundEnds:
-    """Every task has its solution at once."""
-
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        yield _AtSpeed(task)
-
-
-@dataclass(frozen=True)
-class _AtSpeed:
-    task: Task
-
-    def states(self, g: NDArray) -> "FoundPunches":
-        return FoundPunches(self.task, g)
-
-    def record(self) -> dict[str, Any]:
-        return {}
 
 
 class FoundPunches(Punches):

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.friction.constants import coulomb_coefficient
 from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
@@ -32,9 +33,7 @@ class BoucWen(FrictionLaw):
     about: ClassVar[str] = "the Bouc-Wen law"
     depends_on_speed: ClassVar[bool] = False
 
-    μ_C: float = parameter(
-        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
-    )
+    μ_C: float = coulomb_coefficient()
     x_y: float = parameter(
         "yield_displacement", "yield displacement x_y", "m", symbol="x_y", above=0.0,
         note="the slope of f over slip where f = 0 is μ_C/x_y",

@@ -6,8 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.friction.constants import coulomb_coefficient
 from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
-from galinx.solvers.parameters import check, parameter
+from galinx.solvers.parameters import check
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,7 @@ class Coulomb(FrictionLaw):
     depends_on_speed: ClassVar[bool] = False
     broadcasts: ClassVar[bool] = True
 
-    μ_C: float = parameter(
-        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
-    )
+    μ_C: float = coulomb_coefficient()
 
     def __post_init__(self) -> None:
         check(self)

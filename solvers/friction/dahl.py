@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.friction.constants import coulomb_coefficient
 from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
@@ -26,9 +27,7 @@ class Dahl(FrictionLaw):
     depends_on_speed: ClassVar[bool] = False
     broadcasts: ClassVar[bool] = True
 
-    μ_C: float = parameter(
-        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
-    )
+    μ_C: float = coulomb_coefficient()
     λ: float = parameter(
         "sigma0_over_load", "stiffness σ₀ l/N", "1/m", symbol=r"\sigma_0 l/N", above=0.0,
         note="the slope of f over slip where f = 0",

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.friction.constants import coulomb_coefficient
 from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
 from galinx.solvers.parameters import check, parameter
 
@@ -17,9 +18,7 @@ class StribeckCurve(FrictionLaw):
     g(V) = μ_C + (μ_S - μ_C) exp(-(V/v_S)^j)
     """
 
-    μ_C: float = parameter(
-        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0)
-    )
+    μ_C: float = coulomb_coefficient()
     μ_S: float = parameter(
         "mu_s", "coefficient of static friction μ_S", symbol=r"\mu_S", above=0.0, usual=(1e-4, 10.0),
         note="steady sliding at vanishing speed",

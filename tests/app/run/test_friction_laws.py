@@ -28,6 +28,11 @@ solve = {{methods = ["closed_form"]}}
 output = {{quantities = {quantities}}}
 """
 
+#: Parameters of the law by that name.
+RATE_AND_STATE = {
+    "reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.015, "critical_slip": 1e-7,
+}  # fmt: skip
+
 
 def toml(values):
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items())
@@ -104,18 +109,11 @@ def test_a_law_of_the_speed_gives_another_friction_at_each():
 
 
 def test_strokes_may_have_speeds_and_rests_of_their_own():
-    law = {
-        "reference_friction": 0.6,
-        "reference_speed": 1e-6,
-        "a": 0.01,
-        "b": 0.015,
-        "critical_slip": 1e-7,
-    }
     motion = (
         "speed = 1e-6, X_over_L = [0.5, 1], rest = 5, strokes = [{to = 0.5}, {to = 1, speed = 1e-5}, "
     )
     motion += "{to = 0.5, rest = 0}, {to = 1, rest = 90}]"
-    data = galinx.compute(scene("rate_and_state", law, motion)).data
+    data = galinx.compute(scene("rate_and_state", RATE_AND_STATE, motion)).data
     steady = 0.6 + (0.01 - 0.015) * np.log(10.0)
     np.testing.assert_allclose(data["states/speed"], [1e-6, 1e-5, 1e-5, 1e-6, 1e-6, 1e-6, 1e-6])
     at_start = data["loops/f"].reshape(4, -1)[:, 0]
@@ -168,15 +166,8 @@ def test_speeds_of_strokes_are_for_friction_alone():
 
 
 def test_rate_and_state_has_no_answer_at_rest():
-    law = {
-        "reference_friction": 0.6,
-        "reference_speed": 1e-6,
-        "a": 0.01,
-        "b": 0.015,
-        "critical_slip": 1e-7,
-    }
     with pytest.raises(BadInput, match="friction: found the speed 0 m/s"):
-        galinx.compute(scene("rate_and_state", law, "c = 0"))
+        galinx.compute(scene("rate_and_state", RATE_AND_STATE, "c = 0"))
 
 
 @pytest.mark.parametrize("name", ["lugre", "maxwell_slip", "table", "rate_and_state", "bouc_wen"])

@@ -32,8 +32,10 @@ class Rate:
     least: float = 0.0
 
 
-#: Differences of less than so many times what rounding is seen to do are rounding.
-_NOISE = 10.0
+#: Differences of less than so many times what rounding is seen to do are rounding; from twice that on
+#: they are none. In between the estimate passes from one to the other: were it to jump, so would what
+#: is archived, with the last digit of anything.
+_NOISE = 5.0
 
 #: Ratio of successive differences below which those of derivatives are not believed: what one cell does
 #: at the places that are looked at is not what the next one does.
@@ -77,8 +79,10 @@ def remaining(
     own = second / np.maximum(first, TYPICAL * largest)
     ρ = np.maximum(common, own)
     ρ = np.minimum(np.where(ρ > rate.believed, ρ, rate.usual), SLOWEST)
-    left = np.where(second > _NOISE * rounding, ρ / (1.0 - ρ), np.minimum(ρ / (1.0 - ρ), 1.0))
-    return SAFETY * second * left
+    whole = ρ / (1.0 - ρ)
+    noise = _NOISE * max(rounding, np.finfo(float).tiny)
+    summed = np.clip(second / noise - 1.0, 0.0, 1.0)
+    return SAFETY * second * (np.minimum(whole, 1.0) + summed * np.maximum(whole - 1.0, 0.0))
 
 
 def before(difference: NDArray, rate: Rate) -> NDArray[np.float64]:

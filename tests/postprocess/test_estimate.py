@@ -32,3 +32,13 @@ def test_a_level_is_off_by_what_the_better_one_changed_and_what_is_left_of_that(
     error = np.array([0.3, 0.1])
     found = estimate.before(error - 0.16 * error, estimate.of_degrees(2))
     np.testing.assert_allclose(found, estimate.SAFETY * error)
+
+
+def test_differences_of_the_size_of_rounding_are_not_summed_and_nothing_jumps_on_the_way():
+    first = np.array([1.0])
+    rounding = np.geomspace(1e-3, 1.0, 2001)
+    second = 0.9 * first
+    left = np.array([estimate.remaining(first, second, (first, second), ANY, r)[0] for r in rounding])
+    np.testing.assert_allclose(left[[0, -1]], estimate.SAFETY * 0.9 * np.array([9.0, 1.0]))
+    assert (np.diff(left) <= 0.0).all()
+    assert -np.diff(left).min() < 0.02 * left[0]

@@ -19,7 +19,7 @@ from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
 #: What rounding does, over what of it breaks the mirror image.
-_ROUNDING = 3.0
+ROUNDING = 3.0
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
@@ -110,7 +110,7 @@ class MeasuredError:
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
         return {
-            word: self._left(word, changes) + unseen[word] + _ROUNDING * self._rounding[word]
+            word: self._left(word, changes) + unseen[word] + ROUNDING * self._rounding[word]
             for word, changes in _changes(found).items()
         }
 

@@ -5,7 +5,6 @@ What a chart offers is described by :class:`galinx.solvers.fem.chart.Chart`.
 """
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ class Physical:
     name: str = "physical"
     contracts: bool = False
 
-    def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
+    def rotation(self, x: NDArray) -> tuple[Any, Any]:
         return 1.0, 0.0
 
     def stretch(self, x: NDArray) -> NDArray:
@@ -58,10 +57,10 @@ class Confocal:
     name: str = "confocal"
     contracts: bool = True
 
-    def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
-        A = functions.tanh(x[0]) * functions.cos(x[1])
-        B = functions.sin(x[1])
-        length = functions.sqrt(A * A + B * B)
+    def rotation(self, x: NDArray) -> tuple[Any, Any]:
+        A = np.tanh(x[0]) * np.cos(x[1])
+        B = np.sin(x[1])
+        length = np.sqrt(A * A + B * B)
         return A / length, B / length
 
     def stretch(self, x: NDArray) -> NDArray:

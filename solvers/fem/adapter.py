@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import cffi
 import dolfinx
 import numpy as np
 import ufl
@@ -17,16 +16,6 @@ except ImportError:  # elements were UFL's own
     elements = None
 
 _CELL = "quadrilateral"
-_ffi = cffi.FFI()
-
-
-def _element(degree: int, vector: bool = True, discontinuous: bool = False) -> Any:
-    """Lagrange elements on quadrilaterals."""
-    if elements:
-        shape = {"shape": (2,)} if vector else {}
-        return elements.element("Lagrange", _CELL, degree, discontinuous=discontinuous, **shape)
-    kind = ufl.VectorElement if vector else ufl.FiniteElement
-    return kind("DQ" if discontinuous else "Lagrange", _CELL, degree)
 
 
 def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1) -> Any:
@@ -52,14 +41,10 @@ def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:
 
 
 def vector_element(degree: int) -> Any:
-    """Continuous vector Lagrange elements."""
-    return _element(degree)
-
-
-def mixed_element(degree: int, pressure: int) -> Any:
-    """The same together with a discontinuous scalar of the degree ``pressure``."""
-    parts = [_element(degree), _element(pressure, vector=False, discontinuous=True)]
-    return elements.mixed_element(parts) if elements else ufl.MixedElement(parts)
+    """Continuous vector Lagrange elements on quadrilaterals."""
+    if elements:
+        return elements.element("Lagrange", _CELL, degree, shape=(2,))
+    return ufl.VectorElement("Lagrange", _CELL, degree)
 
 
 def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
@@ -67,34 +52,6 @@ def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, element)
     return fem.FunctionSpace(mesh, element, jit_params=options)
-
-
-def compile_form(form: Any, options: dict[str, Any]) -> Any:
-    """The compiled form; ``options`` are the compiler's."""
-    name = "jit_options" if hasattr(fem, "functionspace") else "jit_params"
-    return fem.form(form, **{name: options})
-
-
-def constants(form: Any) -> NDArray[np.float64]:
-    """Values of a compiled form's constants, as its kernel wants them."""
-    return dolfinx.cpp.fem.pack_constants(getattr(form, "_cpp_object", form))
-
-
-def kernel(form: Any) -> Any:
-    """The function of a form's one cell integral: adds cells' matrices to its first argument."""
-    ufcx = form.ufcx_form
-    # Cell integrals come first.
-    integral = ufcx.form_integrals[0] if hasattr(ufcx, "form_integrals") else ufcx.integrals(0)[0]
-    function, null = integral.tabulate_tensor_float64, _ffi.NULL
-    # Entities, permutations and, in some versions, data of the user's: a cell integral needs none.
-    unused = [null] * (len(_ffi.typeof(function).args) - 4)
-
-    def call(K: NDArray, values: NDArray, corners: NDArray) -> None:
-        matrix, constant, vertex = (_ffi.cast("double *", x.ctypes.data) for x in (K, values, corners))
-        for cell in range(len(K)):
-            function(matrix + cell * K[0].size, null, constant, vertex + 12 * cell, *unused)
-
-    return call
 
 
 def reference_nodes(V: Any) -> NDArray[np.float64]:

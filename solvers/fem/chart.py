@@ -1,7 +1,6 @@
 """What the finite element room asks of the chart in which a mesh lives, and what speed does to it."""
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,17 +12,14 @@ class Chart(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of the chart in archives and form caches."""
+        """Name of the chart in archives."""
 
     @property
     def contracts(self) -> bool:
         """Is a mesh drawn for what the solid makes of the plane, see :class:`Contracted`?"""
 
-    def rotation(self, x: Any, functions: ModuleType) -> tuple[Any, Any]:
-        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at x.
-
-        ``functions`` is the module whose sin, cos, tanh and sqrt suit x: numpy or ufl.
-        """
+    def rotation(self, x: NDArray) -> tuple[Any, Any]:
+        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n)."""
 
     def stretch(self, x: NDArray) -> NDArray:
         """Length of a step in physical coordinates over that in the chart, at points (n, 2)."""
@@ -89,7 +85,11 @@ class Contracted:
             x: where; not at a punch edge of a chart whose stretch vanishes there.
             gradients: array (n, component, axis, fields).
         """
-        cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T, np))
-        R = np.array([[cos, -sin], [sin, cos]]) / self.chart.stretch(x)
+        axes = self.axes(x) / self.chart.stretch(x)[:, None, None]
+        return np.einsum("ncxf,nxX->ncXf", gradients, axes, optimize=True)
+
+    def axes(self, x: NDArray) -> NDArray[np.float64]:
+        """What makes the same of them but for the chart's stretch: Rᵀ·M at points x (n, 2), (n, 2, 2)."""
+        cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T))
         M = np.array([[1.0, self.p.real], [0.0, self.p.imag]])
-        return np.einsum("ncxf,dxn,dX->ncXf", gradients, R, M, optimize=True)
+        return np.array([[cos, sin], [-sin, cos]]).transpose(2, 0, 1) @ M

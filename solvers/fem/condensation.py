@@ -6,33 +6,32 @@ the factorisation is what gains. Loads act on the boundary only, so nothing is l
 values are found again where someone asks for them.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.fem.chart import Contracted
+from galinx.solvers.fem.element import Element
+
 #: Cells treated at once; keeps the dense blocks within some ten megabytes.
 CHUNK = 64
 
 
-@dataclass(frozen=True)
 class CellMatrices:
-    """The compiled kernel of a bilinear form, ready to be called cell by cell.
+    """Element matrices, inner unknowns eliminated.
 
-    Attributes:
-        kernel: adds cells' matrices, from constants and vertices, to its first argument.
-        nodes: nodes of a cell, two unknowns each.
-        inner: which of them lie inside it.
-        pressures: unknowns of a discontinuous pressure, which follow those of the nodes; 0 or at least 2.
-            Two of them stay: without its mean the pressure inside a cell is not determined.
+    Args:
+        reference: places of a cell's nodes in the unit square, (nodes, 2), two unknowns each.
+        inner: which of the nodes lie inside it.
+        pressures: polynomials along each direction for a discontinuous pressure, whose unknowns follow
+            those of the nodes; 0 or at least 2. Two unknowns stay: without its mean the pressure inside
+            a cell is not determined.
     """
 
-    kernel: Callable[[NDArray, NDArray, NDArray], None]
-    nodes: int
-    inner: NDArray[np.int32]
-    pressures: int = 0
+    def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
+        self.nodes, self.inner, self._pressures = len(reference), inner, pressures
+        self._element = Element(reference, pressures)
 
     @cached_property
     def outer(self) -> NDArray[np.int64]:
@@ -42,42 +41,35 @@ class CellMatrices:
     @cached_property
     def outer_dofs(self) -> NDArray[np.int64]:
         """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
-        kept = 2 * self.nodes + np.arange(min(self.pressures, 2))
+        kept = 2 * self.nodes + np.arange(min(self._pressures, 2))
         return np.concatenate([_dofs(self.outer), kept])
 
     @cached_property
     def inner_dofs(self) -> NDArray[np.int64]:
         """Local unknowns that are eliminated."""
-        return np.concatenate([_dofs(self.inner), 2 * self.nodes + np.arange(2, self.pressures)])
+        first = 2 * self.nodes + min(self._pressures, 2)
+        return np.concatenate([_dofs(self.inner), np.arange(first, self._element.size)])
 
-    def tabulate(self, constants: NDArray, corners: NDArray) -> NDArray[np.float64]:
-        """Element matrices of cells with the given vertex coordinates (m, 4, 3): (m, 2n, 2n)."""
-        size = 2 * self.nodes + self.pressures
-        result = np.zeros((len(corners), size, size))
-        corners = np.ascontiguousarray(corners)
-        constants = np.ascontiguousarray(constants)
-        self.kernel(result, constants, corners)
-        return result
-
-    def condense(self, constants: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:
+    def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> tuple[NDArray, NDArray]:
         """Condensed element matrices, and what gives the inner unknowns from the outer ones.
+
+        Args:
+            H, chart, corners: of :meth:`.element.Element.matrices`.
 
         Returns:
             S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b), and E = -K_ii⁻¹ K_ib, (m, i, b).
         """
-        K = self.tabulate(constants, corners)
-        if self.pressures:
-            # The first of the two pressures that stay is the mean; the rest is orthogonal to it.
-            n = self.pressures
-            modes, _ = np.linalg.qr(np.column_stack([np.ones(n), np.eye(n)[:, 1:]]))
+        b, i = self.outer_dofs, self.inner_dofs
+        K_bb, K_ib, K_ii = self._element.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
+        if self._pressures:
             # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
-            scaled = modes / _size(corners)[:, None, None]
-            K[:, -n:] = scaled.transpose(0, 2, 1) @ K[:, -n:]
-            K[:, :, -n:] = K[:, :, -n:] @ scaled
-        order, b = np.concatenate([self.outer_dofs, self.inner_dofs]), len(self.outer_dofs)
-        K = K.take(order, axis=1).take(order, axis=2)
-        E = -np.linalg.solve(K[:, b:, b:], K[:, b:, :b])
-        S = K[:, :b, :b] + K[:, :b, b:] @ E
+            unit = 1.0 / _size(corners)[:, None]
+            of_b, of_i = (np.where(dofs < 2 * self.nodes, 1.0, unit) for dofs in (b, i))
+            K_bb *= of_b[:, :, None] * of_b[:, None, :]
+            K_ib *= of_i[:, :, None] * of_b[:, None, :]
+            K_ii *= of_i[:, :, None] * of_i[:, None, :]
+        E = -np.linalg.solve(K_ii, K_ib)
+        S = K_bb + K_ib.swapaxes(1, 2) @ E
         return _free_of_translations(S, len(self.outer)), E
 
 
@@ -95,9 +87,9 @@ def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
 
 
 def _size(corners: NDArray) -> NDArray[np.float64]:
-    """Roots of the areas of cells with vertices (m, 4, 3), to the order of magnitude."""
-    along, across = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
-    return np.sqrt(np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]))
+    """Roots of the areas of cells with vertices (m, 4, 3), from their diagonals."""
+    rising, falling = corners[:, 3, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 1, :2]
+    return np.sqrt(np.abs(rising[:, 0] * falling[:, 1] - rising[:, 1] * falling[:, 0]) / 2.0)
 
 
 def _dofs(nodes: NDArray) -> NDArray[np.int64]:

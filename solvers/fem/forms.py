@@ -1,13 +1,22 @@
-"""Weak forms of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it."""
+"""Weak forms of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it.
+
+Each is ∫ energy(u, w), bilinear in the gradients G along X and Y of a displacement u and a test function
+w, with constants of the solid and its speed.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import ufl
+from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.fem.chart import Chart
+
+#: Gradients with one entry 1, component by component, the others 0.
+_UNITS = np.eye(4).reshape(4, 2, 2).tolist()
 
 
 @dataclass(frozen=True)
@@ -15,29 +24,29 @@ class Form:
     """A weak form.
 
     Attributes:
-        stiffness: the form from trial and test functions, what takes gradients, constants and degree.
+        energy: the integrand of two gradients, or of two pairs of gradient and pressure, and of
+            constants; bilinear and symmetric.
         constants: what these are called in a solid's response.
         pressure: with an unknown pressure in each cell besides the displacement.
     """
 
-    stiffness: Callable[..., Any]
+    energy: Callable[..., Any]
     constants: tuple[str, ...]
     pressure: bool = False
 
+    def density(self, response: Any) -> NDArray[np.float64]:
+        """The integrand at unit gradients, u,X u,Y v,X v,Y, and at unit pressure: (4, 4) or (5, 5)."""
+        return _density(self, tuple(float(getattr(response, name)) for name in self.constants))
 
-def gradient(u: Any, chart: Chart, x: Any, p: Any) -> Any:
-    """Gradient of u along the physical axes, up to the stretch of chart and plane: ∇u·Rᵀ·M.
 
-    Args:
-        u: the function.
-        chart, x: the chart and its coordinates.
-        p: real and imaginary part of the contraction, see :class:`galinx.solvers.fem.chart.Contracted`;
-            its plane has Im p times the physical area.
-    """
-    cos, sin = chart.rotation(x, ufl)
-    R, (lean, depth) = ufl.as_matrix([[cos, -sin], [sin, cos]]), p
-    M = ufl.as_matrix([[1, lean], [0, depth]]) / ufl.sqrt(depth)
-    return ufl.dot(ufl.dot(ufl.grad(u), ufl.transpose(R)), M)
+@lru_cache(maxsize=8)
+def _density(form: Form, constants: tuple[float, ...]) -> NDArray[np.float64]:
+    units: list[Any] = [ufl.as_matrix(unit) for unit in _UNITS]
+    if form.pressure:
+        zero = ufl.as_matrix([[0.0, 0.0], [0.0, 0.0]])
+        units = [(G, 0.0) for G in units] + [(zero, 1.0)]
+    values = [[ufl.as_ufl(form.energy(u, w, constants))(()) for u in units] for w in units]
+    return np.array(values, dtype=float)
 
 
 def stress(G: Any, κ: Any) -> Any:
@@ -47,54 +56,45 @@ def stress(G: Any, κ: Any) -> Any:
     return 2 * ε + λ * ufl.tr(ε) * ufl.Identity(2)
 
 
-def moving_stiffness(u: Any, w: Any, grad: Any, constants: Any, degree: int) -> Any:
-    """∫ σ(u):ε(w)/μ - c² u,X·w,X, symmetric, and positive below the Rayleigh speed; constants κ and c.
+def moving(Gu: Any, Gw: Any, constants: Any) -> Any:
+    """σ(u):ε(w)/μ - c² u,X·w,X, positive below the Rayleigh speed; constants κ and c.
 
-    On Y = 0 the inertia term leaves no boundary term. The integrand is not polynomial in a conformal
-    chart; two degrees above the product of gradients integrate it as well as the space can tell.
+    On Y = 0 the inertia term leaves no boundary term.
     """
     κ, c = constants
-    Gu, Gw = grad(u), grad(w)
-    return _moving(ufl.inner(stress(Gu, κ), ufl.sym(Gw)), Gu, Gw, c, degree)
+    return ufl.inner(stress(Gu, κ), ufl.sym(Gw)) - _inertia(Gu, Gw, c)
 
 
-def anisotropic_stiffness(u: Any, w: Any, grad: Any, constants: Any, degree: int) -> Any:
+def anisotropic(Gu: Any, Gw: Any, constants: Any) -> Any:
     """The same of any solid; constants are its stiffness over c₆₆, six numbers, and c over √(c₆₆/ρ)."""
     c11, c12, c16, c22, c26, c66, c = constants
-    Gu, Gw = grad(u), grad(w)
     C = ufl.as_matrix([[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]])
     strain, other = (ufl.as_vector([G[0, 0], G[1, 1], G[0, 1] + G[1, 0]]) for G in (Gu, Gw))
-    return _moving(ufl.dot(ufl.dot(C, strain), other), Gu, Gw, c, degree)
+    return ufl.dot(ufl.dot(C, strain), other) - _inertia(Gu, Gw, c)
 
 
-def _moving(energy: Any, Gu: Any, Gw: Any, c: Any, degree: int) -> Any:
-    """The integral of an energy less the inertia of displacements with these gradients."""
-    moving = energy - c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
-    return moving * ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
-
-
-def mixed_stiffness(
-    trial: tuple[Any, Any], test: tuple[Any, Any], grad: Any, constants: Any, degree: int
-) -> Any:
+def mixed(trial: tuple[Any, Any], test: tuple[Any, Any], constants: Any) -> Any:
     """The same with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
 
-    ∫ 2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
+    2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
     displacement alone carries λ, rounding grows with it.
     """
-    (u, p), (w, q), (κ, c) = trial, test, constants
-    Gu, Gw = grad(u), grad(w)
+    (Gu, p), (Gw, q), (κ, c) = trial, test, constants
     compliance = (κ - 1) / (3 - κ)  # μ/λ
-    energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw))
-    energy -= p * ufl.tr(Gw) + q * ufl.tr(Gu) + compliance * p * q
-    return _moving(energy, Gu, Gw, c, degree)
+    energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - _inertia(Gu, Gw, c)
+    return energy - p * ufl.tr(Gw) - q * ufl.tr(Gu) - compliance * p * q
+
+
+def _inertia(Gu: Any, Gw: Any, c: Any) -> Any:
+    return c**2 * ufl.inner(Gu[:, 0], Gw[:, 0])
 
 
 #: Forms by the name that a solid gives.
 FORMS: Registry[Form] = Registry(
     "weak form",
     {
-        "isotropic": Form(moving_stiffness, ("κ", "c")),
-        "anisotropic": Form(anisotropic_stiffness, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
-        "nearly incompressible": Form(mixed_stiffness, ("κ", "c"), pressure=True),
+        "isotropic": Form(moving, ("κ", "c")),
+        "anisotropic": Form(anisotropic, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
+        "nearly incompressible": Form(mixed, ("κ", "c"), pressure=True),
     },
 )

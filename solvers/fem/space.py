@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import ufl
 from dolfinx import fem, la
 from mpi4py import MPI
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from galinx.solvers.fem import adapter
 from galinx.solvers.fem.chart import Chart, Contracted
 from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
-from galinx.solvers.fem.forms import FORMS, gradient
+from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
 from galinx.solvers.solids.solid import Response
 
@@ -142,27 +141,6 @@ class Space:
         """Global numbers of the owned unknowns that a punch holds: v under it, and the far boundary."""
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
 
-    @cached_property
-    def _compiled(self) -> tuple[Any, list[fem.Constant]]:
-        """The compiled form with its constants, which are set before each assembly."""
-        x = ufl.SpatialCoordinate(self.mesh)
-        p, constants = (
-            [fem.Constant(self.mesh, 0.0) for _ in names] for names in ("XY", self.form.constants)
-        )
-        trial: Any
-        test: Any
-        if self.mixed:
-            # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
-            W = self._functions(adapter.mixed_element(self.degree, self.degree - 2))
-            trial, test = ufl.TrialFunctions(W), ufl.TestFunctions(W)
-        else:
-            trial, test = ufl.TrialFunction(self.V), ufl.TestFunction(self.V)
-        form = self.form.stiffness(
-            trial, test, lambda u: gradient(u, self.chart, x, p), constants, self.degree
-        )
-        with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
-            return adapter.compile_form(form, options), [*p, *constants]
-
     def _functions(self, element: Any) -> Any:
         with self.clock("forms"), compiling(self.comm, repr(element), self._say) as options:
             return adapter.space(self.mesh, element, options)
@@ -172,7 +150,7 @@ class Space:
 
         Node i of ``numbers`` has the unknowns 2i and 2i + 1.
         """
-        numbers = self.outer_numbers  # the form is compiled here, the first time
+        numbers = self.outer_numbers
         with self.clock("assembly"):
             A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
@@ -248,11 +226,10 @@ class Space:
 
     @cached_property
     def kernel(self) -> CellMatrices:
-        """The compiled form of a cell, and which of its nodes stay."""
-        layout = self.V.dofmap.dof_layout
-        pressures = (self.degree - 1) ** 2 * self.mixed
-        inner = np.array(layout.entity_dofs(2, 0))
-        return CellMatrices(adapter.kernel(self._compiled[0]), layout.num_dofs, inner, pressures)
+        """Matrices of cells, and which of their nodes stay."""
+        inner = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0))
+        # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
+        return CellMatrices(self.reference_nodes, inner, (self.degree - 1) * self.mixed)
 
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
@@ -274,7 +251,7 @@ class Space:
     @contextmanager
     def keeping(self, response: Response) -> Iterator[None]:
         """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        cells = len(self.outer_numbers)  # the form is compiled here, the first time
+        cells = len(self.outer_numbers)
         with self.clock("assembly"):
             chunks = [
                 self.condensed(response, slice(start, start + CHUNK))
@@ -291,12 +268,8 @@ class Space:
         if self._kept:
             S, E = self._kept
             return S[cells], E[cells]
-        form, constants = self._compiled
-        p = self.contracted(response).p
-        values = [p.real, p.imag, *(getattr(response, name) for name in self.form.constants)]
-        for constant, value in zip(constants, values):
-            constant.value = value
-        return self.kernel.condense(adapter.constants(form), self.vertices[cells])
+        H = self.form.density(response)
+        return self.kernel.condense(H, self.contracted(response), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

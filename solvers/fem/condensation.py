@@ -7,9 +7,11 @@ values are found again where someone asks for them.
 """
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.blas import dtrsm
 
 from galinx.solvers.fem.chart import Contracted
 from galinx.solvers.fem.element import Element
@@ -50,15 +52,28 @@ class CellMatrices:
         first = 2 * self.nodes + min(self._pressures, 2)
         return np.concatenate([_dofs(self.inner), np.arange(first, self._element.size)])
 
-    def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> tuple[NDArray, NDArray]:
-        """Condensed element matrices, and what gives the inner unknowns from the outer ones.
+    def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
+        """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
 
         Args:
             H, chart, corners: of :meth:`.element.Element.matrices`.
-
-        Returns:
-            S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b), and E = -K_ii⁻¹ K_ib, (m, i, b).
         """
+        K_bb, K_ib, K_ii = self._parts(H, chart, corners)
+        if self._pressures:
+            S = K_bb - K_ib.swapaxes(1, 2) @ np.linalg.solve(K_ii, K_ib)
+        else:
+            for L, half in zip(np.linalg.cholesky(K_ii), K_ib):
+                half.T[:] = dtrsm(1.0, L.T, half.T, side=1, overwrite_b=True)  # L⁻¹ K_ib
+            S = K_bb - K_ib.swapaxes(1, 2) @ K_ib
+        return _free_of_translations(S, len(self.outer))
+
+    def extend(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[Any]:
+        """What gives the inner unknowns from the outer ones: E = -K_ii⁻¹ K_ib, (m, i, b)."""
+        _, K_ib, K_ii = self._parts(H, chart, corners)
+        return -np.linalg.solve(K_ii, K_ib)
+
+    def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
+        """K_bb, K_ib and K_ii."""
         b, i = self.outer_dofs, self.inner_dofs
         K_bb, K_ib, K_ii = self._element.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
         if self._pressures:
@@ -68,9 +83,7 @@ class CellMatrices:
             K_bb *= of_b[:, :, None] * of_b[:, None, :]
             K_ib *= of_i[:, :, None] * of_b[:, None, :]
             K_ii *= of_i[:, :, None] * of_i[:, None, :]
-        E = -np.linalg.solve(K_ii, K_ib)
-        S = K_bb + K_ib.swapaxes(1, 2) @ E
-        return _free_of_translations(S, len(self.outer)), E
+        return [K_bb, K_ib, K_ii]
 
 
 def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:

@@ -26,7 +26,7 @@ def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
     deformed = _deformed(space, [field])
     for start in range(0, len(numbers), CHUNK):
         cells = slice(start, start + CHUNK)
-        condensed, _ = space.condensed(response, cells)
+        condensed = space.condensed(response, cells)
         for rows, S, u in zip(numbers[cells], condensed, deformed[cells]):
             result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
     result.assemble()

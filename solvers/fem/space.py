@@ -155,7 +155,7 @@ class Space:
             A = empty_matrix(numbers, *self._range, self.comm)
             for start in range(0, len(numbers), CHUNK):
                 cells = slice(start, start + CHUNK)
-                condensed, _ = self.condensed(response, cells)
+                condensed = self.condensed(response, cells)
                 for rows, S in zip(numbers[cells], condensed):
                     A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
@@ -204,7 +204,7 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        _, E = self.condensed(response, cells)
+        E = self._kept[1][cells] if self._kept else self._cells(self.kernel.extend, response, cells)
         kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
@@ -251,25 +251,23 @@ class Space:
     @contextmanager
     def keeping(self, response: Response) -> Iterator[None]:
         """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        cells = len(self.outer_numbers)
+        chunks = [slice(n, n + CHUNK) for n in range(0, max(len(self.outer_numbers), 1), CHUNK)]
         with self.clock("assembly"):
-            chunks = [
-                self.condensed(response, slice(start, start + CHUNK))
-                for start in range(0, max(cells, 1), CHUNK)
-            ]
-            self._kept = tuple(np.concatenate(part) for part in zip(*chunks))
+            self._kept = tuple(
+                np.concatenate([self._cells(part, response, cells) for cells in chunks])
+                for part in (self.kernel.condense, self.kernel.extend)
+            )
         try:
             yield
         finally:
             self._kept = None
 
-    def condensed(self, response: Response, cells: Any) -> tuple[NDArray, NDArray]:
-        """S and E of some of this rank's cells, see ``CellMatrices.condense``."""
-        if self._kept:
-            S, E = self._kept
-            return S[cells], E[cells]
-        H = self.form.density(response)
-        return self.kernel.condense(H, self.contracted(response), self.vertices[cells])
+    def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
+        """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
+        return self._kept[0][cells] if self._kept else self._cells(self.kernel.condense, response, cells)
+
+    def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
+        return part(self.form.density(response), self.contracted(response), self.vertices[cells])
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

@@ -170,10 +170,11 @@ def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
+    figures = list(figures)
     write(
         (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
+        for ending in USUAL  # one after the other: matplotlib keeps typeset formulas, not for both
         for name, figure in figures
-        for ending in USUAL
     )
 
 

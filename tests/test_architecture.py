@@ -11,7 +11,7 @@ ROOMS = ("app", "meshes", "solvers", "postprocess")
 ONE_PLACE = {
     "gmsh": {"meshes/gmsh_model.py"},
     "h5py": {"postprocess/hdf5/"},
-    "ufl": {"solvers/fem/forms.py", "solvers/fem/space.py", "solvers/fem/adapter.py"},
+    "ufl": {"solvers/fem/forms.py", "solvers/fem/adapter.py"},
     "matplotlib": {"postprocess/figures/", "app/pictures/drawing.py"},
     "jinja2": {"postprocess/page/"},
     "xarray": {"postprocess/named.py", "app/results/result.py"},

@@ -1,4 +1,4 @@
-"""How forms are compiled: for this processor, and cached apart from other processors' code.
+"""How what dolfinx compiles of a form, its elements, is compiled and kept.
 
 FFCx compiles into a folder of this run's own. When all is well the folder gets a digest and, by being
 renamed, the place where every run looks for the form. So nobody meets what a killed run left, nobody has
@@ -17,7 +17,6 @@ import sysconfig
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
-from functools import lru_cache
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,8 +27,6 @@ from mpi4py import MPI
 from galinx import files
 from galinx.solvers.errors import CompilerError
 
-#: The kernels are long loops of multiply-adds; full vectorisation makes them three times faster.
-_FLAGS = ["-O3", "-march=native"]
 #: Seconds until it is said that another run is waited for, and until it no longer is.
 _SAID, _PATIENCE = 10.0, 60.0
 #: Seconds after which what is no finished form is a ruin.
@@ -54,7 +51,7 @@ def compiling(
     """
     try:
         with _folder(what, say) if comm.rank == 0 else nullcontext() as folder:
-            yield {"cffi_extra_compile_args": _FLAGS, "cache_dir": comm.bcast(folder)}
+            yield {"cache_dir": comm.bcast(folder)}
             comm.barrier()  # the folder is renamed when all ranks have loaded what is in it
     except CompilerError:
         raise
@@ -86,7 +83,7 @@ def _folder(what: str, say: Callable[[str], None]) -> Iterator[str]:
 def _key(what: str) -> str:
     """Of a form: a hash of everything that its code depends on."""
     python = [sysconfig.get_config_var(name) for name in ("SOABI", "CFLAGS")]
-    told = repr([what, _FLAGS, ffcx.__version__, dolfinx.__version__, *python])
+    told = repr([what, ffcx.__version__, dolfinx.__version__, *python])
     return hashlib.sha256(told.encode()).hexdigest()[:24]
 
 
@@ -196,20 +193,5 @@ def _why(error: Exception) -> str:
 
 
 def _cache() -> Path:
-    """Where compiled forms are kept.
-
-    Code for one processor may not run on another, and home folders are shared on clusters, so the
-    folder is named after what this processor can do.
-    """
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(home) / "galinx" / f"forms-{_processor()}"
-
-
-@lru_cache(maxsize=1)
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError:
-        lines = []
-    abilities = next((line for line in lines if line.startswith(("flags", "Features"))), "unknown")
-    return hashlib.sha256(abilities.encode()).hexdigest()[:12]
+    """Where compiled forms are kept."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"

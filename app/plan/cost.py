@@ -24,8 +24,8 @@ _GRADIENTS_OF_PIECE, _POTENTIAL_OF_PIECE = 4e-6, 9e-7
 _HELD, _ARCHIVED = 18, 8
 #: Bytes of a program without finite elements, and of a state's friction.
 _PROGRAM, _FRICTION = 130e6, 300.0
-#: Bytes of the libraries, and cells that are condensed at once.
-_LIBRARIES, _AT_ONCE = 170e6, 64
+#: Bytes of the libraries, and numbers of element matrices that are treated at once.
+_LIBRARIES, _AT_ONCE = 170e6, 2e6
 #: Solves of a level by conjugate gradients, each field solved and refined, and steps of each.
 _SOLVES, _STEPS = 34, 25
 
@@ -82,7 +82,7 @@ def bytes_without_fem(states: int, chunk_numbers: int) -> float:
 
 def seconds_of_level(cells: int, degree: int, unknowns: int, direct: bool) -> float:
     """Wall seconds of one degree at one speed: element matrices, and either a factor or multigrid."""
-    matrices = cells * (2.0e-7 * degree**3.9 + 6.6e-6 * degree**1.6)
+    matrices = cells * (8.0e-8 * degree**3.9 + 6.6e-6 * degree**1.6)
     if direct:
         return matrices + 3.5e-7 * unknowns**1.25
     return matrices + unknowns * (2.4e-6 + _SOLVES * _STEPS * 1.6e-7)
@@ -107,5 +107,5 @@ def free_memory() -> float:
 
 def bytes_of(unknowns: float, degree: int, direct: bool, chunk_numbers: int) -> float:
     """Largest resident set of a rank that has so many unknowns."""
-    dense = 3 * 8 * _AT_ONCE * (2 * (degree + 1) ** 2) ** 2
+    dense = 3 * 8 * max(_AT_ONCE, 16 * (2 * (degree + 1) ** 2) ** 2)
     return _LIBRARIES + bytes_of_levels(unknowns, direct) + dense + bytes_of_chunk(chunk_numbers)

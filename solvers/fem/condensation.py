@@ -16,8 +16,8 @@ from scipy.linalg.blas import dtrsm
 from galinx.solvers.fem.chart import Contracted
 from galinx.solvers.fem.element import Element
 
-#: Cells treated at once; keeps the dense blocks within some ten megabytes.
-CHUNK = 64
+#: Numbers of the element matrices that are treated at once: some ten megabytes.
+_NUMBERS = 2_000_000
 
 
 class CellMatrices:
@@ -34,6 +34,8 @@ class CellMatrices:
     def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
         self.nodes, self.inner, self._pressures = len(reference), inner, pressures
         self._element = Element(reference, pressures)
+        #: How many cells are to be treated at once.
+        self.at_once = max(16, _NUMBERS // self._element.size**2)
 
     @cached_property
     def outer(self) -> NDArray[np.int64]:

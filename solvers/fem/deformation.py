@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -24,8 +23,7 @@ def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
     result, numbers = field.duplicate(), space.outer_numbers
     result.zeroEntries()
     deformed = _deformed(space, [field])
-    for start in range(0, len(numbers), CHUNK):
-        cells = slice(start, start + CHUNK)
+    for cells in space.pieces(len(numbers)):
         condensed = space.condensed(response, cells)
         for rows, S, u in zip(numbers[cells], condensed, deformed[cells]):
             result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
@@ -45,9 +43,9 @@ def shapes(
     """
     outer = _deformed(space, fields) + _deformed(space, corrections)
     pieces = [space.extended(outer[:0], response, np.arange(0))]
-    for start in range(0, len(outer), CHUNK):
-        cells = np.arange(start, min(start + CHUNK, len(outer)))
-        pieces.append(space.extended(outer[cells], response, cells))
+    numbers = np.arange(len(outer))
+    for cells in space.pieces(len(outer)):
+        pieces.append(space.extended(outer[cells], response, numbers[cells]))
     return np.concatenate(pieces)
 
 

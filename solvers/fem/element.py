@@ -15,8 +15,8 @@ from galinx.solvers.fem import cells
 from galinx.solvers.fem.chart import Contracted
 from galinx.solvers.fem.lagrange import lagrange
 
-#: Cells treated at once, so that what is in work stays near the processor.
-_CELLS = 16
+#: Products of functions that are in work at once, so that they stay near the processor.
+_PRODUCTS = 700_000
 
 #: Of functions along both directions: values (points, functions) along the first one, and the second.
 _Factors = tuple[NDArray, NDArray]
@@ -71,8 +71,9 @@ class Element:
         """
         wanted = [self._index[np.ix_(*part)] for part in parts]
         found = [np.empty((len(corners), *index.shape)) for index in wanted]
-        for start in range(0, len(corners), _CELLS):
-            some = slice(start, start + _CELLS)
+        step = max(4, _PRODUCTS // sum(block.size for block in self._blocks))
+        for start in range(0, len(corners), step):
+            some = slice(start, start + step)
             products = self._products(H, chart, corners[some, :, :2])
             for index, block in zip(wanted, found):
                 np.take(products, index, axis=1, out=block[some], mode="clip")

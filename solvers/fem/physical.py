@@ -14,7 +14,6 @@ from petsc4py import PETSc
 
 from galinx.solvers.fem import adapter
 from galinx.solvers.fem.cells import image, tensor_order
-from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -69,8 +68,8 @@ def _nodal(
     field.maxpy(weights.tolist(), list(fields[: len(weights)]))
     numbers = np.arange(len(space.vertices))
     found = [
-        space.cell_values([field], response, numbers[first : first + CHUNK])[..., 0]
-        for first in range(0, len(numbers), CHUNK)
+        space.cell_values([field], response, numbers[cells])[..., 0]
+        for cells in space.pieces(len(numbers))
     ]
     field.destroy()
     return np.concatenate(found)

@@ -21,7 +21,6 @@ from galinx.solvers.fem.cells import (
 )
 from galinx.solvers.fem.chart import Contracted
 from galinx.solvers.fem.clipping import clipped, in_quads
-from galinx.solvers.fem.condensation import CHUNK
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -84,8 +83,8 @@ def sample(
     field.maxpy(weights.tolist(), list(fields[: len(weights)]))
     grid, nodes = tensor_order(space.reference_nodes)
     pieces = []
-    for start in range(0, space.comm.allreduce(len(cells), MPI.MAX), CHUNK):
-        some = cells[start : start + CHUNK]
+    for piece in space.pieces(space.comm.allreduce(len(cells), MPI.MAX)):
+        some = cells[piece]
         for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
             crossing = corners[wanted[cell] & ~whole[cell]]
             at, cut = _cut(chart, vertices[cell], t, crossing, extent)

@@ -17,7 +17,7 @@ from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import adapter
 from galinx.solvers.fem.chart import Chart, Contracted
 from galinx.solvers.fem.compiler import compiling
-from galinx.solvers.fem.condensation import CHUNK, CellMatrices
+from galinx.solvers.fem.condensation import CellMatrices
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
 from galinx.solvers.solids.solid import Response
@@ -153,8 +153,7 @@ class Space:
         numbers = self.outer_numbers
         with self.clock("assembly"):
             A = empty_matrix(numbers, *self._range, self.comm)
-            for start in range(0, len(numbers), CHUNK):
-                cells = slice(start, start + CHUNK)
+            for cells in self.pieces(len(numbers)):
                 condensed = self.condensed(response, cells)
                 for rows, S in zip(numbers[cells], condensed):
                     A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
@@ -251,7 +250,7 @@ class Space:
     @contextmanager
     def keeping(self, response: Response) -> Iterator[None]:
         """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        chunks = [slice(n, n + CHUNK) for n in range(0, max(len(self.outer_numbers), 1), CHUNK)]
+        chunks = list(self.pieces(len(self.outer_numbers))) or [slice(0, 0)]
         with self.clock("assembly"):
             self._kept = tuple(
                 np.concatenate([self._cells(part, response, cells) for cells in chunks])
@@ -261,6 +260,11 @@ class Space:
             yield
         finally:
             self._kept = None
+
+    def pieces(self, count: int) -> Iterator[slice]:
+        """Parts of so many cells, each to be treated at once."""
+        step = self.kernel.at_once
+        return (slice(start, start + step) for start in range(0, count, step))
 
     def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""

@@ -87,14 +87,21 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
     return figure, figure.subplots(rows, columns, squeeze=False, gridspec_kw=place)
 
 
-def lettered(axes: Iterable[Axes], titles: Sequence[str] = ()) -> None:
-    """Give panels their letters, each before its title; a panel alone needs none."""
+def lettered(axes: Iterable[Axes], titles: Sequence[str] = (), above: bool = False) -> None:
+    """Give panels their letters, each before its title; a panel alone needs none.
+
+    Args:
+        axes: the panels.
+        titles: of the first of them.
+        above: is something drawn above panels that titles have to make way for? To look for it takes
+            matplotlib a tenth of all its time.
+    """
     axes = list(axes)
     told = [*titles, *[""] * (len(axes) - len(titles))]
     for n, (axis, title) in enumerate(zip(axes, told)):
         letter = f"({chr(97 + n)})  " if len(axes) > 1 else ""
         if letter or title:
-            axis.set_title(letter + title)
+            axis.set_title(letter + title, y=None if above else 1.0)
 
 
 class Legend:

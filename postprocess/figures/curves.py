@@ -100,7 +100,7 @@ def curves_figure(
         axis.set_ylabel(folded(_with_unit(panel, power), int(1.1 * tall / _LETTER)))
         if over.beside and n < columns:
             _beside(axis, *over.beside)
-    lettered(axes.flat[: len(shown)])
+    lettered(axes.flat[: len(shown)], above=True)
     legend.put(figure)
     return figure
 

@@ -96,7 +96,7 @@ def _name(axes: NDArray, titles: Sequence[str]) -> None:
     for axis, title in zip(axes[0], told if apart else []):
         axis.set_title(f"{title}\n{axis.get_title(loc='left')}")
     for axis in axes.flat:
-        axis.set_title(axis.get_title(loc="left"), pad=4.5)
+        axis.set_title(axis.get_title(loc="left"), pad=4.5, y=1.0)
 
 
 def _make_way(axes: NDArray, by: float) -> None:

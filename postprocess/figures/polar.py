@@ -77,7 +77,7 @@ def polar_figure(angles: NDArray, shown: Sequence[Panel], now: float, size: Size
                 handles=_entries(panel), loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize=SMALL,
                 labelspacing=0.2, borderaxespad=0.0,
             )  # fmt: skip
-    lettered(axes, [panel.title for panel in shown])
+    lettered(axes, [panel.title for panel in shown], above=True)
     return figure
 
 

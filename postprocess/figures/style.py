@@ -41,7 +41,6 @@ _STYLE = {
     "axes.axisbelow": True,
     "axes.titlelocation": "left",
     "axes.titlepad": 3.5,
-    "axes.titley": 1.0,  # nothing is drawn above panels that a title would have to look for
     "axes.labelpad": 2.5,
     "xtick.direction": "in",
     "ytick.direction": "in",

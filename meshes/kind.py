@@ -29,8 +29,9 @@ _APART = 1.25
 #: Digits of moments that go with a digit of stresses.
 _OF_STRESSES = 1.5
 
-#: Power of the rings' ratio by which they are gentler for stresses.
-_GENTLER = 0.6
+#: Power of the rings' ratio by which they are gentler for stresses, and steeper where cells are finer in
+#: angle for the sake of the large ones: rings then have more of them than the edges ask for.
+_GENTLER, _STEEPER = 0.6, 1.5
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,8 @@ class MeshKind:
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
         finer = self._finer(wanted)
         sectors += finer
+        if finer and wanted.nearest is None:
+            ratio **= _STEEPER
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.

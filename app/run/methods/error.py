@@ -81,9 +81,10 @@ class MeasuredError:
         self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         if not ladder.task.response.mirrored:
-            # Only what rounding might do is known there; what it does shows in the last change, too.
+            # Only what rounding might do is known there; what it does is in the last change, once.
             for word, changes in self._sample.items():
-                self._rounding[word] = min(self._rounding[word], float(changes[-1].max()))
+                shown = float(changes[-1].max()) / ROUNDING
+                self._rounding[word] = min(self._rounding[word], shown)
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):

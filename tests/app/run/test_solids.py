@@ -72,17 +72,15 @@ def test_finite_elements_reach_a_small_tolerance(solid, share):
 @pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[5:6])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-7] if THOROUGH else [1e-4])
 def test_stresses_reach_the_tolerance(solid, share, tolerance):
-    data = solved_with_stresses(solid, share, tolerance)
-    for name, true in (("sigma_XX", in_plane_error(data)), ("inside", inside_error(data))):
-        estimate = data[f"states/fem/estimate_{name}"]
-        assert np.all(true <= estimate) and estimate.max() <= tolerance, name
-
-
-def solved_with_stresses(solid, share, tolerance):
+    """Or say that they do not, where rounding leaves no more digits: of some solids seven."""
     points = "points = [[0.0, -0.5], [0.99, -0.01], [-1.02, -0.003], [1.5, -1.0]]\n"
     found = galinx.compute(scene(solid, share, tolerance, ("sif", "surface", "interior"), output=points))
-    assert found.verdict == "PASS", found.attributes["verdict_reasons"]
-    return found.data
+    data = found.data
+    estimates = [data[f"states/fem/estimate_{name}"] for name in ("sigma_XX", "inside")]
+    for true, estimate in zip((in_plane_error(data), inside_error(data)), estimates):
+        assert np.all(true <= estimate)
+    kept = np.max(estimates) <= tolerance
+    assert (found.verdict == "PASS") == kept and (kept or tolerance < 1e-6)
 
 
 def in_plane_error(data):

@@ -61,7 +61,8 @@ class Element:
         """Blocks of the element matrices of cells.
 
         Args:
-            H: the form at unit gradients and pressure, symmetric, see :meth:`.forms.Form.density`.
+            H: the form at unit gradients and pressure, symmetric, see :meth:`.forms.Form.density`; one
+                for all cells, or one for each, (m, 4, 4) or (m, 5, 5).
             chart: of the mesh, at a speed.
             corners: vertices, (m, 4, 3).
             parts: rows and columns of each block that is wanted.
@@ -74,7 +75,7 @@ class Element:
         step = max(4, _PRODUCTS // sum(block.size for block in self._blocks))
         for start in range(0, len(corners), step):
             some = slice(start, start + step)
-            products = self._products(H, chart, corners[some, :, :2])
+            products = self._products(H if H.ndim == 2 else H[some], chart, corners[some, :, :2])
             for index, block in zip(wanted, found):
                 np.take(products, index, axis=1, out=block[some], mode="clip")
         return found
@@ -82,18 +83,20 @@ class Element:
     def _products(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
         """All products of functions along the first direction with those along the second, (m, …)."""
         T, weights = self._gradients(chart, corners)
-        Q, m = len(self._points), len(corners)
-        two_gradients = np.einsum("aAyxm,bByxm->ABabmyx", T, T * weights, optimize=False)
-        rows = np.array([H[:2, :2], H[:2, 2:4], H[2:4, 2:4]]).reshape(3, 4)
-        densities = [(rows @ two_gradients.reshape(4, -1)).reshape(3, 4, m, Q, Q)]
+        m, Q = len(corners), len(self._points)
+        two_gradients = np.einsum("maAyx,mbByx->mABabyx", T, T * weights[:, None, None])
+        rows = np.stack([H[..., :2, :2], H[..., :2, 2:4], H[..., 2:4, 2:4]], axis=-3)
+        densities = [rows.reshape(-1, 3, 4) @ two_gradients.reshape(m, 4, -1)]
         if self._pressures:
-            by_gradient = (T * weights).transpose(1, 0, 4, 2, 3)
-            densities.append((H[:4, 4].reshape(2, 2) @ by_gradient.reshape(2, -1)).reshape(2, 2, m, Q, Q))
-            densities.append(H[4, 4] * weights.transpose(2, 0, 1)[None, None])
+            by_gradient = np.einsum("maAyx,myx->mAayx", T, weights)
+            densities.append(H[..., :4, 4].reshape(-1, 2, 2) @ by_gradient.reshape(m, 2, -1))
+            densities.append(H[..., 4, 4].reshape(-1, 1, 1) * weights.reshape(m, 1, -1))
         result = np.empty((m, sum(block.size for block in self._blocks)))
         start = 0
         for block, density in zip(self._blocks, densities):
-            block.fill(result[:, start : start + block.size], density.transpose(2, 0, 1, 3, 4))
+            block.fill(
+                result[:, start : start + block.size], density.reshape(*density.shape[:2], -1, Q, Q)
+            )
             start += block.size
         return result
 
@@ -101,7 +104,7 @@ class Element:
         """What makes the form's gradients of those along a cell's directions, and the weights of points.
 
         Returns:
-            Array [direction, axis, second, first, cell], array [second, first, cell].
+            Array [cell, direction, axis, second, first], array [cell, second, first].
         """
         first, second = np.meshgrid(self._points, self._points)
         t = np.stack([first, second], axis=-1)
@@ -112,8 +115,8 @@ class Element:
         inverse[..., 0, 1], inverse[..., 1, 0] = -J[..., 0, 1], -J[..., 1, 0]
         x = cells.image(corners[:, None], t)
         axes = chart.axes(x.reshape(-1, 2)).reshape(*x.shape, 2) / np.sqrt(chart.p.imag)
-        T = np.einsum("myxac,myxcA->aAyxm", inverse / determinant[..., None, None], axes)
-        return T, np.einsum("yx,myx->yxm", self._weights, np.abs(determinant))
+        T = np.einsum("myxac,myxcA->maAyx", inverse / determinant[..., None, None], axes)
+        return T, self._weights * np.abs(determinant)
 
     def _places(self, grid: NDArray) -> NDArray[np.int64]:
         """Where each entry of an element matrix is among the products, (size, size)."""

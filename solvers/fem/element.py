@@ -43,14 +43,12 @@ class Element:
         self._weights = np.outer(weights, weights)
         value, slope = lagrange(nodes, self._points)
         gradient = [(slope, value), (value, slope)]
-        legendre = legvander(points, max(pressures, 1) - 1) * np.sqrt(
-            2.0 * np.arange(max(pressures, 1)) + 1.0
-        )
-        scalar = [(legendre[:, :pressures], legendre[:, :pressures])]
         self.size = 2 * len(reference) + pressures**2
         self._pressures, self._nodes = pressures, len(nodes)
         self._blocks = [_Block(3, gradient, gradient)]
         if pressures:
+            orders = np.arange(pressures)
+            legendre = legvander(points, pressures - 1) * np.sqrt(2.0 * orders + 1.0)
             scalar = [(legendre, legendre)]
             self._blocks += [_Block(2, gradient, scalar), _Block(1, scalar, scalar)]
         self._index = self._places(grid)
@@ -121,26 +119,23 @@ class Element:
     def _places(self, grid: NDArray) -> NDArray[np.int64]:
         """Where each entry of an element matrix is among the products, (size, size)."""
         n, k = self._nodes, self._pressures
-        along = np.argsort(grid.ravel())  # of each node: its number along both directions
-        along = np.repeat(np.stack(np.divmod(along, n)), 2, axis=1)
-        component = np.arange(2 * n * n) % 2
-        along = np.concatenate([along, np.stack(np.divmod(np.arange(k * k), max(k, 1)))], axis=1)
-        component = np.concatenate([component, np.full(k * k, 2)])
-        row, column = np.meshgrid(np.arange(self.size), np.arange(self.size), indexing="ij")
-        # The form is symmetric: both entries of a pair are one number.
-        later = (component[row] > component[column]) | (
-            (component[row] == component[column]) & (row > column)
-        )
-        row, column = np.where(later, column, row), np.where(later, row, column)
+        # Of each unknown: its component, 2 for a pressure, and its function along both directions.
+        of_nodes = np.divmod(np.argsort(grid.ravel()), n)
+        of_pressures = np.divmod(np.arange(k * k), max(k, 1))
+        component = np.concatenate([np.arange(2 * n * n) % 2, np.full(k * k, 2)])
+        along = np.concatenate([np.repeat(of_nodes, 2, axis=1), of_pressures], axis=1)
+        row, column = np.indices((self.size, self.size))
+        # The form is symmetric: both entries of a pair are one number, that whose component comes first.
+        rank = component * self.size + np.arange(self.size)
+        swapped = rank[row] > rank[column]
+        row, column = np.where(swapped, column, row), np.where(swapped, row, column)
         c, d = component[row], component[column]
+        block = np.where(d < 2, 0, np.where(c < 2, 1, 2))
+        within = np.where(d < 2, c + d, np.where(c < 2, c, 0))
+        lefts, rights = np.where(c < 2, n, k), np.where(d < 2, n, k)
+        first, second = along[:, row] * rights + along[:, column]
         starts = np.cumsum([0] + [block.size for block in self._blocks])
-        kind = (d == 2) * (1 + (c == 2).astype(int))
-        of_block = np.where(kind == 0, c + d, np.where(kind == 1, c, 0))
-        rights = np.where(d == 2, k, n)
-        lefts = np.where(c == 2, k, n)
-        pair = along[:, row] * rights + along[:, column]
-        count = lefts * rights
-        return starts[kind] + (of_block * count + pair[0]) * count + pair[1]
+        return starts[block] + (within * lefts * rights + first) * lefts * rights + second
 
 
 class _Block:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
+from scipy.linalg import schur
 
 from galinx.solvers.errors import SolveError
 
@@ -75,7 +76,11 @@ class KrylovSpace:
     def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
         """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
         m = len(self.fields) - 1
-        e1 = np.zeros((1, m, 1))
-        e1[:, 0] = self._size
-        y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], e1)[..., 0]
+        # A triangle once for all g: Schur's form keeps the digits that eigenvectors may lose.
+        T, Q = schur(self._H[:m, :m], output="complex")
+        solved = np.tile((self._size * Q[0].conj())[:, None], len(g))
+        for i in reversed(range(m)):
+            solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])
+            solved[i] /= 1.0 - g * T[i, i]
+        y = (Q @ solved).real.T
         return y, np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1)

@@ -119,7 +119,7 @@ class SlidingPunch:
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
-        tangential, normal = np.einsum("sk,kin->isn", weights, np.array(space.forces))
+        tangential, normal = np.tensordot(weights, np.array(space.forces), axes=1).swapaxes(0, 1)
         return Part(weights, normal, tangential)
 
     def release(self) -> None:

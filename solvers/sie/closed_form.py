@@ -14,8 +14,8 @@ from scipy.special import log1p  # NumPy's loses digits for small complex argume
 from galinx.solvers.contact import from_edge, under_punch
 from galinx.solvers.solids.solid import Response
 
-#: Halvings after which the logarithm of a distance has all its digits.
-_HALVINGS = 80
+#: Newton's steps for the logarithm of a distance; where the answer is double they halve what is left.
+_STEPS = 80
 
 
 @dataclass(frozen=True)
@@ -113,11 +113,18 @@ class FlatPunch:
         """Largest d with own·log d + other·log(2 - d) >= wanted, not beyond where that is least."""
         high = np.log(-2.0 * own)
         low = np.minimum((wanted - other * np.log(2.0)) / own, high)  # as if 2 - d were 2
-        for _ in range(_HALVINGS):
-            t = (low + high) / 2.0
-            exceeds = own * t + other * np.log(2.0 - np.exp(t)) >= wanted
-            low, high = np.where(exceeds, t, low), np.where(exceeds, high, t)
-        return np.exp(high)
+        # Convex and falling from the left of the answer on: Newton's steps never pass it.
+        t = low
+        for _ in range(_STEPS):
+            d = np.exp(t)
+            left = own * t + other * np.log(2.0 - d) - wanted
+            slope = np.minimum(own - other * d / (2.0 - d), -np.finfo(float).tiny)
+            with np.errstate(over="ignore"):
+                found = np.where(left > 0.0, np.minimum(t - left / slope, high), t)
+            if np.array_equal(found, t):
+                break
+            t = found
+        return np.exp(t)
 
     def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""

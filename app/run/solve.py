@@ -1,6 +1,6 @@
 """From tasks to parts: every method answers, quantities are read off the answers and compared."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Plan, Task
+from galinx.app.run.alike import under_loads
+from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.method import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare
@@ -18,6 +20,7 @@ from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
 from galinx.solvers.sie.found import local_exponents
+from galinx.solvers.solution import Body
 
 
 @dataclass(frozen=True)
@@ -60,28 +63,50 @@ class Work:
             solvers: dict[str, Solver] = {}
             for name, method in self.methods.items():
                 try:
-                    solvers[name] = stack.enter_context(method.at(task, np.unique(self.g[task.rows])))
+                    if self._together(name, task):
+                        solvers[name] = stack.enter_context(method.at(task, np.unique(task.of(self.g))))
                 except SolveError as error:
                     failures[name] = str(error)
-            *others, last = self.to_do(task)
-            for rows in others:
-                yield self._part(task, rows, solvers, failures)
-            part = self._part(task, last, solvers, failures)
+            *others, last = self._batches(task)
+            for some in others:
+                yield from self._parts(task, some, solvers, failures)
+            *others_, part = self._parts(task, last, solvers, failures)
+            yield from others_
             yield replace(part, record=_record(task, solvers, failures))
 
-    def _part(
-        self, task: Task, rows: slice, solvers: Mapping[str, Solver], failures: dict[str, str]
-    ) -> Part:
-        g = self.g[rows]
+    def _batches(self, task: Task) -> list[list[slice]]:
+        """Rows that are still to be computed, so many at a time as a chunk has."""
+        batches: list[list[slice]] = []
+        room = 0
+        for rows in self.to_do(task):
+            count = rows.stop - rows.start
+            if not batches or count > room:
+                batches.append([])
+                room = self.plan.chunk
+            batches[-1].append(rows)
+            room -= count
+        return batches
+
+    def _together(self, name: str, task: Task) -> bool:
+        """Does one solver know the states of a method under all loads?"""
+        return len(task.loads) == 1 or METHODS[name].loads
+
+    def _parts(
+        self, task: Task, some: Sequence[slice], solvers: Mapping[str, Solver], failures: dict[str, str]
+    ) -> Iterator[Part]:
+        """Results of some runs of states, which are solved together."""
+        g, load = np.concatenate([self.g[rows] for rows in some]), None
+        if len(task.loads) > 1:
+            load = np.concatenate([self.plan.load(rows) for rows in some])
+        body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
-            body = task.body
             local = local_exponents(task.response, g, body.profile, body.compression)
-            data = self._read(LOCAL, Edges(local), task)
+            data = self._of(LOCAL, Edges(local), body)
         for name in self.methods:
             try:
                 if name not in failures:
                     with self.clock(_STEPS.get(name, name)):
-                        data |= self._read(name, solvers[name].states(g), task)
+                        data |= self._read(name, solvers.get(name), task, g, load)
             except SolveError as error:
                 failures[name] = str(error)
             if name in failures:
@@ -90,11 +115,35 @@ class Work:
             for quantity in self.plan.quantities:
                 if quantity.of_data:
                     data[quantity.path] = quantity.of_data(data)
-            return Part(rows, data, [] if failures else self._compared(data, g), None)
+            first = 0
+            for rows in some:
+                own = slice(first, first + rows.stop - rows.start)
+                of_run = {path: values[own] for path, values in data.items()}
+                N = body.load if load is None else load[own]
+                found = [] if failures else self._compared(of_run, g[own], N)
+                yield Part(rows, of_run, found, None)
+                first = own.stop
 
-    def _read(self, method: str, solution: Any, task: Task) -> dict[str, NDArray]:
+    def _read(
+        self, name: str, solver: Solver | None, task: Task, g: NDArray, load: NDArray | None
+    ) -> dict[str, NDArray]:
+        """What a method's solution of states gives; without a solver each load has one of its own."""
+        if solver is not None:
+            solution = under_loads(solver.states, task.body, g, load)
+            return self._of(name, solution, task.body.loaded(load))
+        assert load is not None
+        found = self._unknown(name, len(g))
+        for N in np.unique(load).tolist():
+            some = np.flatnonzero(load == N)
+            alone = replace(task, body=task.body.loaded(N), loads=(N,))
+            with self.methods[name].at(alone, np.unique(g[some])) as one:
+                for path, values in self._of(name, one.states(g[some]), alone.body).items():
+                    found[path][some] = values
+        return found
+
+    def _of(self, method: str, solution: Any, body: Body) -> dict[str, NDArray]:
         return {
-            quantity.path: quantity.of(solution, task.body)
+            quantity.path: quantity.of(solution, body)
             for quantity in self.plan.quantities
             if quantity.of and quantity.method == method
         }
@@ -106,9 +155,9 @@ class Work:
             if quantity.method == method
         }
 
-    def _compared(self, data: dict[str, NDArray], g: NDArray) -> list[compare.Comparison]:
+    def _compared(self, data: dict[str, NDArray], g: NDArray, load: Any) -> list[compare.Comparison]:
         given = {states.RATIO.path: g} | self.plan.positions
-        return compare.comparisons(data | given, self.plan.body.load, self.plan.rules)
+        return compare.comparisons(data | given, load, self.plan.rules)
 
 
 #: What the time to read a method's solutions is told as.

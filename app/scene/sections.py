@@ -35,8 +35,8 @@ def _solid(
     return HalfPlane(made(kind, values), material, yield_strength)
 
 
-def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
-    return Punch(made(kind, values), load)
+def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
+    return Punch(made(kind, values), tuple(dict.fromkeys(load)))
 
 
 def _slider(damping: float, **given: float | None) -> Slider | None:
@@ -60,8 +60,8 @@ _SOLID_KEYS = {
 
 _PUNCH_KEYS = {
     "load": Key(
-        Number("N/m", _POSITIVE), "normal load N per depth", 55.3e3,
-        "dimensionless results do not depend on it",
+        Numbers("N/m", _POSITIVE), "normal load N per depth", (55.3e3,),
+        "dimensionless results do not depend on it where the contact is that of a flat punch",
     ),
 }  # fmt: skip
 

@@ -137,7 +137,7 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
         for method, row in by_method.items():
             told = scaling(row, "")
             if row.path in data and told and np.isfinite(values := data[row.path]).any():
-                ends = (f"{told.factor * end(values):.4g}" for end in (np.nanmin, np.nanmax))
+                ends = (f"{end(told.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
                 unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
                 rows.append([label, _METHODS[method], unit, *ends])
     notes = [

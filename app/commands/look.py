@@ -125,8 +125,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
         section, *path, last = name.split("/")
         if section != "states" or (told := scaled(declared(name), last)) is None:
             continue
-        numbers = values if told.factor == 1.0 else told.factor * values
-        for state, value in zip([units, *states], [told.unit, *numbers.tolist()]):
+        for state, value in zip([units, *states], [told.unit, *told.of(values).tolist()]):
             for level in path:
                 state = state.setdefault(level, {})
             state[told.name] = None if value != value else value

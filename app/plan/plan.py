@@ -50,7 +50,8 @@ def make_plan(scene: Scene) -> Plan:
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
     body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
-    check_size(body, methods)
+    for load in {min(known.loads), max(known.loads)}:
+        check_size(body.loaded(load), methods)
     check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)

@@ -34,9 +34,9 @@ class States:
 
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
-            speed), the load in N/m where there are several, the law's parameters, the speed and that of a wave along the surface in m/s, how
-            often a wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the
-            punch.
+            speed), the load in N/m where there are several, the law's parameters, the speed and that of
+            a wave along the surface in m/s, how often a wave crosses the contact in a stroke, f = F/N
+            signed, and g = σ_XY/σ_YY under the punch.
         inner: inner state of the law at each state, (states, n).
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
@@ -179,10 +179,10 @@ def _of_all(known: Order, values: NDArray) -> NDArray:
         known: which state is which.
         values: of the laws that are followed, (laws and speeds, places, …).
     """
-    _, loads, laws, places = known.shape
+    *several, laws, places = known.shape
     rest = values.shape[2:]
     by_speed = values.reshape(-1, 1, laws, places, *rest)
-    return np.broadcast_to(by_speed, (*known.shape[:2], laws, places, *rest)).reshape(-1, *rest)
+    return np.broadcast_to(by_speed, (*several, laws, places, *rest)).reshape(-1, *rest)
 
 
 def _columns(scene: Scene, known: Order, f: NDArray) -> dict[str, NDArray]:

@@ -19,7 +19,8 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
     if scene.slider:
-        result.append(f"slider: {scene.friction.count} motions of {scene.slider.duration:g} s")
+        count = scene.friction.count * len(scene.punch.loads)
+        result.append(f"slider: {count} motions of {scene.slider.duration:g} s")
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {plan.states} states")

@@ -91,16 +91,16 @@ _MOTION_KEYS = {
     ),
     "strokes": Key(
         Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
-        "a stroke `{to = 0.8}` goes on from where the one before ended; `speed` of its own is for "
-        "friction alone, `rest` is the time at rest before it",
+        "a stroke `{to = 0.8}` goes on from where the one before ended; it may have a `speed` of its "
+        "own, `rest` is the time at rest before it",
     ),
     "rest": Key(
         Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
     ),
     "path": Key(
         Rows(("s", "m"), 2), "motion point by point, time and position", None,
-        "instead of `c` or `speed`, `strokes` and `X_over_L`, for friction alone; positions from 0 to "
-        "`friction.pre_sliding`",
+        "instead of `c` or `speed`, `strokes` and `X_over_L`; positions from 0 to "
+        "`friction.pre_sliding`, each piece at its own speed, with a state where it ends",
         without="none",
     ),
     "X_over_L": Key(

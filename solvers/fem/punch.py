@@ -101,7 +101,7 @@ class SlidingPunch:
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
         level, *shaped = self.parts(g, 0 if flat else None)
-        heights = share * np.ones(len(g))
+        heights = np.asarray(share, dtype=float) * np.ones(len(g))
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
         pressed = sum(heights * part.normal.sum(axis=1) for part in shaped)
         v0 = (-2.0 - pressed) / level.normal.sum(axis=1)

@@ -103,7 +103,7 @@ class KinkedAtSpeed:
         return self._space | vars(self._done)
 
     def _solved(self, g: float, load: float) -> tuple[Contact, float]:
-        """The contact at a friction and a load, and the estimated error of its ends over its half-width."""
+        """The contact at a friction and a load, and the estimated error of its ends over its width."""
         self._body = self.task.body.loaded(load)
         nearest = min(
             self._known, key=lambda known: abs(known[0] - g) + abs(np.log(known[1] / load)), default=None

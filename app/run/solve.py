@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -58,7 +58,7 @@ class Work:
         The last part has the speed's record: numbers by the names of ``quantities.runs.RECORD``, the
         ``speed``, and a ``failure`` where it could not be solved.
         """
-        failures: dict[str, str] = {}
+        failures = _Failures()
         with ExitStack() as stack:
             solvers: dict[str, Solver] = {}
             for name, method in self.methods.items():
@@ -66,13 +66,38 @@ class Work:
                     if self._together(name, task):
                         solvers[name] = stack.enter_context(method.at(task, np.unique(task.of(self.g))))
                 except SolveError as error:
-                    failures[name] = str(error)
-            *others, last = self._batches(task)
-            for some in others:
-                yield from self._parts(task, some, solvers, failures)
-            *others_, part = self._parts(task, last, solvers, failures)
-            yield from others_
-            yield replace(part, record=_record(task, solvers, failures))
+                    failures.whole[name] = str(error)
+            last: Part | None = None
+            for part in self._all(task, solvers, failures):
+                if last:
+                    yield last
+                last = part
+            assert last
+            yield replace(last, record=_record(task, solvers, failures))
+
+    def _all(self, task: Task, solvers: Mapping[str, Solver], failures: "_Failures") -> Iterator[Part]:
+        """Parts of all that is to be computed; takes down what could not be."""
+        for some in self._batches(task):
+            found = dict(failures.whole)
+            parts = list(self._parts(task, some, solvers, found))
+            if found == failures.whole or len(task.loads) == 1 or task.body.alike:
+                failures.whole = found
+                failures.solved |= len(task.loads) > 1 and not found
+                yield from parts
+                continue
+            # Under some of its loads a contact may have no answer: the others are told all the same.
+            for load, one in self._by_load(some):
+                found = dict(failures.whole)
+                yield from self._parts(task, one, solvers, found)
+                failures.take(load, found)
+
+    def _by_load(self, some: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
+        """Runs of states, cut so that each has one load."""
+        for rows in some:
+            loads = self.plan.load(rows)
+            first = np.flatnonzero(np.diff(loads, prepend=np.nan)).tolist()
+            for start, stop in zip(first, [*first[1:], len(loads)]):
+                yield float(loads[start]), [slice(rows.start + start, rows.start + stop)]
 
     def _batches(self, task: Task) -> list[list[slice]]:
         """Rows that are still to be computed, so many at a time as a chunk has."""
@@ -164,13 +189,34 @@ class Work:
 _STEPS = {"fem": "recovery", "closed_form": "closed form"}
 
 
-def _record(
-    task: Task, solvers: Mapping[str, Solver], failures: Mapping[str, str]
-) -> dict[str, Any] | None:
+@dataclass
+class _Failures:
+    """What could not be solved at a speed, and why, by method.
+
+    Attributes:
+        whole: all of it, from some state on.
+        some: states under some loads, the first of these told.
+        solved: were states under another load?
+    """
+
+    whole: dict[str, str] = field(default_factory=dict)
+    some: dict[str, str] = field(default_factory=dict)
+    solved: bool = False
+
+    def take(self, load: float, found: Mapping[str, str]) -> None:
+        """What was found of the states under a load."""
+        for name in found.keys() - self.whole.keys():
+            self.some.setdefault(name, f"N = {load:g} N/m: {found[name]}")
+        self.solved |= not found
+
+
+def _record(task: Task, solvers: Mapping[str, Solver], failures: _Failures) -> dict[str, Any] | None:
     """Numbers of the work at a speed, None where no method has any."""
-    speed = {"speed": task.number, "c": task.response.c}
-    if failures:
-        nothing = dict.fromkeys(RECORD, 0.0)
-        return nothing | speed | {"failure": "; ".join(failures.values())}
-    done = {key: value for solver in solvers.values() for key, value in solver.record().items()}
-    return done | speed if done else None
+    speed, told = {"speed": task.number, "c": task.response.c}, failures.some | failures.whole
+    numbers: dict[str, Any] = {}
+    if failures.solved or not told:
+        numbers = {key: value for solver in solvers.values() for key, value in solver.record().items()}
+    if told:
+        failure = {"failure": "; ".join(told.values()), "solved": failures.solved}
+        return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
+    return numbers | speed if numbers else None

@@ -40,6 +40,8 @@ _COARSE, _MORE = 4, 2
 _PASSES, _NEAR, _MOST, _NEXT_TO_END = 40, 0.5, 12, 0.98
 #: First half-width that is tried [m], and largest factor from one to the next.
 _FIRST, _FACTOR = 1e-3, 10.0
+#: Height over N/(2μ) under a contact up to which nothing but rounding is carried.
+_FLAT = 1e-9
 #: Changes of centre and half-width that a pass at a low degree may leave.
 _ROUGHLY = 1e-3
 
@@ -183,8 +185,11 @@ class KinkedAtSpeed:
         space = self.work.space_on(with_kinks(self._refinement, places), degree)
         r = space.chart.surface_position(space.contact.s)
         solver, tolerance = self.work.plan.solver, self.work.plan.tolerance
-        negligible = min(1e-4 * tolerance, 1e-10)
-        punch = SlidingPunch(space, self.task.response, solver, negligible, self._shapes(contact, r))
+        negligible, shapes = min(1e-4 * tolerance, 1e-10), self._shapes(contact, r)
+        if shapes[0].max() < _FLAT:  # in a flat part nothing is carried: wider
+            contact.change = np.inf
+            return np.inf, 0.0
+        punch = SlidingPunch(space, self.task.response, solver, negligible, shapes)
         try:
             parts = punch.parts(np.array([g]))
             self._done.count(punch)
@@ -194,9 +199,6 @@ class KinkedAtSpeed:
         normal = np.stack([part.normal[0] for part in parts], axis=1)
         A = self._conditions(places, r, g, TERMS) @ normal
         load = np.array([-2.0, 0.0, 0.0])
-        if not np.any(A[:, 1]):  # in a flat part nothing is carried: wider
-            contact.change = np.inf
-            return np.inf, 0.0
         v0, amplitude, lean = np.linalg.solve(A[:, :3], load)
         if not amplitude > 0.0 or abs(np.log(amplitude)) > _NEAR:
             contact.change = np.inf

@@ -254,3 +254,26 @@ def test_a_contact_of_a_few_atoms_is_told_of():
     assert any("1e-09 N/m" in text and "atoms" in text for text in small.warnings)
     usual = make_plan(galinx.template("tables4_5", changes | {"punch.load": 1e4}))
     assert not any("atoms" in text for text in usual.warnings)
+
+
+def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):
+    """The contact of a rounded punch under the middle load ends next to where the flat part does."""
+    changes = ALL | punch("rounded") | {
+        "output.quantities": ["sif"], "output.points": None, "motion.X_over_L": [1.0],
+        "solve.tolerance": 1e-3, "friction.mu_c": 1e-9, "motion.c": 0.0,
+    }  # fmt: skip
+    narrow = computed("tables4_5", changes | CLOSED | {"punch.load": [1.0, 1e3, 1e5]})
+    a = narrow.data["states/closed_form/half_width"]
+    assert 1.0 < a[0] / 1e-4 < 1.02 < a[1] / 1e-4
+    found = computed("tables4_5", changes | {"punch.load": [1e5, 1.0, 1e3]})
+    (failure,) = found.data["run/failures"]
+    assert failure.startswith("c = 0: N = 1 N/m: ") and found.verdict == "FAIL"
+    h = found.data["states/fem/half_width"]
+    np.testing.assert_allclose(h[[0, 2]], a[[2, 1]], rtol=1e-3)
+    assert np.isnan(h[1]) and not np.isnan(found.data["states/closed_form/half_width"][[0, 2]]).any()
+    found.save(tmp_path / "a.h5")
+    assert not faults(tmp_path / "a.h5")
+    from galinx.solvers.errors import SolveError
+
+    with pytest.raises(SolveError, match="kinks"):
+        computed("tables4_5", changes | {"punch.load": 1.0})

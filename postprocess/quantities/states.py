@@ -37,7 +37,7 @@ SPEED = Quantity(
     symbol="c", range=Range(at_least=0.0, below=1.0),
 )  # fmt: skip
 LOAD = Quantity(
-    "states/load", "N/m", "normal load N per depth, where states differ in it", (STATE,), symbol="N",
+    "states/load", "N/m", "normal load per depth N, where states differ in it", (STATE,), symbol="N",
     range=Range(above=0.0),
 )  # fmt: skip
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))

@@ -233,7 +233,18 @@ def test_half_width_and_centre_are_drawn_against_the_load():
     assert len(drawing.figure.axes[0].get_lines()[0].get_xdata()) == 30
     (friction,) = result.drawings(figures=("friction",))
     assert len(result.data["loops/f"]) == 1 and friction.name == "friction"
-    assert {drawing.name for drawing in result.drawings()} >= {"friction", "parameters"}
+    names = {drawing.name: drawing for drawing in result.drawings()}
+    assert names.keys() >= {"friction", "parameters"}
+
+
+@pytest.mark.parametrize("name, curves", [("parabolic", 1), ("rounded", 3)])
+def test_stresses_that_no_load_changes_are_drawn_once(name, curves):
+    changes = ALL | punch(name) | CLOSED | {"output.quantities": ["surface"], "output.points": None}
+    changes |= {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
+    (drawing,) = computed("tables4_5", changes).drawings(figures=("surface",))
+    drawn = [line for line in drawing.figure.axes[0].get_lines() if len(line.get_xdata()) > 50]
+    assert len(drawn) == curves
+    assert ("the same under every load" in drawing.caption) == (curves == 1)
 
 
 def test_a_slider_moves_under_every_load():

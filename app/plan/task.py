@@ -100,6 +100,11 @@ class Plan:
         """Number of states."""
         return len(self.tasks.order)
 
+    @property
+    def different(self) -> int:
+        """Number of states that differ by more than their load, where contacts of all loads are alike."""
+        return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
+
     def asks(self, word: str, method: str = "") -> bool:
         """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
         return any(

@@ -11,9 +11,11 @@ from support import computed
 import galinx
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
+from galinx.app.plan.words import lines
 from galinx.app.results.answers import answers, summary
 from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
+from galinx.app.results.one_state import displacement
 from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
 from galinx.solvers.parameters import parameter
@@ -280,6 +282,24 @@ def test_a_slider_moves_under_every_load():
     assert both.data["slider/peak_velocity"][0] != both.data["slider/peak_velocity"][1]
     (drawing,) = both.drawings(figures=("slider",))
     assert "N" in " ".join(text.get_text() for text in drawing.figure.legends[0].get_texts())
+
+
+def test_fields_of_a_state_are_those_of_its_load():
+    """Under a flat punch displacements grow like the load."""
+    changes = {"motion.c": 0.3, "motion.strokes": ["forward"], "motion.X_over_L": [1.0], **ROUGH}
+    scene = galinx.template("tables4_5", changes | {"punch.load": [1e4, 3e4]})
+    one, other = (displacement(scene, number).x.array for number in (0, 1))
+    assert np.abs(one).max() > 0.0
+    np.testing.assert_allclose(other, 3.0 * one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+
+
+def test_a_plan_counts_what_is_solved():
+    """Of a wedge every friction has meshes of its own, whatever the loads."""
+    loads = {"punch.load": {"from": 1e3, "to": 1e5, "number": 50}}
+    for name, states in (("wedge", 2), ("rounded", 100)):
+        scene = galinx.template("tables4_5", ALL | punch(name) | loads)
+        told = lines(scene, make_plan(scene))
+        assert any(f"finite elements: {states} states, each on" in text for text in told), told
 
 
 def test_a_contact_of_a_few_atoms_is_told_of():

@@ -94,7 +94,9 @@ ATTRIBUTES = {
     "datasets": Attribute("their paths", _LIST, _list, since=2),
     "scene_sha256": Attribute("hash of the scene's text", "a text", is_text),
     "title": Attribute("of the scene", "a text", is_text),
-    "load": Attribute("N, pressed on per depth [N/m]", "a finite number", _finite),
+    "load": Attribute(
+        "N, pressed on per depth [N/m], the first where states differ in it", "a finite number", _finite
+    ),
     "material": Attribute("name of the solid in the library, or nothing", "a text", is_text, since=3),
     "solid": Attribute(
         "its kind, its parameters and, where the scene gives it, yield_strength, in SI",
@@ -102,7 +104,12 @@ ATTRIBUTES = {
         _object(lambda value: is_text(value) or _number(value)),
         since=3,
     ),
-    "half_width": Attribute("a, half the width of the contact [m]", "a finite number", _finite, since=3),
+    "half_width": Attribute(
+        "a, half the width of the contact [m]; where ends are found, at rest without friction",
+        "a finite number",
+        _finite,
+        since=3,
+    ),
     "c_s": Attribute("wave speed to which c refers [m/s]", "a finite number", _finite, since=3),
     "speed_limit": Attribute(
         "highest speed of finite elements, that of a wave along the surface [m/s]",

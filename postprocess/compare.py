@@ -33,8 +33,8 @@ class Rule:
     Attributes:
         text: what the figure says.
         needs: the quantities that are compared.
-        measure: the figure (1) from datasets by path and the load N per depth [N/m]; None where there is
-            nothing to say.
+        measure: the figure (1) from datasets by path and the load N per depth [N/m], that of each state
+            where they differ in it; None where there is nothing to say.
         limit: largest value of a PASS; None where it is no fixed one.
         tolerances: the same in units of the scene's tolerance.
         mode: in which it is judged, as of a quantity; "" for each.
@@ -43,7 +43,7 @@ class Rule:
 
     text: str
     needs: tuple[Quantity, ...]
-    measure: Callable[[dict[str, Any], float], float | None]
+    measure: Callable[[dict[str, Any], Any], float | None]
     limit: float | None = None
     tolerances: float | None = None
     mode: str = ""
@@ -54,12 +54,12 @@ class Rule:
         return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
-def comparisons(data: dict[str, Any], load: float, names: Iterable[str]) -> list[Comparison]:
+def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
     """Every comparison that some states' data allow, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
-        load: N per depth [N/m].
+        load: N per depth [N/m], or that of each state, (states,).
         names: of the rules of the quantities that the data hold.
     """
     found, wanted = [], set(names)
@@ -71,13 +71,13 @@ def comparisons(data: dict[str, Any], load: float, names: Iterable[str]) -> list
     return found
 
 
-def _imbalance(data: dict[str, Any], load: float) -> float:
+def _imbalance(data: dict[str, Any], load: Any) -> float:
     normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
     off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
     return off.max()
 
 
-def _resultant(data: dict[str, Any], load: float) -> float:
+def _resultant(data: dict[str, Any], load: Any) -> float:
     rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO)
     normal, tangential, exact, g = (data[row.path] for row in rows)
     off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))

@@ -6,7 +6,7 @@ import xarray
 
 from galinx.postprocess.quantities import Quantity, of_states, table
 from galinx.postprocess.quantities.quantity import INNER, INSIDE, POINT, STATE
-from galinx.postprocess.quantities.states import MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 
 #: Names of dimensions, and of the positions along them.
@@ -25,7 +25,7 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
         data: datasets by path.
     """
     known = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = [SPEED.path], [MOTION.path, POSITION.path]
+    first, last = [SPEED.path, *({LOAD.path} & known.keys())], [MOTION.path, POSITION.path]
     own = [path for path in known if path not in (*first, *last)]
     return {path: known[path] for path in (*first, *own, *last)}
 

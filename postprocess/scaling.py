@@ -1,22 +1,40 @@
 """How quantities are told: as archived, or scaled."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, validity, yielding
 
 
 class Scaled(NamedTuple):
-    """What a quantity is called where it is told, its unit, and what its numbers are multiplied by."""
+    """What a quantity is called where it is told, its unit, and what its numbers are multiplied by.
+
+    The factor is one number, or one of each state, (states,), where these differ in their load.
+    """
 
     name: str
     unit: str
-    factor: float
+    factor: Any
 
     @property
     def head(self) -> str:
         """Of a column."""
         return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
+
+    def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
+        """Numbers as they are told.
+
+        Args:
+            values: as archived, (states, …).
+            states: numbers of their states, where these are not all.
+        """
+        if np.ndim(self.factor):
+            factor = self.factor[states]
+            return values * factor.reshape(-1, *(1,) * (values.ndim - 1))
+        return values if self.factor == 1.0 else self.factor * values
 
 
 #: How a quantity of some name is told; None where it is not, since another becomes the same.

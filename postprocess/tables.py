@@ -13,8 +13,8 @@ from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, TEXT
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 
-#: States that a table shows at most.
-LIMIT = 24
+#: States that a table shows at most, and inner variables of a law.
+LIMIT, _VARIABLES = 24, 6
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
         for method, row in by_method.items():
             told = scaling(row, "")
             if row.path in data and told and np.isfinite(values := data[row.path]).any():
-                ends = (f"{told.factor * end(values):.4g}" for end in (np.nanmin, np.nanmax))
+                ends = (f"{end(told.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
                 unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
                 rows.append([label, _METHODS[method], unit, *ends])
     notes = [
@@ -170,7 +170,26 @@ def loops_sheet(data: dict[str, Any]) -> Sheet:
         "work: dissipated in all strokes, and in a closed loop where there is one; breakaway: largest of "
         "all strokes; stiffness: where the first stroke begins; all per depth"
     )
+    if of.LOAD.path in data:
+        note += f"; under the first load, N = {data[of.LOAD.path][0]:.4g} N/m"
     return Sheet("Friction loops", heads, rows, [note])
+
+
+def inner_sheet(data: dict[str, Any]) -> Sheet:
+    """What the law remembers at the first states; no rows where that is nothing, or f itself."""
+    z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
+    rows: list[list[str]] = []
+    count = min(0 if z is None else z.shape[1], _VARIABLES)
+    if z is not None and z.any() and not (z.shape[1] == 1 and np.allclose(z[:, 0], f, rtol=1e-12)):
+        columns = data[of.MOTION.path], data[of.POSITION.path], f, z
+        for n, (motion, X, of_state, inner) in enumerate(zip(*(values[:LIMIT] for values in columns))):
+            told = (f"{value:.6g}" for value in inner[:count].tolist())
+            rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *told])
+    notes = ["z: dimensionless, as the law's file says"]
+    if z is not None and z.shape[1] > count:
+        notes.append(f"and {z.shape[1] - count} more; show --json lists all")
+    heads = ["state", "X/L", "f", *(f"z{n + 1}" for n in range(count))]
+    return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
 #: Of loops, by what a table calls them, and what it tells of the strokes.

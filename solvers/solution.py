@@ -1,6 +1,6 @@
 """What every method gives: friction states at one speed; lengths over a, stresses over N/(2a)."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
-from galinx.solvers.profiles import Profile, ends_are_found, half_width, jumps
+from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 
@@ -35,19 +35,19 @@ class Places:
 
 @dataclass(frozen=True)
 class Body:
-    """What slides over what, in SI.
+    """What slides over what, in SI; its units are numbers, or arrays where its load is one.
 
     Attributes:
         solid: the half-plane.
         profile: the punch.
-        load: N per depth [N/m].
+        load: N per depth [N/m], or that of each of some states, (states,).
         pressure: that is put in; None where it is the punch's.
         yield_strength: of the solid, uniaxial [Pa]; None where it is not known.
     """
 
     solid: Solid
     profile: Profile
-    load: float
+    load: Any
     pressure: LinearPressure | None = None
     yield_strength: float | None = None
 
@@ -67,17 +67,36 @@ class Body:
         return self.free and not jumps(self.profile)
 
     @cached_property
-    def half_width(self) -> float:
+    def alike(self) -> bool:
+        """Are contacts of all loads alike, but for their size? Of a flat punch, a power of |X|, or a
+        pressure that is put in."""
+        return self.pressure is not None or self.flat or (self.free and bool(exponent(self.profile)))
+
+    def loaded(self, load: Any = None) -> "Body":
+        """The same under another load [N/m], or under those of some states; this one for none."""
+        return self if load is None else replace(self, load=load)
+
+    def growth(self, load: Any) -> Any:
+        """Half-widths at some loads over that at this body's load, where contacts are alike."""
+        k = exponent(self.profile) if self.free else None
+        return (load / self.load) ** (1.0 / k) if k else np.ones_like(load)
+
+    @cached_property
+    def half_width(self) -> Any:
         """a [m]; where ends are found that of a contact at rest without friction."""
         if not self.found:
             return half_width(self.profile)
+        if np.ndim(self.load) and self.alike:
+            first = self.loaded(float(self.load[0]))
+            return first.half_width * first.growth(self.load)
         from galinx.solvers.sie.found import contacts
 
-        rest = contacts(self.solid.response(0.0), np.zeros(1), self.profile, self.compression)
-        return float(rest.of("half_width")[0])
+        g = np.zeros(np.size(self.load))
+        rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
+        return rest if np.ndim(self.load) else float(rest[0])
 
     @property
-    def compression(self) -> float:
+    def compression(self) -> Any:
         """N/μ [m]."""
         return self.load / self.solid.μ
 
@@ -93,25 +112,27 @@ class Body:
     @cached_property
     def flat(self) -> bool:
         """Is the punch flat? Its slope vanishes then wherever it is looked at."""
-        return not self.found and not np.any(self.slope(np.linspace(-1.0, 1.0, 101)))
+        if self.found:
+            return False
+        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
 
     @property
-    def force(self) -> float:
+    def force(self) -> Any:
         """Unit of nodal forces [N/m]: stresses over N/(2a), lengths over a."""
         return self.load / 2.0
 
     @property
-    def displacement(self) -> float:
+    def displacement(self) -> Any:
         """Unit of displacements [m]."""
         return self.load / (2.0 * self.solid.μ)
 
     @property
-    def strain(self) -> float:
+    def strain(self) -> Any:
         """Unit of strains, dimensionless."""
         return self.stress / self.solid.μ
 
     @property
-    def stress(self) -> float:
+    def stress(self) -> Any:
         """Unit of stresses [Pa]; where ends are found each state has its own instead."""
         return self.load / (2.0 * self.half_width)
 

@@ -79,6 +79,11 @@ def plot(
                 "--si: found a contact whose ends are found, and so another unit N/(2a) in every state; "
                 "leave it away, half-widths in m are among the parameters that are drawn"
             )
+        if si and len(result.scene.punch.loads) > 1:
+            raise errors.BadInput(
+                "--si: found states under several loads, and so several units N/(2a), over which all "
+                "stresses are the same; leave it away, or take csv --si"
+            )
         if si:
             wanted = replace(wanted, unit=1e-6 * unit_of_stress(result.scene))
         written = write(result.data, result.scene, wanted, files)

@@ -22,7 +22,13 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
     Example: ./run.sh show tables.h5 --si
     """
     from galinx.app.results.si import scaling
-    from galinx.postprocess.tables import limits_sheet, loops_sheet, sliders_sheet, states_sheet
+    from galinx.postprocess.tables import (
+        inner_sheet,
+        limits_sheet,
+        loops_sheet,
+        sliders_sheet,
+        states_sheet,
+    )
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -32,7 +38,8 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
             states = states_sheet(data, attributes["title"], scaled)
-            sheets = states, loops_sheet(data), sliders_sheet(data), limits_sheet(data, scaled)
+            friction = inner_sheet(data), loops_sheet(data), sliders_sheet(data)
+            sheets = states, *friction, limits_sheet(data, scaled)
             print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
             print_warnings(attributes)
     return errors.GOOD
@@ -125,8 +132,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
         section, *path, last = name.split("/")
         if section != "states" or (told := scaled(declared(name), last)) is None:
             continue
-        numbers = values if told.factor == 1.0 else told.factor * values
-        for state, value in zip([units, *states], [told.unit, *numbers.tolist()]):
+        for state, value in zip([units, *states], [told.unit, *told.of(values).tolist()]):
             for level in path:
                 state = state.setdefault(level, {})
             state[told.name] = None if value != value else value

@@ -7,7 +7,8 @@ import numpy as np
 from galinx.app.pictures.choice import Choice
 from galinx.app.pictures.drawing import Drawing, there
 from galinx.app.pictures.friction import Loops
-from galinx.app.pictures.told import C, spread
+from galinx.app.pictures.told import C, N, spread
+from galinx.app.plan.states import order
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.slider import Slide, slider_figure
 from galinx.postprocess.quantities import slider as rows
@@ -22,11 +23,14 @@ def has(data: dict[str, Any]) -> bool:
 
 
 def slider(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """The sliders of an archive, one for each law, those of some where they are many."""
-    loops, count = Loops(data, scene), scene.friction.count
+    """The sliders of an archive, one for each load and law, those of some where they are many."""
+    loops, count = Loops(data, scene), len(data[rows.PERIOD.path])
     laws = spread(list(range(count)), _SLIDERS)
-    names = [name for name in loops.names if name != C]
-    labels = [loops.told.label(int(loops.first[law]), names) if names else "" for law in laws]
+    several = len(scene.punch.loads) > 1
+    names = [*[N] * several, *(name for name in loops.names if name != C)]
+    # States of a load follow one another, as its sliders do.
+    each = order(scene).shape[-1]
+    labels = [loops.told.label(law * each, names) if names else "" for law in laws]
     wanted = (rows.VELOCITY, rows.CYCLE_VELOCITY, rows.CYCLE_FRICTION)
     v, cycle_v, cycle_f = (data[row.path] for row in wanted)
     slides = [
@@ -40,6 +44,6 @@ def slider(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     )
     if not np.isfinite(cycle_v[laws]).all():
         caption += " Where no loop is drawn the mass slides steadily in the end."
-    left = f"{count - len(laws)} of {count} laws not shown." * (len(laws) < count)
+    left = f"{count - len(laws)} of {count} laws{several * ' and loads'} not shown." * (len(laws) < count)
     figure = slider_figure(data[rows.TIMES.path], slides, scene.slider.drive_speed, ordered, choice.size)
     return Drawing("slider", caption, figure, left_out=left)

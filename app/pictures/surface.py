@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.friction import Loops
-from galinx.app.pictures.told import C, Told, few, not_shown, spread
+from galinx.app.pictures.told import C, N, Told, few, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.style import PAGE
 from galinx.postprocess.figures.surface import Column, Curve, Place, Stress, surface_figure
@@ -54,7 +54,9 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """A column for each speed, or else for each value of what varies most slowly."""
     loops = Loops(data, scene)
     told, width = loops.told, choice.size.width if choice.size else PAGE
-    groups = _groups(told, choice.states, width)
+    same = scene.body.alike and N in told.parameters and not choice.states
+    some = told.where(told.all, **{N: told.values(N)[0]}) if same else told.all
+    groups = _groups(told, some, choice.states, width)
     # Curves of one name look the same in all columns.
     columns = [
         column(data, loops, title, shown, names, told.looks(shown, names))
@@ -69,6 +71,8 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         caption += "; lengths are over each state's own half-width, from the middle of its contact."
     else:
         caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."
+    if same:
+        caption += " Over N/(2a) they are the same under every load."
     if any(axis.child_axes for axis in figure.axes):
         caption += " Insets show where on the friction loop each curve sits."
     if varied:
@@ -89,9 +93,11 @@ def column(
     return Column(title, curves, places)
 
 
-def _groups(told: Told, wanted: Sequence[int], width: float) -> list[tuple[str, list[int], list[str]]]:
-    """Title, states and what tells them apart, by column."""
-    some: NDArray = np.array(wanted) if wanted else told.all
+def _groups(
+    told: Told, some: NDArray, wanted: Sequence[int], width: float
+) -> list[tuple[str, list[int], list[str]]]:
+    """Title, states and what tells them apart, by column; of some states, or of those that are wanted."""
+    some = np.array(wanted) if wanted else some
     varied = told.varied(some)
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 or C in varied else ""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, noun, one_of
 from galinx.app.pictures.drawing import Drawing, by_method
-from galinx.app.pictures.told import PLACE, C, Told, not_shown, spread
+from galinx.app.pictures.told import PLACE, C, N, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
@@ -213,7 +213,7 @@ def _by(told: Told, wanted: str, x: str, some: NDArray) -> str:
     varied = [name for name in told.varied(some) if name != x]
     if wanted:
         return one_of("by", wanted, varied)
-    law = [name for name in varied if name in (C, *told.law)]
+    law = [name for name in varied if name in (C, N, *told.law)]
     # Places are the strokes' only where nothing else is swept.
     return next(iter([*law, *varied]), "")
 

@@ -12,13 +12,13 @@ from galinx.postprocess.figures.typeset import number, plain, unit
 from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import column
 from galinx.postprocess.quantities.quantity import TEXT
-from galinx.postprocess.quantities.states import MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 
 #: States and values that a sentence names.
 _NAMED = 6
 
-#: Names of what tells places on a loop apart, and of the speed.
-STROKE, PLACE, C = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED))
+#: Names of what tells places on a loop apart, of the speed and the load.
+STROKE, PLACE, C, N = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED, LOAD))
 
 
 class Told:
@@ -37,7 +37,7 @@ class Told:
     @property
     def law(self) -> list[str]:
         """Names of the friction law's parameters."""
-        return [name for name in self.parameters if name not in (C, STROKE, PLACE)]
+        return [name for name in self.parameters if name not in (C, N, STROKE, PLACE)]
 
     def varied(self, some: NDArray | Sequence[int] | None = None) -> list[str]:
         """Parameters that differ between some states, between all if not given."""

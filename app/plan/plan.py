@@ -17,13 +17,7 @@ from galinx.app.plan.limits import (
     warnings_of,
     warnings_of_size,
 )
-from galinx.app.plan.states import (
-    enumerate_states,
-    laws_followed,
-    seconds_to_integrate,
-    speeds,
-    states_a_speed,
-)
+from galinx.app.plan.states import enumerate_states, laws_followed, order, seconds_to_integrate
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
 from galinx.app.run.slider import check_sliders
@@ -50,30 +44,31 @@ def make_plan(scene: Scene) -> Plan:
     Raises:
         BadInput: finite elements are asked for where they have no answer.
     """
-    all_speeds, count = speeds(scene), states_a_speed(scene)
-    check_states(len(all_speeds) * count)
+    known = order(scene)
+    check_states(len(known))
     check_sliders(scene)
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
     body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
-    check_size(body, methods)
+    for load in {min(known.loads), max(known.loads)}:
+        check_size(body.loaded(load), methods)
     check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
-    warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
+    warnings = [*oddities(scene), *check_speeds(scene, known.speeds, "fem" in methods)]
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in all_speeds]
+        g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in known.speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, all_speeds, count),
+        tasks=Tasks(body, places, known),
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
         warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
+from galinx.app.plan.order import Order
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
@@ -32,9 +34,9 @@ class States:
 
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
-            speed), the law's parameters, the speed and that of a wave along the surface in m/s, how
-            often a wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the
-            punch.
+            speed), the load in N/m where there are several, the law's parameters, the speed and that of
+            a wave along the surface in m/s, how often a wave crosses the contact in a stroke, f = F/N
+            signed, and g = σ_XY/σ_YY under the punch.
         inner: inner state of the law at each state, (states, n).
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
@@ -93,13 +95,15 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 
-def states_a_speed(scene: Scene) -> int:
-    """Number of states at each speed."""
-    return scene.friction.count * _states_a_law(scene)
+def order(scene: Scene) -> Order:
+    """Which state is which.
 
-
-def _states_a_law(scene: Scene) -> int:
-    return sum(map(len, scene.places))
+    Raises:
+        BadInput: a speed given in m/s is not subsonic.
+    """
+    own = [np.nan if leg.speed is None else leg.speed / scene.solid.c_s for leg in scene.legs]
+    each = list(map(len, scene.places))
+    return Order(speeds(scene), scene.punch.loads, scene.friction.count, np.repeat(own, each))
 
 
 def laws_followed(scene: Scene) -> int:
@@ -136,8 +140,8 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     Raises:
         BadInput: the integrator refuses the parameters.
     """
-    friction, all_speeds, count = scene.friction, speeds(scene), laws_followed(scene)
-    f, found, at = np.empty((count, _states_a_law(scene))), _Found(), 0
+    friction, known, count = scene.friction, order(scene), laws_followed(scene)
+    f, found, at = np.empty((count, len(known.own))), _Found(), 0
     inner: NDArray | None = None
     advance = INTEGRATORS[friction.integrator]
     try:
@@ -160,48 +164,66 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     assert inner is not None
     loop = np.arange(count)
     loop[len(found.f) :] = -1
-    if not friction.law.depends_on_speed:
-        f, inner = np.tile(f, (len(all_speeds), 1)), np.tile(inner, (len(all_speeds), 1, 1))
-        loop = np.tile(loop, len(all_speeds))
-    columns = _columns(scene, f)
+    columns = _columns(scene, known, _of_all(known, f))
     travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
     return States(
-        columns, inner.reshape(-1, inner.shape[-1]), np.repeat(loop, f.shape[1]), travel,
+        columns, _of_all(known, inner), _of_all(known, np.tile(loop[:, None], f.shape[1])), travel,
         np.array(found.f), found.archived(scene),
     )  # fmt: skip
 
 
-def _columns(scene: Scene, f: NDArray) -> dict[str, NDArray]:
-    """One entry a state in every array; ``f`` is (laws and speeds, states of each)."""
-    friction, all_speeds, per_law = scene.friction, speeds(scene), f.shape[1]
-    each = [len(X) for X in scene.places]
+def _of_all(known: Order, values: NDArray) -> NDArray:
+    """Values of all states, (states, …): under every load alike, at every speed where laws know none.
+
+    Args:
+        known: which state is which.
+        values: of the laws that are followed, (laws and speeds, places, …).
+    """
+    *several, laws, places = known.shape
+    rest = values.shape[2:]
+    by_speed = values.reshape(-1, 1, laws, places, *rest)
+    return np.broadcast_to(by_speed, (*several, laws, places, *rest)).reshape(-1, *rest)
+
+
+def _columns(scene: Scene, known: Order, f: NDArray) -> dict[str, NDArray]:
+    """One entry a state in every array; ``f`` is (states,)."""
+    friction, (all_speeds, loads, laws, per_law) = scene.friction, known.shape
+    each, followed, c = [len(X) for X in scene.places], all_speeds * loads * laws, known.c
     values = {
-        key: np.tile(np.repeat(known, per_law), len(all_speeds))
-        for key, known in friction.columns().items()
+        key: np.tile(np.repeat(one, per_law), all_speeds * loads)
+        for key, one in friction.columns().items()
     }
-    given = np.repeat(np.multiply(all_speeds, scene.solid.c_s), friction.count * per_law)
+    of_load = np.tile(np.repeat(known.loads, laws * per_law), all_speeds)
+    given = np.repeat(np.multiply(known.given, scene.solid.c_s), known.states)
     own = [np.nan if leg.speed is None else leg.speed for leg in scene.legs]
-    speed = np.tile(np.repeat(own, each), len(f))
-    c = np.repeat(all_speeds, friction.count * per_law)
-    c = np.where(np.isnan(speed), c, speed / scene.solid.c_s)
-    lengths = np.tile(np.repeat([leg.length for leg in scene.legs], each), len(f))
+    speed = np.tile(np.repeat(own, each), followed)
+    lengths = np.tile(np.repeat([leg.length for leg in scene.legs], each), followed)
     return {
-        "motion": np.tile(np.repeat([leg.name for leg in scene.legs], each), len(f)),
-        "X_over_L": np.tile(_joined(list(scene.places)), len(f)),
+        "motion": np.tile(np.repeat([leg.name for leg in scene.legs], each), followed),
+        "X_over_L": np.tile(_joined(list(scene.places)), followed),
         "c": c,
+        **({"load": of_load} if loads > 1 else {}),
         **values,
         "speed": np.where(np.isnan(speed), given, speed),
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": _crossings(scene, lengths, c),
-        "f": f.ravel(),
-        "g": friction.stress_ratio * f.ravel() + 0.0,
+        "wave_crossings": _crossings(scene, lengths, _half_widths(scene, known), c),
+        "f": f,
+        "g": friction.stress_ratio * f + 0.0,
     }
 
 
-def _crossings(scene: Scene, lengths: NDArray, c: NDArray) -> NDArray[np.float64]:
+def _half_widths(scene: Scene, known: Order) -> Any:
+    """Of a contact at rest without friction under the load of each state [m], or of all."""
+    if len(known.loads) == 1 or not scene.body.found:
+        return scene.body.half_width
+    of_loads = scene.body.loaded(np.array(known.loads)).half_width
+    return np.tile(np.repeat(of_loads, known.laws * len(known.own)), len(known.given))
+
+
+def _crossings(scene: Scene, lengths: NDArray, a: Any, c: NDArray) -> NDArray[np.float64]:
     """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        often = lengths * scene.friction.pre_sliding / (2.0 * scene.body.half_width * c)
+        often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
     return np.where(c > 0.0, often, np.nan)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.fem import FemPlan
+from galinx.app.plan.order import Order
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities.quantity import INSIDE, POINT
@@ -24,17 +25,23 @@ class Task:
 
     Attributes:
         number: of the speed, from 0.
-        body: what slides over what.
+        body: what slides over what, under the first of its loads.
         response: of the half-plane at that speed.
         places: where stresses are wanted.
-        rows: of the states at that speed.
+        runs: rows of the states at that speed, those that follow one another together.
+        loads: of these states [N/m], each once.
     """
 
     number: int
     body: Body
     response: Response
     places: Places
-    rows: slice
+    runs: tuple[slice, ...]
+    loads: tuple[float, ...]
+
+    def of(self, values: NDArray) -> NDArray:
+        """Those of its states, of values of all."""
+        return np.concatenate([values[run] for run in self.runs])
 
 
 @dataclass(frozen=True)
@@ -42,24 +49,22 @@ class Tasks:
     """All tasks, each made when it is its turn: there may be a million.
 
     Attributes:
-        body: what slides over what.
+        body: what slides over what, under the first of its loads.
         places: where stresses are wanted.
-        speeds: over the wave speed.
-        states: at each speed.
+        order: of the states.
     """
 
     body: Body
     places: Places
-    speeds: tuple[float, ...]
-    states: int
+    order: Order
 
     def __len__(self) -> int:
-        return len(self.speeds)
+        return len(self.order.speeds)
 
     def __iter__(self) -> Iterator[Task]:
-        for i, c in enumerate(self.speeds):
-            rows = slice(i * self.states, (i + 1) * self.states)
-            yield Task(i, self.body, self.body.solid.response(c), self.places, rows)
+        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs())):
+            response = self.body.solid.response(c)
+            yield Task(i, self.body, response, self.places, runs, self.order.loads)
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ class Plan:
     """Work of a scene.
 
     Attributes:
-        body: what slides over what.
+        body: what slides over what, under the first of its loads.
         places: where stresses are wanted.
         methods: names of those that solve, none where only friction is asked for.
         quantities: read off their solutions, in the order of the table.
@@ -93,7 +98,12 @@ class Plan:
     @property
     def states(self) -> int:
         """Number of states."""
-        return len(self.tasks) * self.tasks.states
+        return len(self.tasks.order)
+
+    @property
+    def different(self) -> int:
+        """Number of states that differ by more than their load, where contacts of all loads are alike."""
+        return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
 
     def asks(self, word: str, method: str = "") -> bool:
         """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
@@ -146,5 +156,12 @@ class Plan:
 
     def chunks(self, task: Task) -> list[slice]:
         """A task's rows, so many at a time."""
-        rows = range(task.rows.start, task.rows.stop, self.chunk)
-        return [slice(first, min(first + self.chunk, task.rows.stop)) for first in rows]
+        return [
+            slice(first, min(first + self.chunk, run.stop))
+            for run in task.runs
+            for first in range(run.start, run.stop, self.chunk)
+        ]
+
+    def load(self, rows: slice) -> NDArray[np.float64]:
+        """Load of some states [N/m]."""
+        return self.tasks.order.load(rows)

@@ -19,7 +19,8 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
     if scene.slider:
-        result.append(f"slider: {scene.friction.count} motions of {scene.slider.duration:g} s")
+        count = scene.friction.count * len(scene.punch.loads)
+        result.append(f"slider: {count} motions of {scene.slider.duration:g} s")
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {plan.states} states")
@@ -35,7 +36,7 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
 def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     if fem.mode == OWN_MESHES:
         return [
-            f"finite elements: {plan.states} states, each on confocal meshes of its own, graded "
+            f"finite elements: {plan.different} states, each on confocal meshes of its own, graded "
             f"towards the kinks of the punch; degrees 4 and up to {max(fem.degrees) + 2}"
         ]
     pattern = fem.pattern
@@ -71,7 +72,7 @@ def expense(plan: Plan) -> str:
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
-    speeds = _seconds_of_levels(fem, plan.states) / ranks.size()
+    speeds = _seconds_of_levels(fem, plan.different) / ranks.size()
     states = cost.STATE * plan.states + plan.integrated
     sharing = 1 if fem.shared_speeds else ranks.size()
     inside = _inside(plan) * sharing / ranks.size()
@@ -86,7 +87,7 @@ def expense(plan: Plan) -> str:
 
 def _inside(plan: Plan) -> float:
     """Seconds for stresses inside, those to archive them among them."""
-    shape = len(plan.places.points), len(plan.tasks), plan.states
+    shape = len(plan.places.points), len(plan.tasks), plan.different
     pieces = len(plan.body.pressure.knots) - 1 if plan.body.pressure else 0
     by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
     seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)

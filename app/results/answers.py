@@ -66,9 +66,8 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
 def _unit_of_stress(data: dict[str, Any], scene: Scene) -> NDArray[np.float64]:
     """N/(2a) [Pa] of every state, (states, 1)."""
     of_states = _either(data, states.HALF_WIDTH)
-    if of_states:
-        return scene.punch.load / (2.0 * data[of_states[0].path][:, None])
-    return np.full((len(data[states.FRICTION.path]), 1), scene.body.stress)
+    load = data.get(states.LOAD.path, np.full(len(data[states.FRICTION.path]), scene.punch.load))
+    return (load / (2.0 * (data[of_states[0].path] if of_states else scene.body.half_width)))[:, None]
 
 
 def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
@@ -128,7 +127,7 @@ def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
             told = in_si(row, "", scene)
             if told and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
                 form = "{:.4g}" if told.unit == "1" else ""
-                yield Answer(name, *_span(told.factor * data[row.path], told.unit, form))
+                yield Answer(name, *_span(told.of(data[row.path]), told.unit, form))
 
 
 def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
@@ -169,9 +168,11 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     solid, c_s = scene.solid, scene.solid.c_s
     moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
     speed = " to ".join(f"{v * c_s:.4g}" for v in sorted({c[0], c[-1]}))
+    ends = sorted({min(scene.punch.loads), max(scene.punch.loads)})
+    load = " to ".join(_engineering(N, "N/m") for N in ends)
     text = (
         f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
-        f"{_engineering(scene.punch.load, 'N/m')}, that slides at {speed} m/s, c = {moving} of the shear "
+        f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
         f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
     )
     record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]

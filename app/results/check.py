@@ -9,7 +9,7 @@ import numpy as np
 
 from galinx import __version__
 from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states, speeds, states_a_speed
+from galinx.app.plan.states import enumerate_states, order
 from galinx.app.run.judge import Judge
 from galinx.app.run.told import of_scene
 from galinx.app.scene import read as scenes
@@ -19,7 +19,7 @@ from galinx.postprocess.finite import not_finite
 from galinx.postprocess.hdf5 import reader
 from galinx.postprocess.quantities import runs, table
 from galinx.postprocess.quantities.quantity import NEVER, STATE
-from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 
 #: States looked at together.
@@ -47,7 +47,7 @@ def faults(path: Path) -> list[str]:
 def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     """Friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
-    count, found = len(speeds(scene)) * states_a_speed(scene), len(data[SPEED.path])
+    count, found = len(order(scene)), len(data[SPEED.path])
     if count != found:
         yield f"it holds {found} states, its scene has {count}"
         return
@@ -97,7 +97,8 @@ def _of_numbers(archive: reader.Archive) -> Iterator[str]:
             continue
         yield from (f"{name} is not finite in states {start} ..." for name in not_finite(rows))
         yield from _otherwise(rows, start)
-        for comparison in compare.comparisons(rows, archive.attributes["load"], rules):
+        load = rows.get(LOAD.path, archive.attributes["load"])
+        for comparison in compare.comparisons(rows, load, rules):
             worst[comparison.text] = float(np.max([worst.get(comparison.text, 0.0), comparison.value]))
             yield from _out_of_balance(comparison, start)
     told = json.loads(archive.attributes["comparisons"])

@@ -49,7 +49,7 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
         rows, columns = _columns(archive, rows, si)
         yield _text([["state", *(column.head for column in columns)]])
         for numbers, data in _blocks(archive, rows, where):
-            cells = (_scaled(data[row.path], column.factor) for row, column in zip(rows, columns))
+            cells = (_cells(column.of(data[row.path], numbers)) for row, column in zip(rows, columns))
             yield _text(zip(numbers, *cells))
 
 
@@ -94,10 +94,9 @@ def _blocks(
             yield numbers, {path: np.broadcast_to(one, shape).ravel() for path, one in columns.items()}
 
 
-def _scaled(values: Any, factor: float) -> list[Any]:
-    """Cells of a column; text stays."""
-    scaled = values if factor == 1.0 else factor * values
-    return ["" if value != value else value for value in scaled.tolist()]
+def _cells(values: Any) -> list[Any]:
+    """Of a column; text stays."""
+    return ["" if value != value else value for value in values.tolist()]
 
 
 def _text(lines: Iterable[Iterable[Any]]) -> str:

@@ -11,7 +11,7 @@ from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
 from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states, speeds
+from galinx.app.plan.states import enumerate_states, order
 from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Output, Scene
 from galinx.clock import Clock
@@ -103,6 +103,7 @@ def chosen(
     for i, number in enumerate(numbers):
         told = {name: values[i] for name, values in columns.items()}
         task = tasks[told["c"]]
+        task = replace(task, body=task.body.loaded(told.get("load")))
         degree = wanted[i] or fem.degrees[task.number] + more
         exact = "closed_form" in scene.solve.methods
         found.append(OneState(number, replace(plan, fem=fem), task, told["g"], degree, exact, told))
@@ -153,10 +154,15 @@ def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
     All speeds share one mesh; with the same speeds and places it is that of a run.
     """
     mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
-    possible = tuple(v for v in speeds(scene) if v in wanted or scene.solid.response(v).margin > 0.0)
+    every = order(scene).speeds
+    possible = tuple(v for v in every if v in wanted or scene.solid.response(v).margin > 0.0)
+    strokes = tuple(
+        stroke if isinstance(stroke, str) else replace(stroke, speed=None)
+        for stroke in scene.motion.strokes
+    )
     return replace(
         scene,
-        motion=replace(scene.motion, c=possible, speed=None),
+        motion=replace(scene.motion, c=possible, speed=None, strokes=strokes),
         solve=replace(scene.solve, methods=("fem",)),
         output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
     )

@@ -1,5 +1,8 @@
 """Quantities of archives in SI: what is over N/(2a), a and the wave speed, in Pa, m and m/s."""
 
+from typing import Any
+
+from galinx.app.plan.states import order
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import SPEED, VELOCITY
@@ -16,9 +19,12 @@ def scaling(scene: Scene | None) -> Scaling:
     return lambda row, name: in_si(row, name, scene)
 
 
-def unit_of_stress(scene: Scene) -> float:
-    """N/(2a) [Pa]."""
-    return scene.body.stress
+def unit_of_stress(scene: Scene) -> Any:
+    """N/(2a) [Pa], that of each state where they differ in their load, (states,)."""
+    if len(scene.punch.loads) == 1:
+        return scene.body.stress
+    known = order(scene)
+    return scene.body.loaded(known.load(slice(0, len(known)))).stress
 
 
 def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
@@ -36,7 +42,7 @@ def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
     if body.found and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
         return as_archived(row, name)  # over the state's own half-width, which stands beside it
     if row.unit == "N/(2a)":
-        return Scaled(name, "Pa", body.stress)
+        return Scaled(name, "Pa", unit_of_stress(scene))
     if row.path in _OVER_HALF_WIDTH:
         return Scaled(name.removesuffix("_over_a"), "m", body.half_width)
     if row is SPEED:

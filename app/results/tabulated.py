@@ -76,10 +76,10 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
     some = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
     told = scaling(stresses.IN_PLANE[methods[0]], "")
     in_units = told is not None and told.unit == "Pa"
-    factor = 1e-6 * told.factor if told and in_units else 1.0
+    factors = 1e-6 * told.factor * np.ones(count) if told and in_units else np.ones(count)
     values = [
         [
-            [_plain(factor * data[rows[method].path][i][order], 5) for i in some.tolist()]
+            [_plain(factors[i] * data[rows[method].path][i][order], 5) for i in some.tolist()]
             for rows in known.values()
         ]
         for method in methods
@@ -102,7 +102,7 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
 
 def _told(row: Quantity, values: NDArray, scaling: Scaling) -> NDArray:
     told = scaling(row, "")
-    return values if told is None or told.factor == 1.0 else told.factor * values
+    return values if told is None else told.of(values, slice(len(values)))
 
 
 def _column(row: Quantity, scaling: Scaling) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """A slider under every law of a scene."""
 
 from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,15 +21,16 @@ def check_sliders(scene: Scene) -> None:
     Raises:
         BadInput: a scene asks for more sliders than are followed.
     """
-    if rows.SLIDER in scene.output.quantities and scene.friction.count > MOST:
+    count = scene.friction.count * len(scene.punch.loads)
+    if rows.SLIDER in scene.output.quantities and count > MOST:
         raise BadInput(
-            f"the scene's lists multiply to {scene.friction.count} friction laws, expected at "
-            f"most {MOST} with a slider each: shorten them, or make several scenes"
+            f"the scene's lists multiply to {count} friction laws and loads, expected at most {MOST} "
+            "with a slider each: shorten them, or make several scenes"
         )
 
 
-def slide(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> dict[str, NDArray]:
-    """How the slider of a scene moves under each of its laws: datasets by path.
+def slide(scene: Scene, done: Callable[[int, int], None] = lambda n, of: None) -> dict[str, NDArray]:
+    """How the slider of a scene moves under each of its loads and laws: datasets by path.
 
     Raises:
         BadInput: a motion could not be followed.
@@ -36,9 +38,10 @@ def slide(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None
     slider, found = scene.slider, list[dict[str, Any]]()
     assert slider is not None
     times = np.linspace(0.0, slider.duration, TIMES)
-    for n, law in enumerate(scene.friction.laws()):
+    both = product(scene.punch.loads, scene.friction.laws())
+    for n, (load, law) in enumerate(both):
         try:
-            ride = pull(slider, law, scene.punch.load)
+            ride = pull(slider, law, load)
         except ValueError as error:
             raise BadInput(f"slider: {error}") from None
         last = cycle(ride, slider.drive_speed)
@@ -52,7 +55,7 @@ def slide(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None
             rows.PERIOD.path: last.period, rows.SLIP.path: last.slip,
             rows.PEAK.path: last.peak, rows.LEAST.path: last.least,
         })  # fmt: skip
-        done(n + 1, scene.friction.count)
+        done(n + 1, len(scene.punch.loads) * scene.friction.count)
     return {rows.TIMES.path: times} | {
         path: np.array([one[path] for one in found]) for path in found[0]
     }  # fmt: skip

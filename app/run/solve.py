@@ -1,14 +1,16 @@
 """From tasks to parts: every method answers, quantities are read off the answers and compared."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Plan, Task
+from galinx.app.run.alike import under_loads
+from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.method import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare
@@ -18,6 +20,7 @@ from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
 from galinx.solvers.sie.found import local_exponents
+from galinx.solvers.solution import Body
 
 
 @dataclass(frozen=True)
@@ -55,33 +58,80 @@ class Work:
         The last part has the speed's record: numbers by the names of ``quantities.runs.RECORD``, the
         ``speed``, and a ``failure`` where it could not be solved.
         """
-        failures: dict[str, str] = {}
+        failures = _Failures()
         with ExitStack() as stack:
             solvers: dict[str, Solver] = {}
             for name, method in self.methods.items():
                 try:
-                    solvers[name] = stack.enter_context(method.at(task, np.unique(self.g[task.rows])))
+                    if self._together(name, task):
+                        solvers[name] = stack.enter_context(method.at(task, np.unique(task.of(self.g))))
                 except SolveError as error:
-                    failures[name] = str(error)
-            *others, last = self.to_do(task)
-            for rows in others:
-                yield self._part(task, rows, solvers, failures)
-            part = self._part(task, last, solvers, failures)
-            yield replace(part, record=_record(task, solvers, failures))
+                    failures.whole[name] = str(error)
+            last: Part | None = None
+            for part in self._all(task, solvers, failures):
+                if last:
+                    yield last
+                last = part
+            assert last
+            yield replace(last, record=_record(task, solvers, failures))
 
-    def _part(
-        self, task: Task, rows: slice, solvers: Mapping[str, Solver], failures: dict[str, str]
-    ) -> Part:
-        g = self.g[rows]
+    def _all(self, task: Task, solvers: Mapping[str, Solver], failures: "_Failures") -> Iterator[Part]:
+        """Parts of all that is to be computed; takes down what could not be."""
+        for some in self._batches(task):
+            found = dict(failures.whole)
+            parts = list(self._parts(task, some, solvers, found))
+            if found == failures.whole or len(task.loads) == 1 or task.body.alike:
+                failures.whole = found
+                failures.solved |= len(task.loads) > 1 and not found
+                yield from parts
+                continue
+            # Under some of its loads a contact may have no answer: the others are told all the same.
+            for load, one in self._by_load(some):
+                found = dict(failures.whole)
+                yield from self._parts(task, one, solvers, found)
+                failures.take(load, found)
+
+    def _by_load(self, some: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
+        """Runs of states, cut so that each has one load."""
+        for rows in some:
+            loads = self.plan.load(rows)
+            first = np.flatnonzero(np.diff(loads, prepend=np.nan)).tolist()
+            for start, stop in zip(first, [*first[1:], len(loads)]):
+                yield float(loads[start]), [slice(rows.start + start, rows.start + stop)]
+
+    def _batches(self, task: Task) -> list[list[slice]]:
+        """Rows that are still to be computed, so many at a time as a chunk has."""
+        batches: list[list[slice]] = []
+        room = 0
+        for rows in self.to_do(task):
+            count = rows.stop - rows.start
+            if not batches or count > room:
+                batches.append([])
+                room = self.plan.chunk
+            batches[-1].append(rows)
+            room -= count
+        return batches
+
+    def _together(self, name: str, task: Task) -> bool:
+        """Does one solver know the states of a method under all loads?"""
+        return len(task.loads) == 1 or METHODS[name].loads
+
+    def _parts(
+        self, task: Task, some: Sequence[slice], solvers: Mapping[str, Solver], failures: dict[str, str]
+    ) -> Iterator[Part]:
+        """Results of some runs of states, which are solved together."""
+        g, load = np.concatenate([self.g[rows] for rows in some]), None
+        if len(task.loads) > 1:
+            load = np.concatenate([self.plan.load(rows) for rows in some])
+        body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
-            body = task.body
             local = local_exponents(task.response, g, body.profile, body.compression)
-            data = self._read(LOCAL, Edges(local), task)
+            data = self._of(LOCAL, Edges(local), body)
         for name in self.methods:
             try:
                 if name not in failures:
                     with self.clock(_STEPS.get(name, name)):
-                        data |= self._read(name, solvers[name].states(g), task)
+                        data |= self._read(name, solvers.get(name), task, g, load)
             except SolveError as error:
                 failures[name] = str(error)
             if name in failures:
@@ -90,11 +140,35 @@ class Work:
             for quantity in self.plan.quantities:
                 if quantity.of_data:
                     data[quantity.path] = quantity.of_data(data)
-            return Part(rows, data, [] if failures else self._compared(data, g), None)
+            first = 0
+            for rows in some:
+                own = slice(first, first + rows.stop - rows.start)
+                of_run = {path: values[own] for path, values in data.items()}
+                N = body.load if load is None else load[own]
+                found = [] if failures else self._compared(of_run, g[own], N)
+                yield Part(rows, of_run, found, None)
+                first = own.stop
 
-    def _read(self, method: str, solution: Any, task: Task) -> dict[str, NDArray]:
+    def _read(
+        self, name: str, solver: Solver | None, task: Task, g: NDArray, load: NDArray | None
+    ) -> dict[str, NDArray]:
+        """What a method's solution of states gives; without a solver each load has one of its own."""
+        if solver is not None:
+            solution = under_loads(solver.states, task.body, g, load)
+            return self._of(name, solution, task.body.loaded(load))
+        assert load is not None
+        found = self._unknown(name, len(g))
+        for N in np.unique(load).tolist():
+            some = np.flatnonzero(load == N)
+            alone = replace(task, body=task.body.loaded(N), loads=(N,))
+            with self.methods[name].at(alone, np.unique(g[some])) as one:
+                for path, values in self._of(name, one.states(g[some]), alone.body).items():
+                    found[path][some] = values
+        return found
+
+    def _of(self, method: str, solution: Any, body: Body) -> dict[str, NDArray]:
         return {
-            quantity.path: quantity.of(solution, task.body)
+            quantity.path: quantity.of(solution, body)
             for quantity in self.plan.quantities
             if quantity.of and quantity.method == method
         }
@@ -106,22 +180,43 @@ class Work:
             if quantity.method == method
         }
 
-    def _compared(self, data: dict[str, NDArray], g: NDArray) -> list[compare.Comparison]:
+    def _compared(self, data: dict[str, NDArray], g: NDArray, load: Any) -> list[compare.Comparison]:
         given = {states.RATIO.path: g} | self.plan.positions
-        return compare.comparisons(data | given, self.plan.body.load, self.plan.rules)
+        return compare.comparisons(data | given, load, self.plan.rules)
 
 
 #: What the time to read a method's solutions is told as.
 _STEPS = {"fem": "recovery", "closed_form": "closed form"}
 
 
-def _record(
-    task: Task, solvers: Mapping[str, Solver], failures: Mapping[str, str]
-) -> dict[str, Any] | None:
+@dataclass
+class _Failures:
+    """What could not be solved at a speed, and why, by method.
+
+    Attributes:
+        whole: all of it, from some state on.
+        some: states under some loads, the first of these told.
+        solved: were states under another load?
+    """
+
+    whole: dict[str, str] = field(default_factory=dict)
+    some: dict[str, str] = field(default_factory=dict)
+    solved: bool = False
+
+    def take(self, load: float, found: Mapping[str, str]) -> None:
+        """What was found of the states under a load."""
+        for name in found.keys() - self.whole.keys():
+            self.some.setdefault(name, f"N = {load:g} N/m: {found[name]}")
+        self.solved |= not found
+
+
+def _record(task: Task, solvers: Mapping[str, Solver], failures: _Failures) -> dict[str, Any] | None:
     """Numbers of the work at a speed, None where no method has any."""
-    speed = {"speed": task.number, "c": task.response.c}
-    if failures:
-        nothing = dict.fromkeys(RECORD, 0.0)
-        return nothing | speed | {"failure": "; ".join(failures.values())}
-    done = {key: value for solver in solvers.values() for key, value in solver.record().items()}
-    return done | speed if done else None
+    speed, told = {"speed": task.number, "c": task.response.c}, failures.some | failures.whole
+    numbers: dict[str, Any] = {}
+    if failures.solved or not told:
+        numbers = {key: value for solver in solvers.values() for key, value in solver.record().items()}
+    if told:
+        failure = {"failure": "; ".join(told.values()), "solved": failures.solved}
+        return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
+    return numbers | speed if numbers else None

@@ -40,10 +40,15 @@ class HalfPlane:
 
 @dataclass(frozen=True)
 class Punch:
-    """[punch]: a profile, pressed on by ``load`` [N/m]."""
+    """[punch]: a profile, pressed on by each of ``loads`` [N/m]."""
 
     profile: Profile
-    load: float
+    loads: tuple[float, ...]
+
+    @property
+    def load(self) -> float:
+        """The load [N/m], the first where there are several."""
+        return self.loads[0]
 
 
 @dataclass(frozen=True)
@@ -210,7 +215,7 @@ class Scene:
 
     @cached_property
     def body(self) -> Body:
-        """What slides over what; a pressure of the user's own is not among it."""
+        """What slides over what, under the first load; a pressure of the user's own is not among it."""
         return Body(self.solid, self.punch.profile, self.punch.load, None, self.half_plane.yield_strength)
 
     @property

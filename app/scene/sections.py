@@ -35,8 +35,8 @@ def _solid(
     return HalfPlane(made(kind, values), material, yield_strength)
 
 
-def _punch(kind: type[Profile], values: dict[str, Any], load: float) -> Punch:
-    return Punch(made(kind, values), load)
+def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
+    return Punch(made(kind, values), tuple(dict.fromkeys(load)))
 
 
 def _slider(damping: float, **given: float | None) -> Slider | None:
@@ -60,8 +60,8 @@ _SOLID_KEYS = {
 
 _PUNCH_KEYS = {
     "load": Key(
-        Number("N/m", _POSITIVE), "normal load N per depth", 55.3e3,
-        "dimensionless results do not depend on it",
+        Numbers("N/m", _POSITIVE), "normal load N per depth", (55.3e3,),
+        "dimensionless results do not depend on it where the contact is that of a flat punch",
     ),
 }  # fmt: skip
 
@@ -91,16 +91,16 @@ _MOTION_KEYS = {
     ),
     "strokes": Key(
         Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
-        "a stroke `{to = 0.8}` goes on from where the one before ended; `speed` of its own is for "
-        "friction alone, `rest` is the time at rest before it",
+        "a stroke `{to = 0.8}` goes on from where the one before ended; it may have a `speed` of its "
+        "own, `rest` is the time at rest before it",
     ),
     "rest": Key(
         Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
     ),
     "path": Key(
         Rows(("s", "m"), 2), "motion point by point, time and position", None,
-        "instead of `c` or `speed`, `strokes` and `X_over_L`, for friction alone; positions from 0 to "
-        "`friction.pre_sliding`",
+        "instead of `c` or `speed`, `strokes` and `X_over_L`; positions from 0 to "
+        "`friction.pre_sliding`, each piece at its own speed, with a state where it ends",
         without="none",
     ),
     "X_over_L": Key(

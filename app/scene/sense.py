@@ -1,6 +1,5 @@
 """Does a scene make sense? Keys that contradict each other, and values that look unusual."""
 
-import json
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,6 +16,8 @@ FRICTIONS = frozenset({FRICTION_ALONE, SLIDER})
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
 _PRESSED = 0.1
+#: Half-width [m] of a contact below which a solid is no continuum: a few atoms.
+_ATOMS = 1e-9
 
 
 def contradictions(scene: Scene) -> list[str]:
@@ -76,11 +77,6 @@ def _of_motion(scene: Scene) -> Iterator[str]:
     if own and max(own) >= c_s:
         limit = f"the shear wave speed {c_s:.6g} m/s"
         yield f"motion: found a stroke at {max(own):g} m/s, expected less than {limit}"
-    if own and set(scene.output.quantities) - FRICTIONS:
-        yield (
-            "motion: strokes with speeds of their own, and path, are for friction alone; take "
-            f"output.quantities = {json.dumps(sorted(FRICTIONS))}"
-        )
     if not any(len(X) for X in scene.places):
         yield "motion.X_over_L: found no position that a stroke passes, expected at least one"
 
@@ -95,16 +91,32 @@ def oddities(scene: Scene) -> list[str]:
             found.append(f"{path} = {odd[0]}{known} is unusual, {usual}; is its unit as meant?")
         elif odd:
             found.append(f"{path} = {listed(odd)}{known} are unusual, {usual}; is their unit as meant?")
-    return [*found, *_too_much(scene)]
+    return [*found, *_too_much(scene), *_too_small(scene)]
 
 
 def _too_much(scene: Scene) -> Iterator[str]:
     """A load that no solid bears: that half-width and load fit one another, no key can tell alone."""
-    mean = scene.body.stress
+    loads = scene.punch.loads
+    mean = scene.body.loaded(max(loads)).stress
     if mean > _PRESSED * scene.solid.μ:
+        of_load = f" at N = {max(loads):g} N/m" * (len(loads) > 1)
         yield (
-            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa is {mean / scene.solid.μ:.2g} times the "
-            f"shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
+            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / scene.solid.μ:.2g} "
+            f"times the shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
+        )
+
+
+def _too_small(scene: Scene) -> Iterator[str]:
+    """A contact of a few atoms; given half-widths are told of by their key."""
+    if not scene.body.free:
+        return
+    load = min(scene.punch.loads)
+    a = scene.body.loaded(load).half_width
+    if a < _ATOMS:
+        yield (
+            f"punch: under the load {load:g} N/m the half-width of the contact at rest is {a:.2g} m, "
+            f"usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
+            "continuum; is the load as meant?"
         )
 
 

@@ -33,7 +33,9 @@ LOOP_F = Quantity(
 )
 
 LOOP_WORK = Quantity(
-    "loops/dissipated", "J/m", "energy dissipated in each stroke, N times the integral of f over X",
+    "loops/dissipated", "J/m",
+    "energy dissipated in each stroke, N times the integral of f over X; this and other forces of loops "
+    "are those of the first load",
     (LOOP, STROKE),
 )  # fmt: skip
 LOOP_CYCLE = Quantity(

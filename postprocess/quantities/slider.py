@@ -1,4 +1,4 @@
-"""How a slider moves: a mass that is pulled through a spring, one for each law."""
+"""How a slider moves: a mass that is pulled through a spring, one for each load and law."""
 
 from galinx.postprocess.quantities.quantity import ANYWHERE, QUANTITIES, Quantity
 from galinx.solvers.parameters import Range

@@ -36,6 +36,10 @@ SPEED = Quantity(
     "states/c", "1", "speed over shear wave speed", (STATE,),
     symbol="c", range=Range(at_least=0.0, below=1.0),
 )  # fmt: skip
+LOAD = Quantity(
+    "states/load", "N/m", "normal load per depth N, where states differ in it", (STATE,), symbol="N",
+    range=Range(above=0.0),
+)  # fmt: skip
 FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
 RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
 INNER_STATE = Quantity(

@@ -91,18 +91,21 @@ class SlidingPunch:
         """Displacements of the basis: the punches without friction, each before its tangential loads."""
         return [field for space in self._spaces for field in space.fields]
 
-    def states(self, g: ArrayLike, flat: bool = False) -> ContactStates:
+    def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
         """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
 
         Args:
             g: values of σ_XY/σ_YY.
             flat: of a flat punch, whatever the profile is.
+            share: by what the profile's heights are multiplied, of each state: less over a larger load.
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
         level, *shaped = self.parts(g, 0 if flat else None)
+        heights = np.asarray(share, dtype=float) * np.ones(len(g))
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        v0 = (-2.0 - sum(part.normal.sum(axis=1) for part in shaped)) / level.normal.sum(axis=1)
-        return combined(g, [level, *shaped], np.column_stack([v0, *(np.ones_like(v0) for _ in shaped)]))
+        pressed = sum(heights * part.normal.sum(axis=1) for part in shaped)
+        v0 = (-2.0 - pressed) / level.normal.sum(axis=1)
+        return combined(g, [level, *shaped], np.column_stack([v0, *(heights for _ in shaped)]))
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
         """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.

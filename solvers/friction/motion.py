@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+#: Digits after the point by which speeds differ.
+_DIGITS = 11
 #: Direction of sliding by the name of a stroke.
 DIRECTION = {"forward": 1, "backward": -1}
 
@@ -100,12 +102,15 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
             f"found the position {outside[0]:g} m, expected 0 to pre_sliding = {length:g} m in all rows"
         )
     found: list[Leg] = []
+    speeds: dict[str, float] = {}
     rest = 0.0
     for (t, X), (t_next, X_next) in pairwise(path):
         if X_next == X:
             rest += t_next - t
             continue
         speed = abs(X_next - X) / (t_next - t)
+        # What rounding alone tells apart is one speed, at which a contact is solved once.
+        speed = speeds.setdefault(f"{speed:.{_DIGITS}e}", speed)
         found.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
         rest = 0.0
     if not found:

@@ -176,7 +176,7 @@ class Exponents:
     β: NDArray[np.float64]
 
 
-def local_exponents(response: Response, g: NDArray, profile: Any, load: float) -> Exponents | FlatPunch:
+def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
     """What the local analysis says of the ends: as of a flat punch at sharp ones, one more at others."""
     flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
     if all(sharp):
@@ -190,20 +190,20 @@ def local_exponents(response: Response, g: NDArray, profile: Any, load: float) -
     return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
 
 
-def contacts(response: Response, g: NDArray, profile: Any, load: float) -> Contacts:
+def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
     """The contacts of a punch.
 
     Args:
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY under the punch, (states,).
         profile: of the punch; its ends are found.
-        load: N/μ [m].
+        load: N/μ [m], or that of each state, (states,).
 
     Raises:
         SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
     """
     g = np.atleast_1d(np.asarray(g, dtype=float))
-    n = response.n + g * response.n12
+    n, load = response.n + g * response.n12, np.broadcast_to(load, g.shape)
     if not np.all(n > 0.0):
         raise SolveError(
             f"at c = {response.c:g} and σ_XY/σ_YY = {g[np.argmin(n)]:g} the surface does not resist a "
@@ -216,7 +216,7 @@ def contacts(response: Response, g: NDArray, profile: Any, load: float) -> Conta
     return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
 
 
-def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: float) -> Group:
+def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
     flat = FlatPunch(response, g)
     a, b = 1.0 + flat.α, 1.0 + flat.β
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
@@ -225,7 +225,9 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
     return Group(np.arange(len(g)), pressure, a, b, h, h * (b - a), np.zeros((len(g), 2)))
 
 
-def _tilted(response: Response, g: NDArray, n: NDArray, profile: Flat, load: float) -> tuple[Group, ...]:
+def _tilted(
+    response: Response, g: NDArray, n: NDArray, profile: Flat, load: NDArray
+) -> tuple[Group, ...]:
     """Flat punches with both edges in contact, or with one lifted off."""
     flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
     sin, α, β = flat._sin, flat.α, flat.β
@@ -252,17 +254,20 @@ def _tilted(response: Response, g: NDArray, n: NDArray, profile: Flat, load: flo
 
 
 def _by_quadrature(
-    response: Response, g: NDArray, n: NDArray, profile: Any, load: float
+    response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
 ) -> Sequence[Group]:
     """Any convex profile, state after state, equal ones once."""
     flat, found, start = FlatPunch(response, g), [], None
-    _, first, inverse = np.unique(g, return_index=True, return_inverse=True)
+    _, first, inverse = np.unique(
+        np.column_stack([load, g]), axis=0, return_index=True, return_inverse=True
+    )
+    inverse = inverse.ravel()  # some versions of NumPy keep an axis
     for k, i in enumerate(first.tolist()):
-        a = float(1.0 + flat.α[i])
-        balance = Balance(profile, a, load * float(n[i]) / np.sin(np.pi * a))
+        a, N = float(1.0 + flat.α[i]), float(load[i])
+        balance = Balance(profile, a, N * float(n[i]) / np.sin(np.pi * a))
         m, h = start = free_ends(balance, start)
         _check_reach(profile, m - h, m + h)
-        pressure, tips = pressure_of(balance, response, float(g[i]), m, h, load)
+        pressure, tips = pressure_of(balance, response, float(g[i]), m, h, N)
         for row in np.flatnonzero(inverse == k).tolist():
             group = Group(
                 np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),

@@ -71,7 +71,7 @@ class Weighted:
             growth = np.expm1(exponent) / share
         moved = z + share * step
         near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
-        near = (near - (self.order * self._leading * step)) / self._sin
+        near = (near - self._leading * step) / self._sin
         far = np.abs(z) > _FAR
         return np.where(far, self._far_change(np.where(far, z, np.inf), step, share), near)
 
@@ -84,8 +84,8 @@ class Weighted:
 
     @property
     def _leading(self) -> Any:
-        """Of [X q], that of its highest power."""
-        return self.A if self.order == 1 else self.B
+        """What [X q] has of the first power of z: of the orders 0 and -1 it is a constant."""
+        return self.A if self.order == 1 else 0.0
 
     def _polynomial(self, z: Any) -> Any:
         """[X q]; B vanishes where the order is 0 or 1."""

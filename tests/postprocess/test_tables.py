@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import computed
 
-from galinx.postprocess.tables import LIMIT, loops_sheet, sliders_sheet, states_sheet
+from galinx.postprocess.tables import LIMIT, inner_sheet, loops_sheet, sliders_sheet, states_sheet
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -50,3 +50,22 @@ def test_sliders_tell_their_stick_slip():
     (row,) = sliders_sheet(data).rows
     assert float(row[1]) == pytest.approx(data["slider/period"][0], rel=1e-5)
     assert not sliders_sheet(computed("tables4_5", {"output.quantities": ["friction"]}).data).rows
+
+
+def test_what_a_law_remembers_is_told_but_where_that_is_f():
+    data = computed("minor_loops", {}).data
+    sheet, z = inner_sheet(data), data["states/inner_state"]
+    assert len(sheet.rows) == len(z) and z.shape[1] == 3
+    for n in range(3):
+        np.testing.assert_allclose(np.array(cells(sheet, f"z{n + 1}"), float), z[:, n], rtol=1e-5)
+    dahl = computed("tables4_5", {"output.quantities": ["friction"]}).data
+    assert not inner_sheet(dahl).rows
+
+
+def test_loops_of_several_loads_say_which_is_theirs():
+    loads = {"output.quantities": ["friction"], "punch.load": [2e3, 4e3]}
+    data = computed("tables4_5", loads).data
+    assert "N = 2000 N/m" in loops_sheet(data).notes[0]
+    half = computed("tables4_5", loads | {"punch.load": 1e3}).data
+    np.testing.assert_allclose(data["loops/dissipated"], 2.0 * half["loops/dissipated"], rtol=1e-14)
+    assert "N (N/m)" in states_sheet(data, "").columns

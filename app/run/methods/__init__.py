@@ -97,8 +97,10 @@ def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None
 METHODS: Registry[MethodKind] = Registry(
     "method",
     {
-        CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal),
-        FEM: MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
+        CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal, loads=True),
+        FEM: MethodKind(
+            "mesh and finite elements", _finite_elements, _finite_elements_refusal, loads=True
+        ),
     },
 )
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -43,8 +43,8 @@ class _AtSpeed:
     task: Task
     solution: Callable[[Task, NDArray], Any]
 
-    def states(self, g: NDArray) -> Any:
-        return self.solution(self.task, g)
+    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
+        return self.solution(replace(self.task, body=self.task.body.loaded(load)), g)
 
     def record(self) -> dict[str, Any]:
         return {}
@@ -166,7 +166,11 @@ class ShapedPunches(Punches):
         from galinx.solvers.sie.collocation import solve  # SciPy's special functions, a slow import
 
         body, response = self.task.body, self.task.response
-        return [solve(response, value, TERMS, body.slope) for value in self.g.tolist()]
+        loads = np.broadcast_to(body.load, self.g.shape).tolist()
+        return [
+            solve(response, value, TERMS, body.loaded(load).slope)
+            for value, load in zip(self.g.tolist(), loads)
+        ]
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:

@@ -53,11 +53,15 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
     for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
         ladder.add(g, degree, cuts)
     probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
-    error = MeasuredError(ladder, probes)
+    loads = None
+    if not ladder.task.body.alike:
+        ends = min(ladder.task.loads), max(ladder.task.loads)
+        loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
+    error = MeasuredError(ladder, probes, loads)
     changes = dict(error.changes)
     while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
         ladder.add(g, ladder.degree + 1)
-        error = MeasuredError(ladder, probes)
+        error = MeasuredError(ladder, probes, loads)
         changes |= error.changes
     error.changes = changes
     return error
@@ -69,15 +73,16 @@ class MeasuredError:
     Args:
         ladder: with three levels of rising degree; or with a better one than the last, of a fixed degree.
         probes: values of σ_XY/σ_YY that stand for all of the speed.
+        loads: of these probes [N/m]; that of the task if not given.
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
         excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
     """
 
-    def __init__(self, ladder: Ladder, probes: NDArray) -> None:
+    def __init__(self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None) -> None:
         self._ladder = ladder
-        found = self._measured(probes)
+        found = self._measured(probes, loads)
         self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         if not ladder.task.response.mirrored:
@@ -104,9 +109,9 @@ class MeasuredError:
             changes[degree] = change
         return {"change_by_degree": changes.tolist() if changes.any() else []}
 
-    def of(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
+    def of(self, g: NDArray, load: Any = None) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
-        return self._errors(self._measured(g), g)
+        return self._errors(self._measured(g, load), g)
 
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
@@ -123,8 +128,8 @@ class MeasuredError:
         first, second = changes
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
-    def _measured(self, g: NDArray) -> list[list[Gauge]]:
-        return [level.measured(g) for level in self._ladder.levels]
+    def _measured(self, g: NDArray, load: Any) -> list[list[Gauge]]:
+        return [level.measured(g, load) for level in self._ladder.levels]
 
     def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""

@@ -31,7 +31,7 @@ from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Body, Surface
 
 #: Positions at which a largest pressure is looked for.
 _LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
@@ -105,8 +105,8 @@ class FoundLevel(PunchLevel):
         s = self.space.chart.surface_position(self.space.contact.s)
         return s[None] if isinstance(self.task.body.profile, Flat) else np.stack([s, s**2])
 
-    def found(self, g: NDArray) -> FoundStates:
-        """The states with these values of σ_XY/σ_YY.
+    def found(self, g: NDArray, load: Any = None) -> FoundStates:
+        """The states with these values of σ_XY/σ_YY, under the task's load or others [N/m].
 
         Raises:
             SolveError: no contact carries the load.
@@ -115,7 +115,8 @@ class FoundLevel(PunchLevel):
         solve = _tilted if isinstance(self.task.body.profile, Flat) else _parabola
         K = np.stack([self._intensities(part, local) for part in parts], axis=2)
         loads = np.stack([part.normal.sum(axis=1) for part in parts], axis=1)
-        amplitudes, h, m, free, lowest = solve(self.task, loads, K)
+        body = self.task.body.loaded(load)
+        amplitudes, h, m, free, lowest = solve(body, loads, K)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = combined(g, parts, amplitudes)
@@ -132,8 +133,8 @@ class FoundLevel(PunchLevel):
         """At the left and the right end, (states, 2)."""
         return from_moments(part.normal @ self.recovery.moments, local.α, local.β).K_I
 
-    def measured(self, g: NDArray) -> list[Gauge]:
-        found = self.found(g)
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        found = self.found(g, load)
         moments = found.contact.normal @ self.recovery.moments
         whole = JacobiPressure(found.local.α, found.local.β, found.factor)
         of_pressure = gauge.of_pressure(whole, moments)
@@ -154,15 +155,15 @@ class FoundLevel(PunchLevel):
 _Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray]
 
 
-def _parabola(task: Task, loads: NDArray, K: NDArray) -> _Solved:
+def _parabola(body: Body, loads: NDArray, K: NDArray) -> _Solved:
     """v = -v₀ + c₁ s + c₂ s² with the load, and without intensity at both ends.
 
     Args:
-        task: the speed.
+        body: what slides over what.
         loads: ∫σ_YY of every part, (states, 3).
         K: intensities of every part at both ends, (states, 2, 3).
     """
-    body, punch = task.body, task.body.profile
+    punch = body.profile
     assert isinstance(punch, Parabolic)
     A = np.concatenate([loads[:, None], K], axis=1)
     amplitudes = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
@@ -173,12 +174,12 @@ def _parabola(task: Task, loads: NDArray, K: NDArray) -> _Solved:
     return amplitudes, h, h * c1 / (2.0 * c2), free, c1**2 / (4.0 * c2)
 
 
-def _tilted(task: Task, loads: NDArray, K: NDArray) -> _Solved:
+def _tilted(body: Body, loads: NDArray, K: NDArray) -> _Solved:
     """v = -v₀ + c₁ s with the load; c₁ is known, or what leaves no intensity at the higher edge."""
-    body, punch = task.body, task.body.profile
+    punch = body.profile
     assert isinstance(punch, Flat)
     side = 1 if punch.rise > 0.0 else 0
-    c1 = np.full(len(loads), punch.rise * punch.half_width / body.displacement)
+    c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
     v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
     lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
     A = np.stack([loads, K[:, side]], axis=1)
@@ -194,8 +195,9 @@ def _tilted(task: Task, loads: NDArray, K: NDArray) -> _Solved:
 class FoundAtSpeed(PunchesAtSpeed):
     """Punches at one speed, found to the tolerance."""
 
-    def states(self, g: NDArray) -> Any:
-        return FoundPunches(self, g, self.level.found(g))
+    def states(self, g: NDArray, load: Any = None) -> Any:
+        body = self.task.body.loaded(load)
+        return FoundPunches(self, g, self.level.found(g, load), body)
 
 
 @dataclass(frozen=True)
@@ -206,11 +208,13 @@ class FoundPunches:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
         found: ends, nodal forces and weights.
+        body: what slides over what, under the load of each.
     """
 
     at: FoundAtSpeed
     g: NDArray[np.float64]
     found: FoundStates
+    body: Body
 
     @property
     def local(self) -> Exponents:
@@ -268,7 +272,7 @@ class FoundPunches:
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g)
+        return self.at.error.of(self.g, self.body.load)
 
     @cached_property
     def surface(self) -> Surface:
@@ -287,6 +291,6 @@ class FoundPunches:
         at, weights = self.at, self.found.contact.weights
         field = at.displacement.at
         return Strength(
-            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local,
+            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
             self.half_width,
         )  # fmt: skip

@@ -20,7 +20,7 @@ from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Body, Surface
 
 
 @contextmanager
@@ -68,7 +68,7 @@ class LoadsAtDegree:
     def factor(self) -> Any:
         return self.loaded.factor
 
-    def measured(self, g: NDArray) -> list[Gauge]:
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         return self._gauges.of(g, self.weights(g), self.σ_YY(g))
 
     def rounding(self, g: NDArray) -> list[float]:
@@ -115,8 +115,8 @@ class LoadsAtSpeed:
         self.displacement = Displacement(ladder.task, self.level.space, self.level.loaded.fields)
         self._ladder = ladder
 
-    def states(self, g: NDArray) -> "GivenLoads":
-        return GivenLoads(self, g)
+    def states(self, g: NDArray, load: Any = None) -> "GivenLoads":
+        return GivenLoads(self, g, self.task.body.loaded(load))
 
     def record(self) -> dict[str, Any]:
         return self._ladder.record() | self.error.record()
@@ -129,10 +129,12 @@ class GivenLoads:
     Attributes:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
+        body: what slides over what, under the load of each.
     """
 
     at: LoadsAtSpeed
     g: NDArray[np.float64]
+    body: Body
 
     @property
     def local(self) -> FlatPunch:
@@ -169,5 +171,5 @@ class GivenLoads:
         at, weights = self.at, self.at.level.weights(self.g)
         field = at.displacement.at
         return Strength(
-            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local
+            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local
         )

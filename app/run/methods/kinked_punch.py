@@ -40,6 +40,8 @@ _COARSE, _MORE = 4, 2
 _PASSES, _NEAR, _MOST, _NEXT_TO_END = 40, 0.5, 12, 0.98
 #: First half-width that is tried [m], and largest factor from one to the next.
 _FIRST, _FACTOR = 1e-3, 10.0
+#: Height over N/(2μ) under a contact up to which nothing but rounding is carried.
+_FLAT = 1e-9
 #: Changes of centre and half-width that a pass at a low degree may leave.
 _ROUGHLY = 1e-3
 
@@ -86,22 +88,28 @@ class KinkedAtSpeed:
         self._refinement = work.plan.refinement
         self._degree = min(work.plan.degrees[task.number] + _MORE, DEGREES[1])
         self._done, self._space = WorkDone(), {"cells": 0, "unknowns": 0, "degree": self._degree}
-        self._known: dict[float, tuple[Contact, float]] = {}
+        #: By σ_XY/σ_YY and load.
+        self._known: dict[tuple[float, float], tuple[Contact, float]] = {}
+        self._body = task.body
 
-    def states(self, g: NDArray) -> "KinkedPunches":
+    def states(self, g: NDArray, load: Any = None) -> "KinkedPunches":
         found = []
-        for value in g.tolist():
-            if value not in self._known:
-                self._known[value] = self._solved(value)
-            found.append(self._known[value])
+        loads = np.broadcast_to(self.task.body.loaded(load).load, g.shape).tolist()
+        for state in zip(g.tolist(), loads):
+            if state not in self._known:
+                self._known[state] = self._solved(*state)
+            found.append(self._known[state])
         return KinkedPunches(self, g, [contact for contact, _ in found], np.array([e for _, e in found]))
 
     def record(self) -> dict[str, Any]:
         return self._space | vars(self._done)
 
-    def _solved(self, g: float) -> tuple[Contact, float]:
-        """The contact at a friction, and the estimated error of its ends over its half-width."""
-        nearest = min(self._known, key=lambda value: abs(value - g), default=None)
+    def _solved(self, g: float, load: float) -> tuple[Contact, float]:
+        """The contact at a friction and a load, and the estimated error of its ends over its width."""
+        self._body = self.task.body.loaded(load)
+        nearest = min(
+            self._known, key=lambda known: abs(known[0] - g) + abs(np.log(known[1] / load)), default=None
+        )
         start = Contact() if nearest is None else self._known[nearest][0]
         contact = Contact(start.centre, start.half_width)
         wanted = 0.1 * self.work.plan.tolerance**0.5
@@ -177,8 +185,11 @@ class KinkedAtSpeed:
         space = self.work.space_on(with_kinks(self._refinement, places), degree)
         r = space.chart.surface_position(space.contact.s)
         solver, tolerance = self.work.plan.solver, self.work.plan.tolerance
-        negligible = min(1e-4 * tolerance, 1e-10)
-        punch = SlidingPunch(space, self.task.response, solver, negligible, self._shapes(contact, r))
+        negligible, shapes = min(1e-4 * tolerance, 1e-10), self._shapes(contact, r)
+        if shapes[0].max() < _FLAT:  # in a flat part nothing is carried: wider
+            contact.change = np.inf
+            return np.inf, 0.0
+        punch = SlidingPunch(space, self.task.response, solver, negligible, shapes)
         try:
             parts = punch.parts(np.array([g]))
             self._done.count(punch)
@@ -188,9 +199,6 @@ class KinkedAtSpeed:
         normal = np.stack([part.normal[0] for part in parts], axis=1)
         A = self._conditions(places, r, g, TERMS) @ normal
         load = np.array([-2.0, 0.0, 0.0])
-        if not np.any(A[:, 1]):  # in a flat part nothing is carried: wider
-            contact.change = np.inf
-            return np.inf, 0.0
         v0, amplitude, lean = np.linalg.solve(A[:, :3], load)
         if not amplitude > 0.0 or abs(np.log(amplitude)) > _NEAR:
             contact.change = np.inf
@@ -230,7 +238,7 @@ class KinkedAtSpeed:
 
     def _shapes(self, contact: Contact, r: NDArray) -> NDArray[np.float64]:
         """P and its derivatives by m and h, times h, over N/(2μ) at the contact's nodes, (3, nodes)."""
-        body, h = self.task.body, contact.half_width
+        body, h = self._body, contact.half_width
         X = contact.centre + h * r
         slope = h * body.profile.slope(X)
         return np.stack([body.profile.height(X), slope, r * slope]) / body.displacement

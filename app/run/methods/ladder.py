@@ -24,8 +24,13 @@ class Level(Protocol):
     def factor(self) -> Any:
         """Of the linear system, with numbers of its work."""
 
-    def measured(self, g: NDArray) -> list[Gauge]:
-        """What the error is measured on of states with these values of σ_XY/σ_YY."""
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        """What the error is measured on of states with these values of σ_XY/σ_YY.
+
+        Args:
+            g: σ_XY/σ_YY, (states,).
+            load: of each state [N/m], (states,); that of the task if not given.
+        """
 
     def rounding(self, g: NDArray) -> list[float]:
         """What rounding alone is seen to do to each of these, relative."""

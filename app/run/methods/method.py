@@ -22,7 +22,10 @@ class Solver(Protocol):
     """Friction states at one speed."""
 
     def states(self, g: NDArray) -> Solution:
-        """The states with these values of σ_XY/σ_YY.
+        """The states with these values of σ_XY/σ_YY, under the load of the task's body.
+
+        A method that says so by ``loads`` takes a second argument, ``load``: that of each state [N/m],
+        (states,), or None for the task's.
 
         Raises:
             SolveError: they could not be found.
@@ -56,8 +59,10 @@ class MethodKind:
         made: makes it for a plan.
         refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
             None: why it gives none at all.
+        loads: do its solvers know states under several loads? Each load has a solver of its own if not.
     """
 
     about: str
     made: Callable[[Plan, Progress, Clock], Method]
     refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+    loads: bool = False

@@ -23,7 +23,7 @@ from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.linear import LinearPressure
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Body, Surface
 
 
 @contextmanager
@@ -133,7 +133,7 @@ class PiecesLevel:
         with self._work.clock("recovery"):
             return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
 
-    def measured(self, g: NDArray) -> list[Gauge]:
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         found, words, places = [], self._work.stresses, gauged(self._task).places
         if ON_SURFACE in words:
             found.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
@@ -173,8 +173,8 @@ class OwnPressureAtSpeed:
         self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
         self._ladder = ladder
 
-    def states(self, g: NDArray) -> "OwnPressures":
-        return OwnPressures(self, g)
+    def states(self, g: NDArray, load: Any = None) -> "OwnPressures":
+        return OwnPressures(self, g, self.task.body.loaded(load))
 
     def record(self) -> dict[str, Any]:
         return self._ladder.record() | self.error.record()
@@ -187,10 +187,12 @@ class OwnPressures:
     Attributes:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
+        body: what slides over what, under the load of each.
     """
 
     at: OwnPressureAtSpeed
     g: NDArray[np.float64]
+    body: Body
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
@@ -218,5 +220,5 @@ class OwnPressures:
     @cached_property
     def strength(self) -> Strength:
         """Yield."""
-        task, level = self.at.task, self.at.level
-        return Strength(lambda points: level.at(points, self.g), task.body, task.response, self.g, None)
+        level, response = self.at.level, self.at.task.response
+        return Strength(lambda points: level.at(points, self.g), self.body, response, self.g, None)

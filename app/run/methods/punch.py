@@ -86,8 +86,12 @@ class PunchLevel:
         local = FlatPunch(self.task.response, states.g)
         return from_moments(states.normal @ self.recovery.moments, local.α, local.β)
 
-    def measured(self, g: NDArray) -> list[Gauge]:
-        states = self.punch.states(g)
+    def contact(self, g: NDArray, load: Any = None) -> ContactStates:
+        """States with these values of σ_XY/σ_YY, under the task's load or others [N/m]."""
+        return self.punch.states(g, share=1.0 if load is None else self.task.body.load / load)
+
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        states = self.contact(g, load)
         pressure = self.pressure(states)
         moments = states.normal @ self.recovery.moments
         return [
@@ -140,8 +144,9 @@ class PunchesAtSpeed:
         self.displacement = Displacement(ladder.task, self.level.space, self.level.punch.fields)
         self._ladder = ladder
 
-    def states(self, g: NDArray) -> "Punches":
-        return Punches(self, g, self.level.punch.states(g))
+    def states(self, g: NDArray, load: Any = None) -> "Punches":
+        body = self.task.body.loaded(load)
+        return Punches(self, g, self.level.contact(g, load), body)
 
     def record(self) -> dict[str, Any]:
         return self._ladder.record() | self.error.record()
@@ -155,11 +160,13 @@ class Punches:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
         contact: nodal forces and weights.
+        body: what slides over what, under the load of each.
     """
 
     at: PunchesAtSpeed
     g: NDArray[np.float64]
     contact: ContactStates
+    body: Body
 
     @cached_property
     def local(self) -> FlatPunch:
@@ -197,7 +204,7 @@ class Punches:
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g)
+        return self.at.error.of(self.g, self.body.load)
 
     @cached_property
     def surface(self) -> Surface:
@@ -215,5 +222,5 @@ class Punches:
         at, weights = self.at, self.contact.weights
         field = at.displacement.at
         return Strength(
-            lambda points: field(points, weights), at.task.body, at.task.response, self.g, self.local
+            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local
         )

@@ -160,11 +160,6 @@ def test_faults_of_motions_are_told(motion, said):
         scene("coulomb", {"mu_c": 0.4}, motion)
 
 
-def test_speeds_of_strokes_are_for_friction_alone():
-    with pytest.raises(BadInput, match="are for friction alone"):
-        scene("coulomb", {"mu_c": 0.4}, "speed = 1, strokes = [{to = 1, speed = 2}]", '["sif"]')
-
-
 def test_rate_and_state_has_no_answer_at_rest():
     with pytest.raises(BadInput, match="friction: found the speed 0 m/s"):
         galinx.compute(scene("rate_and_state", RATE_AND_STATE, "c = 0"))

@@ -71,16 +71,18 @@ def test_a_wrong_range_says_what_is_wrong(text, message):
 def test_every_list_of_a_scene_may_be_a_range():
     words = [f"{key}={{from = 0.1, to = 0.3, number = 3}}" for key in ("motion.c", "motion.X_over_L")]
     words += [
+        "punch.load={from = '1 N/mm', to = 3e3, number = 3}",
         "friction.mu_c={from = 0.01, to = 1, number = 3, spacing = 'log'}",
         "friction.sigma0_over_load={from = '10 1/mm', to = 3e4, number = 3}",
     ]
     scene = read(SCENE, from_words(words))
     assert scene.motion.c == scene.motion.X_over_L == (0.1, 0.2, 0.3)
+    assert scene.punch.loads == (1e3, 2e3, 3e3)
     assert scene.friction.parameters["mu_c"] == (0.01, 0.1, 1.0)
     assert scene.friction.parameters["sigma0_over_load"] == (1e4, 2e4, 3e4)
     assert parse(scene.text).motion == scene.motion
 
 
 def test_a_range_where_one_number_stands_is_refused():
-    with pytest.raises(BadInput, match=r"punch\.load .*: found {'from': 1"):
-        read(SCENE, from_words(["punch.load={from = 1, to = 2, number = 3}"]))
+    with pytest.raises(BadInput, match=r"solid\.E .*: found {'from': 1"):
+        read(SCENE, from_words(["solid.E={from = 1, to = 2, number = 3}"]))

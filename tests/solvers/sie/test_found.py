@@ -15,6 +15,7 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import contacts
+from galinx.solvers.sie.weighted import Weighted
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
@@ -286,3 +287,19 @@ def test_a_contact_little_wider_than_the_flat_part_is_found(b, share):
         assert abs(lifted) <= 1e-9 * carried
         n = response.n + g * response.n12
         assert h**2 / R * np.sin(np.pi * a) / n * carried == pytest.approx(load, rel=1e-9)
+
+
+@pytest.mark.parametrize("order", (-1, 0, 1))
+def test_the_change_of_a_potential_is_a_difference(order):
+    """Of a punch with both edges in contact, with one, and of a parabola; near and far."""
+    rng = np.random.default_rng(order + 5)
+    α = float(rng.uniform(-0.9, -0.1)) + (order == 1)
+    A, B = rng.normal(size=2) * [1.0, order == -1]
+    pressure = Weighted(α, order - α, A, B, order)
+    z = rng.uniform(-6.0, 6.0, 40) + 1j * rng.uniform(0.05, 6.0, 40)
+    step, share = 0.1 * rng.normal(size=40), 0.3 + 0.2j
+    exact = (pressure.at(z + share * step) - pressure.at(z)) / share
+    np.testing.assert_allclose(pressure.change(z, step, share), exact, rtol=0.0, atol=1e-13)
+    ε = 1e-6
+    slope = step * (pressure.at(z + ε) - pressure.at(z - ε)) / (2.0 * ε)
+    np.testing.assert_allclose(pressure.change(z, step, 0.0), slope, rtol=0.0, atol=1e-9)

@@ -1,0 +1,333 @@
+"""A sweep of loads: every state as under its load alone, and what is alike solved once."""
+
+import re
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from support import computed
+
+import galinx
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states
+from galinx.app.plan.words import lines
+from galinx.app.results.answers import answers, summary
+from galinx.app.results.check import faults
+from galinx.app.results.csv import pieces
+from galinx.app.results.one_state import displacement
+from galinx.app.run.methods import METHODS
+from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
+from galinx.solvers.parameters import parameter
+from galinx.solvers.profiles import PROFILES
+
+LOADS = (2e4, 5.53e4, 3e5)
+_SHAPE = [[-2e-3, 1.6e-4], [-1e-3, 4e-5], [0, 0], [5e-4, 5e-6], [2e-3, 8e-5]]
+PUNCHES = {
+    "flat": {"profile": "flat", "half_width": 1e-3},
+    "tilted": {"profile": "flat", "half_width": 1e-3, "tilt": 0.01},
+    "parabolic": {"profile": "parabolic", "radius": 0.02},
+    "wedge": {"profile": "wedge", "slope": 0.005},
+    "power": {"profile": "power", "exponent": 3, "coefficient": 1e4},
+    "rounded": {"profile": "rounded_flat", "flat_half_width": 1e-4, "radius": 0.01},
+    "table": {"profile": "table", "shape": _SHAPE},
+}
+#: Stresses everywhere, by one stroke.
+ALL = {
+    "motion.c": 0.4, "motion.X_over_L": [0.3, 1.0], "motion.strokes": ["forward"], "friction.mu_c": 0.5,
+    "output.quantities": ["sif", "surface", "interior"], "output.points": [[0.0, -0.5], [1.0, -0.2]],
+}  # fmt: skip
+CLOSED = {"solve.methods": ["closed_form"]}
+#: What several loads have is what each has, at any degree.
+ROUGH = {"solve.tolerance": 1e-4}
+
+
+def punch(name):
+    """Changes of a scene that give it a punch."""
+    return {"punch.half_width": None} | {f"punch.{key}": value for key, value in PUNCHES[name].items()}
+
+
+def of_states(data):
+    """Numbers of states by path."""
+    found = {
+        path: values
+        for path, values in data.items()
+        if path.startswith(("states/", "surface/", "interior/"))
+    }
+    return {
+        path: values for path, values in found.items()
+        if values.dtype.kind == "f" and path not in ("states/load", "surface/X_over_a")
+        and not path.startswith(("interior/X_", "interior/Y_"))
+    }  # fmt: skip
+
+
+def same_as_alone(changes, loads=LOADS):
+    """A scene of several loads has what scenes of these loads have; returns its result."""
+    many = computed("tables4_5", changes | {"punch.load": list(loads)})
+    assert many.verdict != "FAIL", many.attributes["verdict_reasons"]
+    for i, load in enumerate(loads):
+        one = computed("tables4_5", changes | {"punch.load": load})
+        assert one.verdict != "FAIL", one.attributes["verdict_reasons"]
+        expected = of_states(one.data)
+        assert expected.keys() == of_states(many.data).keys()
+        for path, values in expected.items():
+            count = len(values)
+            found = many.data[path][i * count : (i + 1) * count]
+            size = np.nanmax(np.abs(values), initial=0.0)
+            # Errors are of the last digits, measured on samples; the place of a maximum has half of them.
+            within = 1e-4 if re.search("estimate|error|position", path) else 1e-12
+            np.testing.assert_allclose(found, values, rtol=within, atol=within * size, err_msg=path)
+        assert (many.data["states/load"][i * count : (i + 1) * count] == load).all()
+    return many
+
+
+@pytest.mark.parametrize("name", ("flat", "tilted", "parabolic"))
+def test_states_under_several_loads_are_those_under_each(name):
+    """By both methods; the tilted punch lifts off at the least load alone."""
+    many = same_as_alone(ALL | ROUGH | punch(name))
+    if name == "tilted":
+        a = many.data["states/fem/half_width"]
+        assert (a[:2] < 0.9e-3).all() and (a[2:] == 1e-3).all()
+    # One factor for each of the degrees, whatever the loads.
+    alone = computed("tables4_5", ALL | ROUGH | punch(name) | {"punch.load": max(LOADS)})
+    for count in ("factorisations", "back_substitutions"):
+        assert many.data[f"run/fem/{count}"] == alone.data[f"run/fem/{count}"]
+
+
+@pytest.mark.parametrize("name", sorted(PUNCHES))
+def test_the_integral_equation_has_every_load(name):
+    same_as_alone(ALL | punch(name) | CLOSED)
+
+
+@pytest.mark.parametrize("pressure", ["closed_form", [[-1, -0.5], [0.2, -2.0], [1, -0.5]]])
+def test_a_pressure_that_is_put_in_has_every_load(pressure):
+    given = {
+        "solve.mode": "traction", "solve.pressure": pressure, "solid.yield_strength": "1 GPa",
+        "output.quantities": ["surface", "yield"], "output.points": None, "motion.X_over_L": [1.0],
+        "solve.tolerance": 1e-3,
+    }  # fmt: skip
+    same_as_alone(ALL | given, (3e4, 3e6))
+
+
+def test_a_report_tells_the_loads():
+    asked = {"punch.load": list(LOADS), "output.quantities": ["sif"], "output.points": None}
+    result = computed("tables4_5", ALL | punch("parabolic") | CLOSED | asked)
+    assert "load 20.00 kN/m to 300.0 kN/m" in summary(result.data, result.scene)
+    told = {one.name: one.value for one in answers(result.data, result.scene)}
+    a, p = (result.data[f"states/closed_form/{name}"] for name in ("half_width", "largest_pressure"))
+    largest = (p * result.data["states/load"] / (2.0 * a)).max()
+    assert f"{largest / 1e6:.1f} MPa" in told["Largest contact pressure"]
+
+
+def test_yield_follows_the_load():
+    """Stresses over N/(2a) are the same, the yielded zone is not; the load at first yield is one."""
+    asked = {
+        "output.quantities": ["sif", "yield"],
+        "output.points": None,
+        "solid.yield_strength": "1 GPa",
+    }
+    changes = ALL | CLOSED | asked
+    many = same_as_alone(changes | punch("parabolic"), (3e4, 3e6))
+    first = many.data["states/closed_form/first_yield_load"].reshape(2, 2)
+    np.testing.assert_allclose(first[0], first[1], rtol=1e-9)
+    depth = many.data["states/closed_form/yield_depth"].reshape(2, 2)
+    assert (depth[0] == 0.0).all() and (depth[1] > 0.1).all()
+    flat = same_as_alone(changes | punch("flat"), (3e4, 3e6))
+    reach = flat.data["states/closed_form/yield_reach_right"].reshape(2, 2)
+    assert (reach[1] > 10.0 * reach[0]).all()
+
+
+def test_a_thousand_loads_of_a_cylinder_at_rest_are_hertz():
+    loads = {"from": "1 N/mm", "to": "1000 N/mm", "number": 1000}
+    changes = punch("parabolic") | {
+        "punch.load": loads, "motion.c": 0.0, "friction.mu_c": 1e-13, "motion.strokes": ["forward"],
+        "motion.X_over_L": [1.0], "output.quantities": ["sif"],
+    }  # fmt: skip
+    result = computed("tables4_5", changes)
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    N, solid = result.data["states/load"], result.scene.solid
+    np.testing.assert_allclose(N, np.linspace(1e3, 1e6, 1000), rtol=1e-12)
+    hertz = np.sqrt(4.0 * N * 0.02 * (1.0 - solid.ν**2) / (np.pi * solid.E))
+    np.testing.assert_allclose(result.data["states/closed_form/half_width"], hertz, rtol=1e-12)
+    np.testing.assert_allclose(result.data["states/fem/half_width"], hertz, rtol=1e-6)
+    for path in ("states/fem/normal_force", "states/fem/v0"):
+        values = result.data[path]
+        np.testing.assert_allclose(values / N, values[0] / N[0], rtol=1e-12)
+    assert result.data["run/fem/back_substitutions"][0] < 40
+
+
+def test_loads_are_one_list_of_the_product():
+    """Slower than the laws, faster than the speeds; each once."""
+    lists = {"punch.load": ["2 N/mm", "1 N/mm", 2e3], "friction.mu_c": [0.3, 0.7], "motion.c": [0.1, 0.2]}
+    scene = galinx.template(
+        "tables4_5", lists | {"motion.X_over_L": [0.5], "motion.strokes": ["forward"]}
+    )
+    assert scene.punch.loads == (2e3, 1e3) and scene.punch.load == scene.body.load == 2e3
+    columns = enumerate_states(scene).columns
+    assert columns["c"].tolist() == [0.1] * 4 + [0.2] * 4
+    assert columns["load"].tolist() == [2e3, 2e3, 1e3, 1e3] * 2
+    assert columns["mu_c"].tolist() == [0.3, 0.7] * 4
+    assert columns["f"].tolist() == columns["f"][:2].tolist() * 4
+    plan = make_plan(scene)
+    assert [task.runs for task in plan.tasks] == [(slice(0, 4),), (slice(4, 8),)]
+    grid = computed("tables4_5", lists | CLOSED).grid
+    assert grid.f.dims[:3] == ("c", "load", "mu_c") and not np.isnan(grid.f).any()
+
+
+def test_one_load_is_no_column():
+    data = computed("tables4_5", {"output.quantities": ["friction"]}).data
+    assert "states/load" not in data
+    columns = enumerate_states(galinx.template("tables4_5", {"punch.load": ["1 N/mm", 1e3]})).columns
+    assert "load" not in columns
+
+
+def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
+    """As those of users are; a punch with a base of its own shape depends on the load."""
+    known = with_given_ends
+    asked = []
+
+    def given(task, g):
+        asked.append(task.body.load)
+        return known(task, g)
+
+    monkeypatch.setitem(PROFILES, "crowned", _Crowned)
+    changes = ALL | CLOSED | {"output.quantities": ["sif", "surface"], "output.points": None}
+    changes |= {"punch.profile": "crowned", "punch.radius": 20.0, "punch.half_width": 1e-3}
+    expected = same_as_alone(changes)
+    method = METHODS["closed_form"]
+    alone = replace(method, made=lambda plan, progress, clock: ClosedForm(given), loads=False)
+    monkeypatch.setitem(METHODS, "closed_form", alone)
+    found = computed("tables4_5", changes | {"punch.load": list(LOADS)})
+    assert asked == list(LOADS)
+    for path, values in of_states(expected.data).items():
+        np.testing.assert_array_equal(found.data[path], values, err_msg=path)
+
+
+def test_finite_elements_press_a_profile_of_ones_own_under_every_load(monkeypatch):
+    """Two sharp edges and a base that is not flat: its share of the pressure falls with the load."""
+    monkeypatch.setitem(PROFILES, "crowned", _Crowned)
+    changes = {"punch.profile": "crowned", "punch.radius": 20.0, "punch.half_width": 1e-3}
+    quantities = {"output.quantities": ["sif", "surface"], "output.points": None}
+    many = same_as_alone(ALL | ROUGH | quantities | changes)
+    K = many.data["states/fem/K_I_right"].reshape(3, 2)
+    assert (np.diff(K, axis=0) > 1e-3).all()
+
+
+@dataclass(frozen=True)
+class _Crowned:
+    """A parabola between two sharp corners."""
+
+    about: ClassVar[str] = "crowned"
+
+    half_width: float = parameter("half_width", "half-width a", "m", above=0.0)
+    radius: float = parameter("radius", "radius of the base", "m", above=0.0)
+
+    def height(self, X):
+        return X**2 / (2.0 * self.radius)
+
+    def slope(self, X):
+        return X / self.radius
+
+    def words(self):
+        return "crowned punch"
+
+
+def test_archives_of_loads_are_whole_and_told_in_si(tmp_path):
+    changes = ALL | punch("flat") | CLOSED | {"punch.load": list(LOADS)}
+    result = computed("tables4_5", changes)
+    result.save(tmp_path / "a.h5")
+    assert not faults(tmp_path / "a.h5")
+    text = "".join(pieces(tmp_path / "a.h5", "surface", si=True))
+    head, *rows = [line.split(",") for line in text.splitlines()]
+    N, σ = (head.index(name) for name in ("load [N/m]", "closed_form_sigma_XX [Pa]"))
+    table = np.array([[float(row[0]), float(row[N]), float(row[σ])] for row in rows])
+    expected = result.data["surface/closed_form/sigma_XX"] * result.data["states/load"][:, None] / 2e-3
+    np.testing.assert_allclose(table[:, 2], expected.ravel(), rtol=1e-14)
+    assert set(table[:, 1]) == set(LOADS)
+    # A load that was changed is found.
+    result.data["states/load"][0] *= 2.0
+    result.save(tmp_path / "b.h5")
+    assert any("states/load" in fault for fault in faults(tmp_path / "b.h5"))
+
+
+def test_half_width_and_centre_are_drawn_against_the_load():
+    loads = {"from": 1e3, "to": 1e5, "number": 30}
+    changes = ALL | punch("parabolic") | CLOSED | {"punch.load": loads, "output.quantities": ["sif"]}
+    result = computed("tables4_5", changes | {"output.points": None})
+    (drawing,) = result.drawings(figures=("parameters",), x="load", y=("half_width", "centre"))
+    assert len(drawing.figure.axes[0].get_lines()[0].get_xdata()) == 30
+    (friction,) = result.drawings(figures=("friction",))
+    assert len(result.data["loops/f"]) == 1 and friction.name == "friction"
+    names = {drawing.name: drawing for drawing in result.drawings()}
+    assert names.keys() >= {"friction", "parameters"}
+
+
+@pytest.mark.parametrize("name, curves", [("parabolic", 1), ("rounded", 3)])
+def test_stresses_that_no_load_changes_are_drawn_once(name, curves):
+    changes = ALL | punch(name) | CLOSED | {"output.quantities": ["surface"], "output.points": None}
+    changes |= {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
+    (drawing,) = computed("tables4_5", changes).drawings(figures=("surface",))
+    drawn = [line for line in drawing.figure.axes[0].get_lines() if len(line.get_xdata()) > 50]
+    assert len(drawn) == 3 * curves  # left of the contact, in it, and to its right
+    assert ("the same under every load" in drawing.caption) == (curves == 1)
+
+
+def test_a_slider_moves_under_every_load():
+    changes = {"punch.load": ["1 N/m", "2 N/m"], "slider.duration": "20 s"}
+    both = computed("slider", changes)
+    alone = computed("slider", changes | {"punch.load": "2 N/m"})
+    for path, values in alone.data.items():
+        if path.startswith("slider/") and path != "slider/time":
+            np.testing.assert_array_equal(both.data[path][1], values[0], err_msg=path)
+    assert both.data["slider/peak_velocity"][0] != both.data["slider/peak_velocity"][1]
+    (drawing,) = both.drawings(figures=("slider",))
+    assert "N" in " ".join(text.get_text() for text in drawing.figure.legends[0].get_texts())
+
+
+def test_fields_of_a_state_are_those_of_its_load():
+    """Under a flat punch displacements grow like the load."""
+    changes = {"motion.c": 0.3, "motion.strokes": ["forward"], "motion.X_over_L": [1.0], **ROUGH}
+    scene = galinx.template("tables4_5", changes | {"punch.load": [1e4, 3e4]})
+    one, other = (displacement(scene, number).x.array for number in (0, 1))
+    assert np.abs(one).max() > 0.0
+    np.testing.assert_allclose(other, 3.0 * one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+
+
+def test_a_plan_counts_what_is_solved():
+    """Of a wedge every friction has meshes of its own, whatever the loads."""
+    loads = {"punch.load": {"from": 1e3, "to": 1e5, "number": 50}}
+    for name, states in (("wedge", 2), ("rounded", 100)):
+        scene = galinx.template("tables4_5", ALL | punch(name) | loads)
+        told = lines(scene, make_plan(scene))
+        assert any(f"finite elements: {states} states, each on" in text for text in told), told
+
+
+def test_a_contact_of_a_few_atoms_is_told_of():
+    changes = punch("parabolic") | {"output.quantities": ["sif"], **CLOSED}
+    small = make_plan(galinx.template("tables4_5", changes | {"punch.load": [1e-9, 1e4]}))
+    assert any("1e-09 N/m" in text and "atoms" in text for text in small.warnings)
+    usual = make_plan(galinx.template("tables4_5", changes | {"punch.load": 1e4}))
+    assert not any("atoms" in text for text in usual.warnings)
+
+
+def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):
+    """The contact of a rounded punch under the middle load ends next to where the flat part does."""
+    changes = ALL | punch("rounded") | {
+        "output.quantities": ["sif"], "output.points": None, "motion.X_over_L": [1.0],
+        "solve.tolerance": 1e-3, "friction.mu_c": 1e-9, "motion.c": 0.0,
+    }  # fmt: skip
+    narrow = computed("tables4_5", changes | CLOSED | {"punch.load": [1.0, 1e3, 1e5]})
+    a = narrow.data["states/closed_form/half_width"]
+    assert 1.0 < a[0] / 1e-4 < 1.02 < a[1] / 1e-4
+    found = computed("tables4_5", changes | {"punch.load": [1e5, 1.0, 1e3]})
+    (failure,) = found.data["run/failures"]
+    assert failure.startswith("c = 0: N = 1 N/m: ") and found.verdict == "FAIL"
+    h = found.data["states/fem/half_width"]
+    np.testing.assert_allclose(h[[0, 2]], a[[2, 1]], rtol=1e-3)
+    assert np.isnan(h[1]) and not np.isnan(found.data["states/closed_form/half_width"][[0, 2]]).any()
+    found.save(tmp_path / "a.h5")
+    assert not faults(tmp_path / "a.h5")
+    from galinx.solvers.errors import SolveError
+
+    with pytest.raises(SolveError, match="kinks"):
+        computed("tables4_5", changes | {"punch.load": 1.0})

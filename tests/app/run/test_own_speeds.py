@@ -1,0 +1,144 @@
+"""Strokes with speeds of their own, and motions point by point, in contact scenes."""
+
+import numpy as np
+import pytest
+from support import computed
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.plan import task
+from galinx.app.plan.plan import make_plan
+from galinx.app.results.check import faults
+from galinx.app.run.flow import compute
+from galinx.app.run.sinks import Memory
+from galinx.postprocess.journal import Journal
+
+#: The second stroke is the faster one; a law that knows the speed remembers it.
+STROKES = [{"to": 0.8}, {"to": 0.2, "speed": "1800 m/s"}, {"to": 1.0}]
+SCENE = {
+    "motion.c": None, "motion.speed": ["1000 m/s", "400 m/s"], "motion.strokes": STROKES,
+    "motion.X_over_L": [0.3, 0.7], "output.quantities": ["sif", "surface"],
+    "friction.model": "lugre", "friction.mu_c": [0.3, 0.6], "friction.mu_s": 0.7, "friction.delta": None,
+    "friction.stribeck_velocity": "900 m/s", "friction.sigma1_over_load": 1e-6,
+}  # fmt: skip
+CLOSED = {"solve.methods": ["closed_form"]}
+
+
+@pytest.fixture(scope="module")
+def run():
+    return computed("tables4_5", SCENE)
+
+
+def test_every_state_is_that_of_its_strokes_speed(run):
+    """f and g as of friction alone, and the contact that of a flat punch with these at that speed."""
+    assert run.verdict == "PASS", run.attributes["verdict_reasons"]
+    friction = computed("tables4_5", SCENE | {"output.quantities": ["friction"], "solve.methods": []})
+    for path, values in friction.data.items():
+        if path.startswith(("states/", "loops/")):
+            np.testing.assert_array_equal(run.data[path], values, err_msg=path)
+    V, motion = run.data["states/speed"], run.data["states/motion"]
+    assert (V[motion == "BM1"] == 1800.0).all()
+    assert set(V[motion != "BM1"]) == {1000.0, 400.0} and len(V) == 24
+    solid = run.scene.solid
+    for i, (c, g) in enumerate(zip(run.data["states/c"], run.data["states/g"])):
+        response = solid.response(c)
+        cot = g * response.q / (response.n + g * response.n12)
+        K = np.sin(np.arctan2(1.0, cot)) / np.pi
+        assert run.data["states/fem/K_I_right"][i] == pytest.approx(K, rel=1e-6)
+        assert run.data["states/closed_form/K_I_left"][i] == pytest.approx(K, rel=1e-12)
+
+
+def test_a_speed_is_solved_once(run):
+    c = run.data["states/c"]
+    assert run.data["run/fem/c"].tolist() == list(dict.fromkeys(c.tolist()))
+    assert len(run.data["run/fem/c"]) == 3
+    plan = make_plan(run.scene)
+    rows = [row for one in plan.tasks for some in one.runs for row in range(some.start, some.stop)]
+    assert sorted(rows) == list(range(24)) and plan.states == 24
+    assert [one.response.c for one in plan.tasks] == run.data["run/fem/c"].tolist()
+
+
+def test_archives_of_own_speeds_are_whole(run, tmp_path):
+    run.save(tmp_path / "a.h5")
+    assert not faults(tmp_path / "a.h5")
+    again = galinx.load(tmp_path / "a.h5")
+    np.testing.assert_array_equal(again.data["surface/fem/sigma_XX"], run.data["surface/fem/sigma_XX"])
+    names = {drawing.name for drawing in again.drawings()}
+    assert names >= {"friction", "surface"}
+
+
+def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, monkeypatch):
+    """Runs of a speed are cut and put together, and a run that was stopped goes on."""
+    scene = galinx.template("tables4_5", SCENE | CLOSED)
+    expected = Memory()
+    compute(scene, expected)
+    monkeypatch.setattr(task, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
+
+    def stop(self, part, keep=Journal.keep):
+        keep(self, part)
+        if self.states > 8:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as stopped:
+        stopped.setattr(Journal, "keep", stop)
+        with pytest.raises(KeyboardInterrupt), Journal(tmp_path / "a.h5", "key") as journal:
+            compute(scene, Memory(), None, journal)
+    found = Memory()
+    with Journal(tmp_path / "a.h5", "key", resume=True) as journal:
+        assert 0 < journal.states < 24
+        told = compute(scene, found, None, journal)
+    for path, values in expected.items():
+        if path.startswith(("states/", "surface/")):
+            np.testing.assert_array_equal(found[path], values, err_msg=path)
+    assert told["comparisons"] == compute(scene, Memory())["comparisons"]
+
+
+def test_fields_of_a_state_are_those_of_its_speed(run):
+    """Energy: twice the work that the load does is in no other state the same."""
+    from galinx.app.results.one_state import chosen
+
+    numbers = [0, 2, 12]
+    states = chosen(run.scene, numbers)
+    assert [one.task.response.c for one in states] == run.data["states/c"][numbers].tolist()
+    assert [one.g for one in states] == run.data["states/g"][numbers].tolist()
+
+
+def test_a_path_has_the_speed_of_each_piece():
+    """Equal speeds but for rounding are one; a position that stays is a rest."""
+    path = [[0.0, 0.0], [1e-7, 3e-5], [2e-7, 6e-5], [3e-7, 6e-5], [4e-7, 9e-5], [6e-7, 5e-5]]
+    changes = {
+        "motion.c": None, "motion.strokes": None, "motion.X_over_L": None, "motion.path": path,
+        "output.quantities": ["sif"],
+    }  # fmt: skip
+    result = computed("tables4_5", changes)
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    data = result.data
+    np.testing.assert_allclose(data["states/speed"], [300, 300, 300, 200], rtol=1e-12)
+    np.testing.assert_allclose(data["states/X_over_L"], [0.3, 0.6, 0.9, 0.5], rtol=1e-12)
+    assert data["states/motion"].tolist() == ["FM1", "FM2", "FM3", "BM1"]
+    assert len(data["run/fem/c"]) == 2
+    expected = computed(
+        "tables4_5", {"motion.c": float(data["states/c"][3]), "output.quantities": ["sif"]}
+    )
+    f = expected.data["states/f"]
+    assert (np.sign(data["states/f"][:3]) == 1).all() and np.isfinite(f).all()
+
+
+def test_own_speeds_and_loads_go_together():
+    changes = SCENE | CLOSED | {"punch.load": [1e3, 2e3]}
+    both = computed("tables4_5", changes).data
+    one = computed("tables4_5", SCENE | CLOSED).data
+    shape = (2, 2, 12)
+    for path in ("states/f", "states/c", "states/closed_form/K_I"):
+        found, alone = both[path].reshape(shape), one[path].reshape(2, 12)
+        np.testing.assert_array_equal(found, np.stack([alone, alone], axis=1))
+    assert both["states/load"].reshape(shape)[:, 0].tolist() == [[1e3] * 12] * 2
+
+
+@pytest.mark.parametrize(
+    "speed, message", [("2950 m/s", "Rayleigh speed"), ("4 km/s", "shear wave speed")]
+)
+def test_a_stroke_that_is_too_fast_is_refused(speed, message):
+    strokes = [{"to": 0.8}, {"to": 0.2, "speed": speed}]
+    with pytest.raises(BadInput, match=message):
+        make_plan(galinx.template("tables4_5", SCENE | {"motion.strokes": strokes}))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
+from galinx.postprocess.quantities import layers as on_layers
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
@@ -216,6 +217,10 @@ RULES: Registry[Rule] = Registry(
         "estimate": Rule(
             "estimated error of K_I and moments, relative",
             (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
+        ),
+        "estimate of the integral equation": Rule(
+            "estimated error of the integral equation over layers, relative",
+            (on_layers.ESTIMATE,), _largest(on_layers.ESTIMATE), tolerances=1.0,
         ),
         "ends": Rule(
             "ends of the contact, over its half-width",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import Profile, ends_are_found, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
@@ -55,6 +56,11 @@ class Body:
     def found(self) -> bool:
         """Are ends of the contact found? Every state has a half-width of its own then."""
         return ends_are_found(self.profile)
+
+    @property
+    def layered(self) -> bool:
+        """Has the half-plane layers?"""
+        return isinstance(self.solid, Layered)
 
     @cached_property
     def free(self) -> bool:

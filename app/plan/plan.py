@@ -8,6 +8,7 @@ import numpy as np
 from galinx.app.plan.fem import FemPlan, plan_fem
 from galinx.app.plan.limits import (
     check_found,
+    check_layers,
     check_mode,
     check_places,
     check_pressure,
@@ -58,6 +59,7 @@ def make_plan(scene: Scene) -> Plan:
     methods = _methods(scene, body)
     check_size(body, methods)
     check_found(scene, body, methods)
+    check_layers(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
@@ -74,7 +76,7 @@ def make_plan(scene: Scene) -> Plan:
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
-        strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
+        tolerance=scene.solve.tolerance, strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
         warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
@@ -136,7 +138,7 @@ def _skipped(
     skipped = [
         f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"
         for name, kind in METHODS.items()
-        if name not in methods
+        if name not in methods and (body.layered or not kind.of_layers)
     ]
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")

@@ -72,6 +72,7 @@ class Plan:
         methods: names of those that solve, none where only friction is asked for.
         quantities: read off their solutions, in the order of the table.
         tasks: one a speed.
+        tolerance: wanted relative accuracy.
         strokes: number of strokes along which friction laws are followed.
         integrated: seconds that laws without a formula take for that.
         fem: finite element work, None without.
@@ -84,6 +85,7 @@ class Plan:
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
     tasks: Tasks
+    tolerance: float
     strokes: int
     fem: FemPlan | None
     skipped: tuple[str, ...]

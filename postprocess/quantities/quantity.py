@@ -21,7 +21,7 @@ INNER, STROKE = "inner variables", "strokes"
 TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
 #: Methods, and what is known without solving: the local analysis of the punch's edges.
-CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
+CLOSED_FORM, SIE, FEM, LOCAL = "closed_form", "sie", "fem", "local"
 
 #: Where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"

@@ -61,13 +61,17 @@ def _extreme(method: str, end: str, of: Callable[[Any], NDArray], what: str) -> 
     )  # fmt: skip
 
 
+def extremes(method: str) -> tuple[Quantity, Quantity]:
+    """Highest and lowest in-plane stress by a method."""
+    return (
+        _extreme(method, "max", lambda values: values.max(axis=1), "highest"),
+        _extreme(method, "min", lambda values: values.min(axis=1), "lowest"),
+    )
+
+
 _METHODS = (CLOSED_FORM, FEM)
-HIGHEST = {
-    method: _extreme(method, "max", lambda values: values.max(axis=1), "highest") for method in _METHODS
-}
-LOWEST = {
-    method: _extreme(method, "min", lambda values: values.min(axis=1), "lowest") for method in _METHODS
-}
+HIGHEST = {method: extremes(method)[0] for method in _METHODS}
+LOWEST = {method: extremes(method)[1] for method in _METHODS}
 
 ESTIMATE_IN_PLANE = Quantity(
     "states/fem/estimate_sigma_XX", "1",

@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import eval_jacobi, roots_jacobi
+from scipy.special import eval_jacobi
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.kernel import Kernel
+from galinx.solvers.layers.pressure import Polynomial, Pressure, gauss
 from galinx.solvers.sie.collocation import Expansion
 
 #: Polynomials at first, by how much more next time, and at most.
@@ -27,13 +28,6 @@ _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
 #: Panels towards a place where a kernel is rough: their grading, number, and points.
 _GRADING, _STEPS = 0.25, 18
 _POINTS = 12
-
-
-def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Gauss's rule for the weight (1 - t)^α (1 + t)^β."""
-    with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
-        t, w = roots_jacobi(points, α, β)
-    return t, w
 
 
 @dataclass(frozen=True)
@@ -122,11 +116,11 @@ class Found:
     """A pressure, and by how much it changed with the number of polynomials.
 
     Attributes:
-        expansion: the pressure.
+        pressure: the pressure.
         change: of it and its intensities, relative.
     """
 
-    expansion: Expansion
+    pressure: Pressure
     change: float
 
 
@@ -142,7 +136,7 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
         now = equation.solved(terms)
         change = _change(before, now)
         if change <= tolerance / 4.0 or change <= 1e-14 * terms:
-            return Found(now, change)
+            return Found(Polynomial(now), change)
         if terms >= MOST:
             break
         before, terms = now, min(int(_MORE * terms), MOST)

@@ -11,7 +11,7 @@ from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
 from galinx.solvers.profiles import exponent
 from galinx.solvers.solution import Body
@@ -27,6 +27,20 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
         return ClosedForm(FoundPunches)
     return ClosedForm(with_given_ends)
+
+
+def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
+    from galinx.app.run.methods.layers import Layers
+
+    return Layers(plan.tolerance)
+
+
+def _layers_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if not body.layered:
+        return "the solid has no layers, and closed_form knows the solution"
+    if body.found:
+        return "of layered solids, punches with two sharp edges are known"
+    return "the pressure is given" if body.pressure else ""
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
@@ -56,6 +70,8 @@ _OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *va
 
 
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if body.layered:
+        return "the solid has layers, and no closed form"
     if body.found:
         return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
     if body.pressure:
@@ -81,6 +97,8 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if body.layered:
+        return "they are for uniform solids; layers are solved by the integral equation"
     if body.found and not isinstance(body.profile, LINEAR):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
@@ -98,6 +116,9 @@ METHODS: Registry[MethodKind] = Registry(
     "method",
     {
         CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal),
+        SIE: MethodKind(
+            "singular integral equation of layers", _layers, _layers_refusal, of_layers=True
+        ),
         FEM: MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
     },
 )

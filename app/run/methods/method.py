@@ -56,8 +56,10 @@ class MethodKind:
         made: makes it for a plan.
         refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
             None: why it gives none at all.
+        of_layers: is it for layered solids alone? Plans of others do not speak of it.
     """
 
     about: str
     made: Callable[[Plan, Progress, Clock], Method]
     refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+    of_layers: bool = False

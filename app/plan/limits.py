@@ -12,8 +12,8 @@ from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
-from galinx.meshes import MESHES, Wanted
 from galinx.app.scene.sense import FRICTIONS
+from galinx.meshes import MESHES, Wanted
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.solvers.solution import Body, Places
@@ -147,9 +147,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     if not body.layered:
         return
     known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE}
-    faults = [
-        f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known
-    ]
+    faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
     if scene.solve.mode != "contact":
         faults.append(f'solve.mode is "{scene.solve.mode}"')
     if body.found:
@@ -158,8 +156,8 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}")
     if faults:
         raise BadInput(
-            f"layer: found layers, and {'; '.join(faults)}. Of layered solids are known: punches with two "
-            'sharp edges, by methods = ["sie"], with the quantities friction, sif and surface'
+            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are punches with "
+            'two sharp edges, by methods = ["sie"], with the quantities friction, sif and surface'
         )
 
 

@@ -76,8 +76,8 @@ def make_plan(scene: Scene) -> Plan:
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, all_speeds, count),
-        tolerance=scene.solve.tolerance, strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
-        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
+        tolerance=scene.solve.tolerance, strokes=laws_followed(scene) * len(scene.legs), fem=fem,
+        skipped=skipped, warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
     return replace(plan, warnings=(*plan.warnings, *heavy))

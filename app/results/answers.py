@@ -51,9 +51,7 @@ def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
 def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
     f = data[states.FRICTION.path]
     yield Answer("Friction coefficient f, positive in forward motion", *_span(f, "", "{:+.4f}"))
-    intensities = [
-        data[row.path] for row in (*_either(data, _K_I_LEFT), *_either(data, _K_I_RIGHT))
-    ]
+    intensities = [data[row.path] for row in (*_either(data, _K_I_LEFT), *_either(data, _K_I_RIGHT))]
     if intensities and np.any(intensities):
         both = np.array(intensities)
         smallest, largest = both.min(axis=0), both.max(axis=0)
@@ -117,7 +115,10 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("Yield passed up to, from the edge X = −a", yielding.REACH_LEFT),
     ("Yield passed up to, from the edge X = a", yielding.REACH_RIGHT),
     ("Depth of the yielded zone", yielding.DEPTH),
-    ("Tension under the punch", {method: rows[0] for method, rows in (validity.TENSION | layers.TENSION).items()}),
+    (
+        "Tension under the punch",
+        {method: rows[0] for method, rows in (validity.TENSION | layers.TENSION).items()},
+    ),
     ("Wave crossings of the contact in a stroke", {CLOSED_FORM: validity.CROSSINGS}),
     ("Slip turned round up to, from X = −a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
     ("Slip turned round up to, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),

@@ -99,7 +99,9 @@ class LayerSections:
         if given == {}:
             return ()
         if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
-            faults.append(f"{name}: found {excerpt(given)}, expected tables [[{name}]], from the top down")
+            faults.append(
+                f"{name}: found {excerpt(given)}, expected tables [[{name}]], from the top down"
+            )
             return ()
         if len(given) > MOST:
             faults.append(f"{name}: found {len(given)} layers, expected at most {MOST}")
@@ -126,9 +128,7 @@ class LayerSections:
         if bottom is None:
             return []
         try:
-            return [
-                Layer(layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent)
-            ]
+            return [Layer(layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent)]
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []
@@ -138,7 +138,9 @@ class LayerSections:
             faults.append(f"{name}: properties tells {', '.join(others)}, too; take one of them away")
             return []
         if given.get("kind", "isotropic") != "isotropic":
-            faults.append(f"{name}.kind: found {excerpt(given['kind'])}, expected isotropic with properties")
+            faults.append(
+                f"{name}.kind: found {excerpt(given['kind'])}, expected isotropic with properties"
+            )
             return []
         try:
             rows = _KEYS["properties"].kind(given["properties"])
@@ -180,4 +182,3 @@ class _Read:
     ) -> None:
         self.thickness, self.solid, self.bottom = thickness, solid, bottom
         self.grading, self.exponent = grading, exponent
-

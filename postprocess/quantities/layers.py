@@ -19,7 +19,7 @@ K_I_RIGHT = {SIE: _intensity("right", "X = a", 1)}
 
 ESTIMATE = Quantity(
     "states/sie/estimate", "1",
-    "estimated relative error of K_I and pressure, by other numbers of polynomials and the kernel's error",
+    "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's error",
     (STATE,), lambda s, _: s.estimates, SIE, compared=("estimate of the integral equation",),
     range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip

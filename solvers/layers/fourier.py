@@ -97,13 +97,15 @@ def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
     return found
 
 
-def transform(f: Callable[[NDArray], NDArray], first: float, tolerance: float) -> Transform:
+def transform(
+    f: Callable[[NDArray], NDArray], first: float, tolerance: float, scale: float = 0.0
+) -> Transform:
     """Panels on which f is resolved.
 
     Args:
         f: of wavenumbers (n,), gives (n, functions).
         first: end of the first panel; the others double, until f is small.
-        tolerance: of the integrals over that of |f|.
+        tolerance: of the integrals over that of |f|, or over ``scale`` where that is larger.
 
     Raises:
         SolveError: f does not become small, or is not smooth.
@@ -120,7 +122,7 @@ def transform(f: Callable[[NDArray], NDArray], first: float, tolerance: float) -
         tails = 2.0 * halves * np.abs(c[:, -_LAST:]).max(axis=(1, 2))
         done += zip(middles.tolist(), halves.tolist(), c, tails.tolist())
         wholes = [2.0 * half * np.abs(one).max() for _, half, one, _ in done]
-        size = float(sum(wholes))
+        size = max(float(sum(wholes)), scale)
         rough = [tail > tolerance * size / 10.0 for *_, tail in done]
         last = edges[-1]
         end = sum(w for w, (middle, *_) in zip(wholes, done) if middle > last / 2.0)

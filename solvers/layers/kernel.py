@@ -8,7 +8,6 @@ the surface is graded it falls like A/k: that part, with (1 - e^(-bk))/k for 1/k
     (1/π) [Re A log(1 + b²/x²)/2 - Im A arctan(b/x)].
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -73,7 +72,8 @@ class Kernel:
     def transform(self) -> Transform:
         """The regular part's."""
         wanted = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
-        return transform(self._regular, wavenumbers(self.stack), wanted)
+        scale = float(np.abs(inverse(self.stack.top.down)).max())
+        return transform(self._regular, wavenumbers(self.stack), wanted, scale)
 
     @cached_property
     def table(self) -> Table:
@@ -97,5 +97,3 @@ class Kernel:
             log = 0.5 * np.log1p(ratio**2)
             found = found + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
         return found
-
-

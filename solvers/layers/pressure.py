@@ -1,4 +1,4 @@
-"""A contact pressure that was found, by what is read off it: values, transforms, integrals with kernels."""
+"""A contact pressure that was found, by what is read off it: values, transforms, integrals."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,8 +1,8 @@
 """Punches on layers with any number of frictions at one speed.
 
-The kernels know no friction, and what is read off a pressure, its weight aside, is an analytic function of
-g = σ_XY/σ_YY: beyond a few frictions the equation is solved at Chebyshev's points in g, and what is between
-them is interpolated.
+The kernels know no friction, and what is read off a pressure, its weight aside, is an analytic function
+of g = σ_XY/σ_YY: beyond a few frictions the equation is solved at Chebyshev's points in g, and what is
+between them is interpolated.
 """
 
 from collections.abc import Callable

@@ -45,9 +45,7 @@ class Table:
         return np.asarray(found.reshape(*x.shape, -1))
 
 
-def tabulated(
-    f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float
-) -> Table:
+def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:
     """A table of f over [-reach, reach].
 
     Args:
@@ -72,9 +70,7 @@ def tabulated(
         good = (tail <= tolerance) | (half <= finest / 1024.0)
         done += zip(*waiting[good].T.tolist(), c[good], tail[good].tolist())
         middle, rough = middle[~good, None], waiting[~good]
-        waiting = np.concatenate(
-            [np.hstack([rough[:, :1], middle]), np.hstack([middle, rough[:, 1:]])]
-        )
+        waiting = np.concatenate([np.hstack([rough[:, :1], middle]), np.hstack([middle, rough[:, 1:]])])
         if len(done) + len(waiting) > _MOST:
             raise SolveError("the kernel of the layers varies too much to be tabulated")
     done.sort(key=lambda one: one[0])

@@ -87,7 +87,7 @@ class AnisotropicFrame:
     @cached_property
     def T_inverse(self) -> NDArray[np.float64]:
         """T⁻¹, (2, 2)."""
-        return np.linalg.inv(self._matrices[2])
+        return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
 
     @cached_property
     def _Y(self) -> NDArray[Any]:

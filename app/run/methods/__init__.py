@@ -116,9 +116,7 @@ METHODS: Registry[MethodKind] = Registry(
     "method",
     {
         CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal),
-        SIE: MethodKind(
-            "singular integral equation of layers", _layers, _layers_refusal, of_layers=True
-        ),
+        SIE: MethodKind("singular integral equation of layers", _layers, _layers_refusal, of_layers=True),
         FEM: MethodKind("mesh and finite elements", _finite_elements, _finite_elements_refusal),
     },
 )

@@ -51,7 +51,7 @@ class AtSpeed:
     nodes: Frictions
     interpolated: NDArray[np.float64]
 
-    def states(self, g: NDArray) -> "Punches":
+    def states(self, g: NDArray) -> Any:
         return Punches(self, g)
 
     def record(self) -> dict[str, Any]:

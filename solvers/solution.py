@@ -22,11 +22,15 @@ class Places:
         X: positions on the surface, (n,).
         points: positions X, Y inside, (m, 2).
         around: where stresses are looked at for yield, (k, 2).
+        interfaces: depths of a layered solid's interfaces, (layers,).
+        along: positions X along each of them, (l,).
     """
 
     X: NDArray[np.float64]
     points: NDArray[np.float64]
     around: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
+    interfaces: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    along: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
     @cached_property
     def under(self) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS
 from galinx.meshes import MESHES, Wanted
-from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities import layers, stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.solvers.solution import Body, Places
 
@@ -146,7 +146,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     """
     if not body.layered:
         return
-    known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE}
+    known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
     faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
     if scene.solve.mode != "contact":
         faults.append(f'solve.mode is "{scene.solve.mode}"')
@@ -157,7 +157,8 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     if faults:
         raise BadInput(
             f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are punches with "
-            'two sharp edges, by methods = ["sie"], with the quantities friction, sif and surface'
+            'two sharp edges, by methods = ["sie"], with the quantities friction, sif, surface, '
+            "interior and interfaces"
         )
 
 

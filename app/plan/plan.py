@@ -34,6 +34,7 @@ from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.yielding.strength import places as yield_places
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
 
@@ -58,10 +59,11 @@ def make_plan(scene: Scene) -> Plan:
     body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
     check_size(body, methods)
-    check_found(scene, body, methods)
     check_layers(scene, body, methods)
+    check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
-    places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
+    points = np.reshape(scene.output.inside, (-1, 2))
+    places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, all_speeds, "fem" in methods)]
     fem = None
     if "fem" in methods:
@@ -161,3 +163,13 @@ def surface_grid() -> np.ndarray:
     outside = 1.0 + np.concatenate([near, np.geomspace(0.1, 4.0, 25)[1:]])
     right = np.concatenate([inside, outside])
     return np.unique(np.concatenate([-right, right]))
+
+
+def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Depths of interfaces over a, and positions along them: as fine at the edges as these are near."""
+    if not isinstance(body.solid, Layered):
+        return np.empty(0), np.empty(0)
+    depths = body.solid.depths / body.half_width
+    near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
+    X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0])
+    return depths, np.unique(np.round(X, 9))

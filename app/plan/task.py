@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.fem import FemPlan
 from galinx.postprocess.compare import FINITE, RULES
-from galinx.postprocess.quantities import Quantity, stresses
-from galinx.postprocess.quantities.quantity import INSIDE, POINT
+from galinx.postprocess.quantities import Quantity, layers, stresses
+from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places
 
@@ -112,6 +112,9 @@ class Plan:
         if self.asks(stresses.BELOW):
             X, Y = self.places.points.T
             found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+        if self.asks(layers.AT_INTERFACES):
+            found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            found[layers.ALONG_X.path] = self.places.along
         return found
 
     @property
@@ -126,7 +129,10 @@ class Plan:
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a state's entry."""
-        sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}
+        sizes = {
+            POINT: len(self.places.X), INSIDE: len(self.places.points),
+            INTERFACE: len(self.places.interfaces), ALONG: len(self.places.along),
+        }  # fmt: skip
         return tuple(sizes[dimension] for dimension in quantity.over[1:])
 
     @cached_property

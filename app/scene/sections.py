@@ -157,7 +157,8 @@ _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
-        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]",
+        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
+        "`interfaces`: where layers meet",
     ),
     "points": Key(
         Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'

@@ -14,6 +14,8 @@ from galinx.texts import unseen
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
+#: Of layered solids.
+INTERFACE, ALONG = "interfaces", "points along interfaces"
 #: What a law remembers, and strokes.
 INNER, STROKE = "inner variables", "strokes"
 

@@ -85,10 +85,3 @@ class Medium:
         return np.asarray(
             ((one + two) / 2.0)[:, None, None] * np.eye(2) + 1j * change[:, None, None] * beyond
         )
-
-    def strain_and_stress(self, u: NDArray, t: NDArray) -> NDArray[Any]:
-        """σ_XX, σ_YY, σ_XY over k, (3, ...), where i u and t/k are known, each (2, ...)."""
-        u_X, σ_XY, σ_YY = 1j * u[0], t[0], t[1]
-        M = self.modulus
-        σ_XX = M * self.response.σ_XX(u_X, σ_YY / M, σ_XY / M)
-        return np.array([σ_XX, σ_YY, σ_XY])

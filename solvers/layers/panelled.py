@@ -195,7 +195,7 @@ class PanelledPressure:
         return found
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = Panels(self.α, self.β, min(2.0 * finest, self.panels.finest))
+        fine = Panels(self.α, self.β, min(finest, self.panels.finest))
         return fine.t, fine.weights * self.panels.values(self.p, fine.x)
 
 

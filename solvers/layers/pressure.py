@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
+from galinx.solvers.layers.panelled import Panels
 from galinx.solvers.sie.collocation import Expansion
 
 #: |r| up to which polynomials have not grown, and points of the rule beyond it.
@@ -88,33 +89,5 @@ class Polynomial:
         return np.asarray(np.einsum("rtf,t->rf", kernel(r[:, None] - t), w * p))
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        t, w = fine_rule(self.α, self.β, finest)
-        return t, w * self.series(t)
-
-
-#: Places x = log((1 + t)/(1 - t)) beyond which all is as at the end; longest panel in x, in t over the
-#: length that is to be resolved; points of a panel.
-_REACH, _LONGEST, _SHARE, _POINTS = 36.0, 2.5, 2.0, 16
-
-
-def fine_rule(α: float, β: float, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """A rule for the weight times what is smooth in log((1 + t)/(1 - t)) and varies over ``finest``."""
-    edges = [0.0]
-    while edges[-1] < _REACH:
-        x = edges[-1]
-        slope = 0.5 / np.cosh(x / 2.0) ** 2
-        edges.append(x + min(_LONGEST, _SHARE * finest / slope, max(_REACH - x, 0.1)))
-    ends = np.concatenate([-np.array(edges[:0:-1]), edges])
-    τ, w = np.polynomial.legendre.leggauss(_POINTS)
-    half = np.diff(ends) / 2.0
-    x = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * τ).ravel()
-    return np.tanh(x / 2.0), (half[:, None] * w).ravel() * weight(x, α, β)
-
-
-def weight(x: NDArray, α: float, β: float) -> NDArray[np.float64]:
-    """(1 - t)^α (1 + t)^β dt/dx."""
-    # 1 ∓ t = 2/(1 + e^(±x)) and dt/dx is half the product of both.
-    log = (1.0 + α) * (np.log(2.0) - np.logaddexp(0.0, x)) + (1.0 + β) * (
-        np.log(2.0) - np.logaddexp(0.0, -x)
-    )
-    return np.asarray(np.exp(log) / 2.0)
+        fine = Panels(self.α, self.β, min(finest, 0.7))
+        return fine.t, fine.weights * self.series(fine.t)

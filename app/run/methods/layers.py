@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.method import Solver
+from galinx.solvers.layers.inside import Level
+from galinx.solvers.layers.medium import Medium
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import weights_hilbert
-from galinx.solvers.solution import Surface
+from galinx.solvers.solution import Places, Surface
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,34 @@ class AtSpeed:
         """What is regular of their Hilbert transforms, (nodes, n)."""
         return self.nodes.read(lambda pressure: pressure.rest(self.task.places.X))
 
+    def level(self, depth: float, X: NDArray) -> tuple[Level, NDArray[np.float64]]:
+        """A depth, and u,X, σ_YY and σ_XY there, (nodes, 3, n)."""
+        reach = 1.0 + float(np.abs(X).max())
+        here = Level(self.speed.stack, depth, reach, self.speed.tolerance)
+        rules = [one.pressure.points(depth) for one in self.nodes.each]
+        return here, np.array([here.read(*rule, g, X) for rule, g in zip(rules, self.nodes.g.tolist())])
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, nodes, interfaces, n)."""
+        places, found = self.task.places, []
+        for depth in places.interfaces.tolist():
+            level, (u_X, σ_YY, σ_XY) = _split(self.level(depth, places.along))
+            both = [_in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
+            found.append([σ_YY, σ_XY, *both])
+        return np.moveaxis(np.array(found), 0, 2)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, nodes, m); those at an interface are above it."""
+        points = self.task.places.points
+        found = np.empty((3, len(self.nodes.g), len(points)))
+        for Y in np.unique(points[:, 1]).tolist():
+            some = points[:, 1] == Y
+            level, (u_X, σ_YY, σ_XY) = _split(self.level(-Y, points[some, 0]))
+            found[:, :, some] = _in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+        return found
+
     @cached_property
     def regular(self) -> NDArray[np.float64]:
         """Strains μ u,X that the layers add, (nodes, n)."""
@@ -118,6 +148,32 @@ class Punches:
         """Relative errors, (states,)."""
         return np.full(len(self.g), self.at.estimate)
 
+    @property
+    def places(self) -> Places:
+        """Where stresses are."""
+        return self.at.task.places
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return np.einsum("sg,cgin->csin", self._by_nodes, self.at.interfaces)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return np.einsum("sg,cgm->csm", self._by_nodes, self.at.inside)
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane there, (states, m)."""
+        body, points = self.at.task.body, self.places.points
+        found = np.empty(self.inside.shape[1:])
+        for Y in np.unique(points[:, 1]).tolist():
+            some = points[:, 1] == Y
+            solid = body.solid.at(-Y * body.half_width)  # type: ignore[attr-defined]
+            found[:, some] = solid.σ_ZZ(*self.inside[:, :, some])
+        return found
+
     @cached_property
     def surface(self) -> Surface:
         at, places, response = self.at, self.at.task.places, self.at.task.response
@@ -131,3 +187,13 @@ class Punches:
         u_X = response.q * σ + (response.n12 + response.m * g) * H + self._by_nodes @ at.regular
         σ_YY = np.where(places.under, σ, np.nan)
         return Surface(places, σ_YY, response.σ_XX(u_X, σ, g * σ))
+
+
+def _split(read: tuple[Level, NDArray]) -> tuple[Level, NDArray]:
+    return read[0], np.moveaxis(read[1], 1, 0)
+
+
+def _in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
+    M = medium.modulus
+    return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))

@@ -143,18 +143,17 @@ def test_layers_with_a_fault_are_told_once(layers, told):
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("old", "new", "told"),
     [
-        ({"methods": ("closed_form",)}, 'solve.methods is ["closed_form"]'),
-        ({"quantities": ("sif", "interior")}, 'output.quantities has "interior"'),
+        ('["sie"]', '["closed_form"]', 'solve.methods is ["closed_form"]'),
+        ('methods = ["sie"]', 'mode = "traction"', 'solve.mode is "traction"'),
+        ("[friction]", '[punch]\nprofile = "parabolic"\nradius = 1.0\n[friction]', "ends are found"),
     ],
 )
-def test_what_layers_do_not_have_is_refused_in_one_message(options, told):
+def test_what_layers_do_not_have_is_refused_in_one_message(old, new, told):
     text = SCENE.format(
-        layers=COAT, mu=0.4, tolerance=1e-6, methods=json.dumps(options.get("methods", ["sie"])),
-        quantities=json.dumps(options.get("quantities", ["sif"])),
-    )  # fmt: skip
-    text += "points = [[0.0, -0.5]]\n" if "interior" in text else ""
+        layers=COAT, mu=0.4, tolerance=1e-6, methods='["sie"]', quantities='["sif"]'
+    ).replace(old, new)
     with pytest.raises(BadInput) as error:
         make_plan(parse(text))
     assert told in str(error.value) and str(error.value).startswith("layer: ")
@@ -182,3 +181,37 @@ def test_schema_knows_layers():
             layers=layers, mu=0.4, tolerance=1e-6, methods='["sie"]', quantities='["sif"]'
         )
         assert validator.is_valid(tomllib.loads(text)) == fits
+
+
+def test_interfaces_and_inside():
+    """Tractions are continuous, in-plane stress is not, and points at the interface lie above it."""
+    text = SCENE.format(
+        layers=COAT, mu=0.4, tolerance=1e-7, methods='["sie"]', quantities='["interfaces", "interior"]'
+    )
+    data = galinx.compute(parse(text + "points = [[0.5, -1.0], [0.5, -1.0001], [-1.2, -0.4]]\n")).data
+    X = data["interfaces/X_over_a"]
+    assert data["interfaces/depth_over_a"] == pytest.approx([1.0])
+    at = np.argmin(np.abs(X - 0.5))
+    assert X[at] == 0.5
+    for name, other in (
+        ("sigma_YY", "sigma_YY"),
+        ("sigma_XY", "sigma_XY"),
+        ("sigma_XX", "sigma_XX_above"),
+    ):
+        there = data[f"interior/sie/{name}"][0, :2]
+        assert there[0] == pytest.approx(data[f"interfaces/sie/{other}"][0, 0, at], abs=1e-8)
+    below = data["interior/sie/sigma_XX"][0, 1]
+    assert below == pytest.approx(data["interfaces/sie/sigma_XX_below"][0, 0, at], abs=1e-3)
+    shear = data["interfaces/sie/sigma_XY"][0, 0]
+    assert data["interfaces/sie/sigma_XY_max"][0, 0] == pytest.approx(shear.max(), rel=1e-3)
+    assert data["interfaces/sie/sigma_XY_max"][0, 0] >= shear.max()
+    place = data["interfaces/sie/sigma_XY_max_X_over_a"][0, 0]
+    assert abs(place - X[shear.argmax()]) <= 0.1
+    # Tractions along the interface carry the load but for what lies beyond the positions.
+    far = np.abs(np.trapz(data["interfaces/sie/sigma_YY"][0, 0], X) + 2.0)
+    assert far <= 0.05
+
+
+def test_interfaces_without_layers_are_refused():
+    with pytest.raises(BadInput, match="expected \\[\\[layer\\]\\]"):
+        scene(layers="", quantities=("interfaces",))

@@ -5,10 +5,10 @@ import os
 import mpmath as mp
 import numpy as np
 import pytest
+from layers_cases import COAT, SUBSTRATE, equation, flat
 from layers_reference import plane_strain, punch
 
-from galinx.solvers.layers.contact import Equation, found
-from galinx.solvers.layers.kernel import Kernel
+from galinx.solvers.layers.contact import found
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.panelled import solved as panelled
 from galinx.solvers.layers.states import Speed
@@ -16,7 +16,6 @@ from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import solve
 from galinx.solvers.solids.isotropic import Isotropic
 
-COAT, SUBSTRATE = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
 #: reference.
@@ -25,15 +24,6 @@ EXAMPLE = {
     1e-6: (-0.46377887035456, 0.44527894507991, 0.42102580318078, -0.19463531965638),
 }
 ENDS, MIDDLE = np.array([-1.0, 1.0]), np.zeros(1)
-
-
-def flat(r):
-    return np.zeros_like(r)
-
-
-def equation(solid, V2, g, slope=flat, tolerance=1e-13):
-    response = solid.response(V2**0.5 / solid.c_s)
-    return Equation(response, Kernel(response.stack(1.0), tolerance), g, slope)
 
 
 def read(pressure):

@@ -5,6 +5,7 @@ import os
 import mpmath as mp
 import numpy as np
 import pytest
+from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance, graded_admittance
 from random_solids import orthotropic
 
@@ -15,16 +16,7 @@ from galinx.solvers.layers.medium import inverse
 from galinx.solvers.layers.speed import weakest
 from galinx.solvers.solids.isotropic import Isotropic
 
-COAT, SUBSTRATE = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
-
-
-def constants(solid):
-    """c11, c12, c16, c22, c26, c66 of any solid, by Hooke's law."""
-    response = solid.response(0.0)
-    columns = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 0.0]]]
-    C = solid.μ * np.array([response.stresses(np.array(one)) for one in columns])
-    return [mp.mpf(float(C[i])) for i in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))]
 
 
 def random_stack(seed, graded=False):

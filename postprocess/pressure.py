@@ -18,7 +18,7 @@ from scipy.special import gammaln
 
 from galinx.solvers.contact import under_punch
 
-#: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
+#: Moments used unless more are asked for. The pressure under a flat punch has one; further ones carry what the mesh, the
 #: truncation or another profile adds, and the highest say how well they are resolved.
 MOMENTS = 9
 
@@ -29,7 +29,7 @@ class JacobiPressure:
 
     Attributes:
         α, β: exponents at X = a and X = -a, (states,).
-        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, ``MOMENTS``).
+        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, moments).
     """
 
     α: NDArray[np.float64]
@@ -43,13 +43,13 @@ class JacobiPressure:
         left, right = np.log1p(r[inside]), np.log1p(-r[inside])
         result = np.full((len(self.c), len(r)), np.nan)
         weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
-        result[:, inside] = weight * (self.c @ chebyshev(r[inside]).T)
+        result[:, inside] = weight * (self.c @ chebyshev(r[inside], self.c.shape[1]).T)
         return result
 
     @property
     def K_I(self) -> NDArray[np.float64]:
         """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57: (states, 2)."""
-        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0])).T
+        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0]), self.c.shape[1]).T
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
@@ -69,29 +69,30 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     return found
 
 
-def chebyshev(r: NDArray) -> NDArray[np.float64]:
-    """T_0 … T_8 at r in [-1, 1]: (len(r), ``MOMENTS``)."""
-    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), MOMENTS - 1)
+def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
+    """T_0, T_1, … at r in [-1, 1]: (len(r), count)."""
+    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
     """Pressure that has the given moments.
 
     Args:
-        moments: ∫ σ_YY T_k dr of each state, (states, ``MOMENTS``).
+        moments: ∫ σ_YY T_k dr of each state, (states, moments).
         α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
     """
-    P = jacobi_in_chebyshev(α, β)
-    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β)
+    count = moments.shape[1]
+    P = jacobi_in_chebyshev(α, β, count)
+    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β, count)
     return JacobiPressure(α, β, np.einsum("sn,snk->sk", b, P))
 
 
-def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+def jacobi_in_chebyshev(α: NDArray, β: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
     """Chebyshev coefficients of P_n^(α,β), α + β = -1, by the three-term recurrence: (states, n, k)."""
-    P = np.zeros((len(α), MOMENTS, MOMENTS))
+    P = np.zeros((len(α), count, count))
     P[:, 0, 0] = 1.0
     P[:, 1, 0], P[:, 1, 1] = α + 0.5, 0.5
-    for n in range(1, MOMENTS - 1):
+    for n in range(1, count - 1):
         last = P[:, n]
         times_r = np.zeros_like(last)  # r T_k = (T_{k+1} + T_{|k-1|})/2
         times_r[:, 1:] += last[:, :-1] / 2.0
@@ -103,12 +104,12 @@ def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
     return P
 
 
-def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+def jacobi_norms(α: NDArray, β: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
     """∫ (1-r)^α (1+r)^β P_n² dr for α + β = -1, (states, n).
 
     Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
     """
-    n = np.arange(1, MOMENTS)
+    n = np.arange(1, count)
     a, b = α[:, None], β[:, None]
     logs = gammaln(n + a + 1.0) + gammaln(n + b + 1.0) - gammaln(n + 1.0) - gammaln(n)
     return np.concatenate([np.pi / np.sin(np.pi * (1.0 + a)), np.exp(logs) / (2.0 * n)], axis=1)
@@ -119,7 +120,7 @@ class ContactRecovery:
     """Linear maps from nodal forces to what is read off them; they depend on the mesh alone.
 
     Attributes:
-        moments: to ∫ σ_YY T_k dr, (nodes, ``MOMENTS``).
+        moments: to ∫ σ_YY T_k dr, (nodes, moments).
         raw: to the raw pressure at the given positions, NaN outside the contact, (nodes, points).
         edges: at X = a and X = -a: distances over a, (q,), and the map to the raw pressure there.
     """
@@ -147,7 +148,12 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
 
 
 def contact_recovery(
-    s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3
+    s: NDArray,
+    degree: int,
+    chart: Any,
+    r: NDArray,
+    farthest: float = 1e-3,
+    moments: int = MOMENTS,
 ) -> ContactRecovery:
     """Maps for the contact nodes of a mesh.
 
@@ -163,6 +169,7 @@ def contact_recovery(
         farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
             two at least: the innermost cannot follow the singularity and disturb their neighbours,
             and beyond this distance the pressure's second term biases the exponent.
+        moments: that the pressure is read off.
     """
     facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
     density = _density_of_forces(s, facets, degree)  # symmetric
@@ -188,7 +195,7 @@ def contact_recovery(
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
         used = slice(min(last // 2, last - 2), last)
         edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
-    return ContactRecovery(chebyshev(chart.surface_position(s)), raw, tuple(edges))
+    return ContactRecovery(chebyshev(chart.surface_position(s), moments), raw, tuple(edges))
 
 
 def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:

@@ -91,8 +91,11 @@ def kernel(form: Any) -> Any:
 
     def call(K: NDArray, values: NDArray, corners: NDArray) -> None:
         matrix, constant, vertex = (_ffi.cast("double *", x.ctypes.data) for x in (K, values, corners))
+        own = values.shape[1] if values.ndim > 1 else 0  # constants of each cell
         for cell in range(len(K)):
-            function(matrix + cell * K[0].size, null, constant, vertex + 12 * cell, *unused)
+            function(
+                matrix + cell * K[0].size, null, constant + own * cell, vertex + 12 * cell, *unused
+            )  # fmt: skip
 
     return call
 

@@ -22,7 +22,8 @@ class CellMatrices:
     """The compiled kernel of a bilinear form, ready to be called cell by cell.
 
     Attributes:
-        kernel: adds cells' matrices, from constants and vertices, to its first argument.
+        kernel: adds cells' matrices, from constants, of all or a row a cell, and vertices, to its first
+            argument.
         nodes: nodes of a cell, two unknowns each.
         inner: which of them lie inside it.
         pressures: unknowns of a discontinuous pressure, which follow those of the nodes; 0 or at least 2.

@@ -22,7 +22,7 @@ from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,12 @@ class SlidingPunch:
         self._far = [_product(A, _ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
         shaped = [_forces_of_profile(A, space, height) for height in shapes]
+        #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
+        self._moved = 0
+        if isinstance(response, ByCells):
+            moved = response.far(*space.coordinates[space.far_nodes].T)
+            shaped += [_forces_of_far(A, space, one) for one in moved]
+            self._moved = len(moved)
         b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
@@ -99,10 +105,19 @@ class SlidingPunch:
             flat: of a flat punch, whatever the profile is.
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
-        level, *shaped = self.parts(g, 0 if flat else None)
+        parts = self.parts(g, 0 if flat and not self._moved else None)
+        profile, far = parts[1 : len(parts) - self._moved], parts[len(parts) - self._moved :]
+        shaped = [*([] if flat else profile), *far]
+        # The line load's normal force is the load, its tangential force g times that.
+        amplitudes = [np.ones_like(g) for _ in shaped]
+        if far:
+            amplitudes[-1] = g
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        v0 = (-2.0 - sum(part.normal.sum(axis=1) for part in shaped)) / level.normal.sum(axis=1)
-        return combined(g, [level, *shaped], np.column_stack([v0, *(np.ones_like(v0) for _ in shaped)]))
+        carried = sum(share * part.normal.sum(axis=1) for share, part in zip(amplitudes, shaped))
+        v0 = (-2.0 - carried) / parts[0].normal.sum(axis=1)
+        if flat and profile:  # fields of the profile take no part
+            shaped, amplitudes = parts[1:], [*(np.zeros_like(g) for _ in profile), *amplitudes]
+        return combined(g, [parts[0], *shaped], np.column_stack([v0, *amplitudes]))
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
         """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
@@ -286,6 +301,20 @@ def _forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) 
     """Forces of a contact held at the profile's height, which stands where it is held."""
     held = A.createVecRight()
     held.setValues(space.contact.dofs(1), height[space.contact.owned])
+    held.assemble()
+    b = _product(A, held)
+    b.scale(-1.0)
+    _set_zero(b, space.held_dofs)
+    b.axpy(1.0, held)
+    held.destroy()
+    return b
+
+
+def _forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64]) -> PETSc.Vec:
+    """Forces of a far boundary that moves, (2, nodes), which stands where it is held."""
+    held, blocks = A.createVecRight(), space.numbers[space.far_nodes]
+    for i in (0, 1):
+        held.setValues(2 * blocks + i, displacement[i])
     held.assemble()
     b = _product(A, held)
     b.scale(-1.0)

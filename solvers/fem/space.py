@@ -21,7 +21,7 @@ from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
 from galinx.solvers.fem.forms import FORMS, gradient
 from galinx.solvers.fem.matrix import empty_matrix
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 
 @dataclass(frozen=True)
@@ -132,9 +132,14 @@ class Space:
         return modes
 
     @cached_property
+    def far_nodes(self) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on the far boundary."""
+        return self._owned_blocks("far")
+
+    @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
-        blocks = self.numbers[self._owned_blocks("far")]
+        blocks = self.numbers[self.far_nodes]
         return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
 
     @cached_property
@@ -293,6 +298,11 @@ class Space:
             return S[cells], E[cells]
         form, constants = self._compiled
         p = self.contracted(response).p
+        if isinstance(response, ByCells):
+            corners = self.vertices[cells]
+            of_cells = response.constants(corners[..., 1], self.form.constants)
+            rows = np.column_stack([np.tile([p.real, p.imag], (len(corners), 1)), of_cells])
+            return self.kernel.condense(rows, corners)
         values = [p.real, p.imag, *(getattr(response, name) for name in self.form.constants)]
         for constant, value in zip(constants, values):
             constant.value = value

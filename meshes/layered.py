@@ -1,8 +1,8 @@
 """Meshes whose lines follow the interfaces of layers: straight cells in the physical half-plane.
 
-Columns grow outwards from both edges of the punch, rows with depth, and an interface is always between two
-rows. Only inside a square around each edge, of at most half the uppermost layer's thickness, L-shaped rings
-go on towards it: their lines do not run through the whole mesh.
+Columns grow outwards from both edges of the punch, rows with depth, and an interface is always between
+two rows. Only inside a square around each edge, of at most half the uppermost layer's thickness, L-shaped
+rings go on towards it: their lines do not run through the whole mesh.
 """
 
 from collections.abc import Sequence
@@ -14,17 +14,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.kind import MeshKind, Wanted
+from galinx.meshes.kind import DEGREES, MeshKind, Wanted
 from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
 _GROWTH = 2.5
 #: Size of a ring over that of the one outside it.
 _RATIO = 0.25
+#: Power of it where stresses are wanted, whose derivatives ask for more.
+_GENTLER = 0.6
+#: Moments of the pressure by the logarithm of the tolerance.
+_MOMENTS = 1.1
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
+#: Relative error of K_I by that boundary over such a length over its squared distance, measured.
+_MOVED = 6.0
 #: Distance of the far boundary over the root of a length of the layers over the tolerance; at least.
-_FAR, _NEAREST_FAR = 4.0, 300.0
+_FAR, _NEAREST_FAR = 10.0, 300.0
 
 
 @dataclass(frozen=True)
@@ -47,9 +53,21 @@ class OnLayers(MeshKind):
         return self.radius(wanted)
 
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Relative error of K_I by the far boundary, which moves as under a line load: of second order."""
+        """Relative error of K_I by the far boundary, which moves as under a line load: second order."""
         length = max(1.0, self.depths[-1])
-        return length / self.radius(wanted) ** 2 / margin
+        return _MOVED * length / self.radius(wanted) ** 2 / margin ** (1.0 / 3.0)
+
+    @property
+    def length(self) -> float:
+        """Over which the pressure changes next to the edges: their mirror image in the interface."""
+        return 2.0 * self.depths[0]
+
+    def moments(self, wanted: Wanted) -> int:
+        """Of the pressure, that tell it to the tolerance; measured."""
+        digits = log(30.0 / wanted.tolerance)
+        # Over a thick layer the stretched variable is the position, and the image is farther away.
+        far = 0.7 * self.length
+        return ceil(min(_MOMENTS, 1.0 / log(far + (1.0 + far**2) ** 0.5)) * digits) + 1
 
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
@@ -58,33 +76,39 @@ class OnLayers(MeshKind):
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         return 0.3 * self.innermost_size(wanted) / margin**0.4
 
+    def degree(self, wanted: Wanted, margin: float) -> int:
+        """One less than usual for K_I alone: the measured error asks for more where it is needed."""
+        return max(super().degree(wanted, margin) - (wanted.nearest is None), DEGREES[0] + 1)
+
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
-        b = min(_SHARE * self.depths[0], _SQUARE)
-        R = self.radius(wanted)
-        inner = 1.0 - np.append(_outwards(b, 1.0), [])[::-1]
-        outer = 1.0 + _outwards(b, R)
-        right = np.concatenate([inner, [1.0], outer])
+        b, R = min(_SHARE * self.depths[0], _SQUARE), self.radius(wanted)
+        legs = 2 if wanted.nearest is not None else 1
+        ratio = _RATIO**_GENTLER if wanted.nearest is not None else _RATIO
+        in_square = b * np.arange(1, legs) / legs
+        near = np.concatenate([in_square, _outwards(b, R)])
+        inner = np.concatenate([in_square, _outwards(b, 1.0)])
+        right = np.concatenate([1.0 - inner, [1.0], 1.0 + near])
         X = np.unique(np.concatenate([-right, right]))
         fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
-        Y = [0.0]
-        for low, high in pairwise(fixed):
-            Y += list(_between(low, high))
-        rows = -np.array([*Y, R])
-        quads: list[NDArray] = []
-        for x0, x1 in pairwise(X.tolist()):
-            for y1, y0 in pairwise(rows.tolist()):
-                edge = next((e for e in (-1.0, 1.0) if e in (x0, x1)), 0.0)
-                if y1 == 0.0 and edge:
-                    far = x1 if x0 == edge else x0
-                    quads.append(_rings(edge, far - edge, b, self.innermost_size(wanted)))
-                else:
-                    quads.append(np.array([[(x0, y0), (x1, y0), (x1, y1), (x0, y1)]]))
-        return _tagged(np.concatenate(quads), R)
+        below = np.concatenate([_between(low, high) for low, high in pairwise(fixed)])
+        rows = -np.concatenate([[0.0], in_square, below, [R]])
+        cells = [
+            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+            for x0, x1 in pairwise(X.tolist())
+            for y1, y0 in pairwise(rows.tolist())
+            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > b
+        ]
+        squares = [
+            _rings(edge, side * b, legs, ratio, self.innermost_size(wanted))
+            for edge in (-1.0, 1.0)
+            for side in (-1.0, 1.0)
+        ]
+        return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
 
 def _outwards(first: float, last: float) -> NDArray[np.float64]:
-    """Distances from an edge, from the first to the last, none more than so much farther than the next."""
+    """Distances from an edge, from the first to the last, which grow by a factor."""
     return np.append(_between(first, last), last)
 
 
@@ -94,26 +118,34 @@ def _between(low: float, high: float) -> NDArray[np.float64]:
     return low * (high / low) ** (np.arange(count) / max(count, 1))
 
 
-def _rings(edge: float, towards: float, b: float, innermost: float) -> NDArray[np.float64]:
-    """L-shaped rings in a square beside an edge, and the square that is left, (cells, 4, 2).
+def _rings(edge: float, towards: float, legs: int, ratio: float, innermost: float) -> NDArray[np.float64]:
+    """L-shaped rings in a square beside an edge, and what fills the square that is left, (cells, 4, 2).
 
     Args:
         edge: X of the edge.
-        towards: ±b: on which side.
-        b: size of the square.
-        innermost: size of the last one.
+        towards: ±b, on which side, with b the size of the square.
+        legs: cells along each leg of an L.
+        ratio: of the sizes of rings.
+        innermost: size of the last square.
     """
-    count = max(ceil(log(b / innermost) / -log(_RATIO)), 1)
-    sizes = b * _RATIO ** np.arange(count + 1)
-    sign = np.sign(towards)
-    cells = []
-    for far, near in pairwise(sizes.tolist()):
-        cells.append([(near, 0.0), (far, 0.0), (far, -far), (near, -near)])
-        cells.append([(near, -near), (far, -far), (0.0, -far), (0.0, -near)])
+    b = abs(towards)
+    count = max(ceil(log(b / innermost) / -log(ratio)), 1)
+    sizes = b * ratio ** np.arange(count + 1)
+    t = np.arange(legs + 1) / legs
+    # Along the L from the surface down, and back to below the edge.
+    leg = np.concatenate([np.column_stack([np.ones(legs + 1), -t]),
+                          np.column_stack([1.0 - t, -np.ones(legs + 1)])[1:]])  # fmt: skip
+    cells = [
+        [near * leg[i], far * leg[i], far * leg[i + 1], near * leg[i + 1]]
+        for far, near in pairwise(sizes.tolist())
+        for i in range(2 * legs)
+    ]
     last = float(sizes[-1])
-    cells.append([(0.0, 0.0), (last, 0.0), (last, -last), (0.0, -last)])
-    found = np.array(cells) * [sign, 1.0] + [edge, 0.0]
-    return found[:, ::-1] if sign > 0.0 else found
+    for x0, x1 in pairwise(last * t):
+        cells += [[(x0, -y0), (x1, -y0), (x1, -y1), (x0, -y1)] for y0, y1 in pairwise(last * t)]
+    # Clockwise as they are.
+    found = np.array(cells) * [np.sign(towards), 1.0] + [edge, 0.0]
+    return found[:, ::-1] if towards > 0.0 else found
 
 
 def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:

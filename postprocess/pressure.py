@@ -8,6 +8,7 @@ fitted from the raw pressure, which uses none.
 All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from scipy.special import gammaln
 
 from galinx.solvers.contact import under_punch
 
-#: Moments used unless more are asked for. The pressure under a flat punch has one; further ones carry what the mesh, the
+#: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
 #: truncation or another profile adds, and the highest say how well they are resolved.
 MOMENTS = 9
 
@@ -29,12 +30,16 @@ class JacobiPressure:
 
     Attributes:
         α, β: exponents at X = a and X = -a, (states,).
-        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, moments).
+        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, ``MOMENTS``).
     """
 
     α: NDArray[np.float64]
     β: NDArray[np.float64]
     c: NDArray[np.float64]
+
+    def factor(self, r: NDArray) -> NDArray[np.float64]:
+        """Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
+        return np.asarray(self.c @ chebyshev(r).T)
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
@@ -43,13 +48,13 @@ class JacobiPressure:
         left, right = np.log1p(r[inside]), np.log1p(-r[inside])
         result = np.full((len(self.c), len(r)), np.nan)
         weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
-        result[:, inside] = weight * (self.c @ chebyshev(r[inside], self.c.shape[1]).T)
+        result[:, inside] = weight * (self.c @ chebyshev(r[inside]).T)
         return result
 
     @property
     def K_I(self) -> NDArray[np.float64]:
         """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57: (states, 2)."""
-        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0]), self.c.shape[1]).T
+        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0])).T
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
@@ -78,21 +83,20 @@ def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
     """Pressure that has the given moments.
 
     Args:
-        moments: ∫ σ_YY T_k dr of each state, (states, moments).
+        moments: ∫ σ_YY T_k dr of each state, (states, ``MOMENTS``).
         α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
     """
-    count = moments.shape[1]
-    P = jacobi_in_chebyshev(α, β, count)
-    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β, count)
+    P = jacobi_in_chebyshev(α, β)
+    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β)
     return JacobiPressure(α, β, np.einsum("sn,snk->sk", b, P))
 
 
-def jacobi_in_chebyshev(α: NDArray, β: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
+def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
     """Chebyshev coefficients of P_n^(α,β), α + β = -1, by the three-term recurrence: (states, n, k)."""
-    P = np.zeros((len(α), count, count))
+    P = np.zeros((len(α), MOMENTS, MOMENTS))
     P[:, 0, 0] = 1.0
     P[:, 1, 0], P[:, 1, 1] = α + 0.5, 0.5
-    for n in range(1, count - 1):
+    for n in range(1, MOMENTS - 1):
         last = P[:, n]
         times_r = np.zeros_like(last)  # r T_k = (T_{k+1} + T_{|k-1|})/2
         times_r[:, 1:] += last[:, :-1] / 2.0
@@ -104,12 +108,12 @@ def jacobi_in_chebyshev(α: NDArray, β: NDArray, count: int = MOMENTS) -> NDArr
     return P
 
 
-def jacobi_norms(α: NDArray, β: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
+def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
     """∫ (1-r)^α (1+r)^β P_n² dr for α + β = -1, (states, n).
 
     Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
     """
-    n = np.arange(1, count)
+    n = np.arange(1, MOMENTS)
     a, b = α[:, None], β[:, None]
     logs = gammaln(n + a + 1.0) + gammaln(n + b + 1.0) - gammaln(n + 1.0) - gammaln(n)
     return np.concatenate([np.pi / np.sin(np.pi * (1.0 + a)), np.exp(logs) / (2.0 * n)], axis=1)
@@ -120,7 +124,7 @@ class ContactRecovery:
     """Linear maps from nodal forces to what is read off them; they depend on the mesh alone.
 
     Attributes:
-        moments: to ∫ σ_YY T_k dr, (nodes, moments).
+        moments: to ∫ σ_YY T_k dr, or those with other tests, (nodes, moments).
         raw: to the raw pressure at the given positions, NaN outside the contact, (nodes, points).
         edges: at X = a and X = -a: distances over a, (q,), and the map to the raw pressure there.
     """
@@ -153,7 +157,7 @@ def contact_recovery(
     chart: Any,
     r: NDArray,
     farthest: float = 1e-3,
-    moments: int = MOMENTS,
+    tests: Callable[[NDArray], NDArray] = chebyshev,
 ) -> ContactRecovery:
     """Maps for the contact nodes of a mesh.
 
@@ -169,7 +173,7 @@ def contact_recovery(
         farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
             two at least: the innermost cannot follow the singularity and disturb their neighbours,
             and beyond this distance the pressure's second term biases the exponent.
-        moments: that the pressure is read off.
+        tests: smooth functions of r, (points, moments), with which forces are tested.
     """
     facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
     density = _density_of_forces(s, facets, degree)  # symmetric
@@ -195,7 +199,7 @@ def contact_recovery(
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
         used = slice(min(last // 2, last - 2), last)
         edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
-    return ContactRecovery(chebyshev(chart.surface_position(s), moments), raw, tuple(edges))
+    return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
 
 
 def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:

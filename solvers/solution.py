@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
-from galinx.solvers.layers.layered import Layered
+from galinx.solvers.layers.layered import Layered, LayersInCells
 from galinx.solvers.profiles import Profile, ends_are_found, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
+from galinx.solvers.solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,16 @@ class Body:
     def found(self) -> bool:
         """Are ends of the contact found? Every state has a half-width of its own then."""
         return ends_are_found(self.profile)
+
+    def response(self, c: float) -> Response:
+        """The half-plane at a speed over its wave speed.
+
+        Raises:
+            ValueError: a wave in it is not faster.
+        """
+        if isinstance(self.solid, Layered):
+            return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
+        return self.solid.response(c)
 
     @property
     def layered(self) -> bool:

@@ -70,7 +70,7 @@ def make_plan(scene: Scene) -> Plan:
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in all_speeds]
+        g, responses = enumerate_states(scene).g, [body.response(c) for c in all_speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
     quantities, refused = _quantities(scene, body, methods)

@@ -59,7 +59,7 @@ class Tasks:
     def __iter__(self) -> Iterator[Task]:
         for i, c in enumerate(self.speeds):
             rows = slice(i * self.states, (i + 1) * self.states)
-            yield Task(i, self.body, self.body.solid.response(c), self.places, rows)
+            yield Task(i, self.body, self.body.response(c), self.places, rows)
 
 
 @dataclass(frozen=True)

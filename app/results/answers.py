@@ -182,8 +182,9 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]
     if all(path in data for path in record):
         cells, degree, unknowns = (int(data[path].max()) for path in record)
+        mesh = "layered" if scene.layers else scene.solve.mesh
         text += (
-            f" Finite elements: {scene.solve.mesh} mesh, {cells} cells of degree up to {degree}, "
+            f" Finite elements: {mesh} mesh, {cells} cells of degree up to {degree}, "
             f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
         )
     return text

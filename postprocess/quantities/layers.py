@@ -32,7 +32,7 @@ def _intensity(side: str, at: str, i: int) -> Quantity:
     return Quantity(
         f"states/sie/K_I_{side}", "1",
         f"normalised stress intensity factor at {at}, layered half-plane", (STATE,),
-        lambda s, _: s.K_I[:, i], SIE,
+        lambda s, _: s.K_I[:, i], SIE, compared=("K_I of layers",),
     )  # fmt: skip
 
 
@@ -50,12 +50,14 @@ PRESSURE = {
     SIE: Quantity(
         "surface/sie/sigma_YY", "N/(2a)", "contact stress, NaN outside the contact, layered half-plane",
         (STATE, POINT), lambda s, _: s.surface.σ_YY, SIE, asked_by=ON_SURFACE, nan_allowed=BESIDE,
+        compared=("sigma_YY of layers",),
     )
 }  # fmt: skip
 IN_PLANE = {
     SIE: Quantity(
         "surface/sie/sigma_XX", "N/(2a)", "in-plane stress on the surface, layered half-plane",
         (STATE, POINT), lambda s, _: s.surface.σ_XX, SIE, asked_by=ON_SURFACE,
+        compared=("sigma_XX of layers",),
     )
 }  # fmt: skip
 

@@ -105,7 +105,7 @@ class Layered:
     """
 
     about: ClassVar[str] = "layers on a substrate"
-    form: ClassVar[str] = "layered"
+    form: ClassVar[str] = "anisotropic"
 
     layers: tuple[Layer, ...]
     substrate: Solid

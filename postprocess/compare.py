@@ -92,10 +92,8 @@ def _intensities(data: dict[str, Any], _: float) -> float | None:
 
 
 def _intensities_of_layers(data: dict[str, Any], _: float) -> float:
-    pairs = ((of.K_I_LEFT, on_layers.K_I_LEFT), (of.K_I_RIGHT, on_layers.K_I_RIGHT))
-    fem, sie = (np.array([data[rows[method].path] for rows in side]) for method, side in (
-        (FEM, [one for one, _ in pairs]), (SIE, [other for _, other in pairs])
-    ))  # fmt: skip
+    sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
+    fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
     size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
     return float((np.abs(fem - sie) / size).max())
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
-from galinx.solvers.layers.layered import Layered, LayersInCells
+from galinx.solvers.layers.in_cells import LayersInCells
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import Profile, ends_are_found, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -21,26 +20,8 @@ from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CHUNK, CellMatrices
 from galinx.solvers.fem.forms import FORMS, gradient
 from galinx.solvers.fem.matrix import empty_matrix
+from galinx.solvers.fem.nodes import SurfaceNodes
 from galinx.solvers.solids.solid import ByCells, Response
-
-
-@dataclass(frozen=True)
-class SurfaceNodes:
-    """Nodes of a part of the surface, in order of X, the same on every rank.
-
-    Attributes:
-        s: surface coordinates in the mesh's chart, (n,).
-        owned: positions in ``s`` of the nodes this rank owns.
-        blocks: global node numbers of those.
-    """
-
-    s: NDArray[np.float64]
-    owned: NDArray[np.int64]
-    blocks: NDArray[np.int32]
-
-    def dofs(self, component: int) -> NDArray[np.int32]:
-        """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
-        return 2 * self.blocks + component
 
 
 class Space:

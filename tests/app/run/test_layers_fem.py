@@ -14,13 +14,13 @@ from galinx.meshes.cells import check_cells
 from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.layers.layered import line_load
+from galinx.solvers.layers.in_cells import line_load
 from galinx.solvers.layers.medium import Medium
 from galinx.solvers.solids.isotropic import Isotropic
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers import scene  # noqa: E402
-from test_stack import random_stack  # noqa: E402
+from test_layers import scene
+from test_stack import random_stack
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 

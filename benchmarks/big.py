@@ -14,8 +14,8 @@ from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.held import hold
 from galinx.solvers.fem.multigrid import Multigrid, available
-from galinx.solvers.fem.punch import hold
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.isotropic import MovingFrame
 

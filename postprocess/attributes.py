@@ -99,7 +99,7 @@ ATTRIBUTES = {
     ),
     "material": Attribute("name of the solid in the library, or nothing", "a text", is_text, since=3),
     "solid": Attribute(
-        "its kind, its parameters and, where the scene gives it, yield_strength, in SI",
+        "its kind, its parameters and, where the scene gives it, yield_strength, in SI; layers in words",
         "a JSON object of numbers and texts",
         _object(lambda value: is_text(value) or _number(value)),
         since=3,

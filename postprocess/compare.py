@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
+from galinx.postprocess.quantities import layers as on_layers
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
 
@@ -90,6 +91,13 @@ def _intensities(data: dict[str, Any], _: float) -> float | None:
     return float(of.K_I_error(data).max()) if some else None
 
 
+def _intensities_of_layers(data: dict[str, Any], _: float) -> float:
+    sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
+    fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
+    size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
+    return float((np.abs(fem - sie) / size).max())
+
+
 def _exponents(data: dict[str, Any], _: float) -> float | None:
     pairs = (of.FITTED_ALPHA, of.ALPHA), (of.FITTED_BETA, of.BETA)
     off = np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs])
@@ -102,13 +110,25 @@ def _tension(data: dict[str, Any], _: float) -> float | None:
     return largest if largest > 0.0 else None
 
 
-def _both(data: dict[str, Any], rows: dict[str, Quantity], where: NDArray) -> tuple[NDArray, NDArray]:
-    return data[rows[FEM].path][:, where], data[rows[CLOSED_FORM].path][:, where]
+def _both(
+    data: dict[str, Any], rows: dict[str, Quantity], where: NDArray, other: str = CLOSED_FORM
+) -> tuple[NDArray, NDArray]:
+    return data[rows[FEM].path][:, where], data[rows[other].path][:, where]
 
 
 def _pressure(data: dict[str, Any], _: float) -> float:
     fem, exact = _both(data, at.PRESSURE, under_punch(data[at.SURFACE_X.path]))
     return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING)).max()
+
+
+def _pressure_of_layers(data: dict[str, Any], _: float) -> float:
+    fem, sie = _both(data, at.PRESSURE | on_layers.PRESSURE, under_punch(data[at.SURFACE_X.path]), SIE)
+    return (np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max()
+
+
+def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
+    fem, sie = (data[row.path] for row in (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE]))
+    return (np.abs(fem - sie) / scale.of_in_plane(sie, data[at.SURFACE_X.path])).max()
 
 
 def _found_pressure(data: dict[str, Any], _: float) -> float:
@@ -216,6 +236,26 @@ RULES: Registry[Rule] = Registry(
         "estimate": Rule(
             "estimated error of K_I and moments, relative",
             (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
+        ),
+        "K_I of layers": Rule(
+            "K_I at both ends against the integral equation, relative",
+            (*(side[FEM] for side in (of.K_I_LEFT, of.K_I_RIGHT)),
+             *(side[SIE] for side in (on_layers.K_I_LEFT, on_layers.K_I_RIGHT))),
+            _intensities_of_layers, tolerances=1.0,
+        ),
+        "sigma_YY of layers": Rule(
+            "σ_YY against the integral equation, over itself or a tenth of the mean",
+            (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
+            tolerances=1.0,
+        ),
+        "sigma_XX of layers": Rule(
+            "σ_XX against the integral equation, over itself or the largest",
+            (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
+            tolerances=1.0,
+        ),
+        "estimate of the integral equation": Rule(
+            "estimated error of the integral equation over layers, relative",
+            (on_layers.ESTIMATE,), _largest(on_layers.ESTIMATE), tolerances=1.0,
         ),
         "ends": Rule(
             "ends of the contact, over its half-width",

@@ -5,12 +5,15 @@ from typing import Any
 import xarray
 
 from galinx.postprocess.quantities import Quantity, of_states, table
-from galinx.postprocess.quantities.quantity import INNER, INSIDE, POINT, STATE
+from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, POINT, STATE
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 
 #: Names of dimensions, and of the positions along them.
-_DIMENSIONS = {STATE: "state", POINT: "X_over_a", INSIDE: "point", INNER: "inner"}
+_DIMENSIONS = {
+    STATE: "state", POINT: "X_over_a", INSIDE: "point", INNER: "inner",
+    INTERFACE: "interface", ALONG: "along",
+}  # fmt: skip
 _POSITIONS = {
     SURFACE_X.path: "X_over_a",
     INSIDE_X.path: "inside_X_over_a",

@@ -8,6 +8,7 @@ fitted from the raw pressure, which uses none.
 All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +36,10 @@ class JacobiPressure:
     α: NDArray[np.float64]
     β: NDArray[np.float64]
     c: NDArray[np.float64]
+
+    def factor(self, r: NDArray) -> NDArray[np.float64]:
+        """Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
+        return np.asarray(self.c @ chebyshev(r).T)
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
@@ -69,9 +74,9 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     return found
 
 
-def chebyshev(r: NDArray) -> NDArray[np.float64]:
-    """T_0 … T_8 at r in [-1, 1]: (len(r), ``MOMENTS``)."""
-    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), MOMENTS - 1)
+def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
+    """T_0, T_1, … at r in [-1, 1]: (len(r), count)."""
+    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
@@ -119,7 +124,7 @@ class ContactRecovery:
     """Linear maps from nodal forces to what is read off them; they depend on the mesh alone.
 
     Attributes:
-        moments: to ∫ σ_YY T_k dr, (nodes, ``MOMENTS``).
+        moments: to ∫ σ_YY T_k dr, or those with other tests, (nodes, moments).
         raw: to the raw pressure at the given positions, NaN outside the contact, (nodes, points).
         edges: at X = a and X = -a: distances over a, (q,), and the map to the raw pressure there.
     """
@@ -147,7 +152,12 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
 
 
 def contact_recovery(
-    s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3
+    s: NDArray,
+    degree: int,
+    chart: Any,
+    r: NDArray,
+    farthest: float = 1e-3,
+    tests: Callable[[NDArray], NDArray] = chebyshev,
 ) -> ContactRecovery:
     """Maps for the contact nodes of a mesh.
 
@@ -163,6 +173,7 @@ def contact_recovery(
         farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
             two at least: the innermost cannot follow the singularity and disturb their neighbours,
             and beyond this distance the pressure's second term biases the exponent.
+        tests: smooth functions of r, (points, moments), with which forces are tested.
     """
     facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
     density = _density_of_forces(s, facets, degree)  # symmetric
@@ -188,7 +199,7 @@ def contact_recovery(
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
         used = slice(min(last // 2, last - 2), last)
         edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
-    return ContactRecovery(chebyshev(chart.surface_position(s)), raw, tuple(edges))
+    return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
 
 
 def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:

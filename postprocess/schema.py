@@ -17,8 +17,8 @@ import numpy as np
 from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite
-from galinx.postprocess.quantities import Quantity, runs, states, stresses, table
-from galinx.postprocess.quantities.quantity import INSIDE, POINT
+from galinx.postprocess.quantities import Quantity, layers, runs, states, stresses, table
+from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.parameters import Range
 
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
@@ -30,7 +30,10 @@ _ALWAYS = (
     runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F, runs.DONE, runs.SKIPPED, runs.SECONDS, runs.STEPS,
 )  # fmt: skip
 #: What says where values of these dimensions are.
-_POSITIONS = {POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y)}
+_POSITIONS = {
+    POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y),
+    INTERFACE: (layers.INTERFACE_DEPTH,), ALONG: (layers.ALONG_X,),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

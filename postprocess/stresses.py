@@ -46,6 +46,27 @@ def principal(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.floa
     return np.array([middle + radius, middle - radius])
 
 
+def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray, NDArray]:
+    """Largest (sign 1) or smallest (-1) value along X and its place, by parabolas, (...) each.
+
+    Args:
+        values: (..., n).
+        X: rising positions, (n,).
+    """
+    i = np.clip((sign * values).argmax(axis=-1), 1, len(X) - 2)
+    x = X[i[..., None] + [-1, 0, 1]]
+    y = np.take_along_axis(values, i[..., None] + [-1, 0, 1], axis=-1)
+    slopes = np.diff(y, axis=-1) / np.diff(x, axis=-1)
+    bend = (slopes[..., 1] - slopes[..., 0]) / (x[..., 2] - x[..., 0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        top = (x[..., 0] + x[..., 1]) / 2.0 - slopes[..., 0] / (2.0 * bend)
+    inside = np.isfinite(top) & (top > x[..., 0]) & (top < x[..., 2]) & (sign * bend < 0.0)
+    top = np.where(inside, top, x[..., 1])
+    value = y[..., 0] + (top - x[..., 0]) * (slopes[..., 0] + bend * (top - x[..., 1]))
+    best = np.take_along_axis(values, (sign * values).argmax(axis=-1)[..., None], axis=-1)[..., 0]
+    return np.where(inside, value, best), top
+
+
 def tension(surface: Any) -> NDArray[np.float64]:
     """Largest tension under the punch over N/(2a), and where over a; 0 and NaN for none, (2, states).
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, runs, slider, validity, yielding
+from galinx.postprocess.quantities import Quantity, layers, runs, slider, validity, yielding
 from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, TEXT
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 
 #: States that a table shows at most, and inner variables of a law.
@@ -36,14 +36,21 @@ class Sheet:
 
 #: Columns of the states' table after what tells states apart: (head, quantity, form).
 _EITHER = [("K_I", of.K_I_BOTH, "{:.6f}"), ("error", of.TRUE_ERROR, "{:.1e}")]
-_ALONE = [("K(-a)", of.K_I_LEFT[FEM], "{:.6f}"), ("K(a)", of.K_I_RIGHT[FEM], "{:.6f}")]
+_ALONE = [
+    (head, row, "{:.6f}")
+    for head, rows in (
+        ("K(-a)", of.K_I_LEFT | layers.K_I_LEFT), ("K(a)", of.K_I_RIGHT | layers.K_I_RIGHT)
+    )
+    for row in (rows[FEM], rows[SIE])
+]  # fmt: skip
 _ENDS = [
     (head, row, "{:.4e}")
     for head, rows in (("a (m)", of.HALF_WIDTH), ("centre (m)", of.CENTRE))
     for row in (rows[FEM], rows[CLOSED_FORM])
 ]
 _BOTH = [
-    ("estimate", of.ESTIMATE, "{:.1e}"), ("v₀ (m)", of.INDENTATION, "{:.4e}"),
+    ("estimate", of.ESTIMATE, "{:.1e}"),
+    ("estimate", layers.ESTIMATE, "{:.1e}"), ("v₀ (m)", of.INDENTATION, "{:.4e}"),
     ("α", of.ALPHA, "{:.4f}"), ("β", of.BETA, "{:.4f}"),
 ]  # fmt: skip
 
@@ -107,6 +114,9 @@ def _head(row: Quantity, scaling: Scaling) -> str:
     return told.name + ("" if told.unit in ("1", "none") else f" ({told.unit})")
 
 
+#: By method.
+_TENSION = validity.TENSION | layers.TENSION
+
 #: What tells where a solid yields and where answers do not hold, by what a table calls it.
 _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("largest von Mises", yielding.VON_MISES),
@@ -124,10 +134,10 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
     ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),
     ("strain > 5 %, right", {CLOSED_FORM: validity.STRAIN[1]}),
-    ("tension", {method: rows[0] for method, rows in validity.TENSION.items()}),
-    ("  at X", {method: rows[1] for method, rows in validity.TENSION.items()}),
+    ("tension", {method: rows[0] for method, rows in _TENSION.items()}),
+    ("  at X", {method: rows[1] for method, rows in _TENSION.items()}),
 )
-_METHODS = {CLOSED_FORM: "exact", FEM: "FE", "": ""}
+_METHODS = {CLOSED_FORM: "exact", SIE: "SIE", FEM: "FE", "": ""}
 
 
 def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:

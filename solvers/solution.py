@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import under_punch
+from galinx.solvers.layers.in_cells import LayersInCells
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
+from galinx.solvers.solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -21,11 +24,15 @@ class Places:
         X: positions on the surface, (n,).
         points: positions X, Y inside, (m, 2).
         around: where stresses are looked at for yield, (k, 2).
+        interfaces: depths of a layered solid's interfaces, (layers,).
+        along: positions X along each of them, (l,).
     """
 
     X: NDArray[np.float64]
     points: NDArray[np.float64]
     around: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
+    interfaces: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    along: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
     @cached_property
     def under(self) -> NDArray[np.bool_]:
@@ -55,6 +62,21 @@ class Body:
     def found(self) -> bool:
         """Are ends of the contact found? Every state has a half-width of its own then."""
         return ends_are_found(self.profile)
+
+    def response(self, c: float) -> Response:
+        """The half-plane at a speed over its wave speed.
+
+        Raises:
+            ValueError: a wave in it is not faster.
+        """
+        if isinstance(self.solid, Layered):
+            return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
+        return self.solid.response(c)
+
+    @property
+    def layered(self) -> bool:
+        """Has the half-plane layers?"""
+        return isinstance(self.solid, Layered)
 
     @cached_property
     def free(self) -> bool:

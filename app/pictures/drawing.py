@@ -7,10 +7,10 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from galinx.postprocess.quantities import Quantity, table
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, TEXT
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
 
 #: Methods as options and captions call them.
-METHODS = {CLOSED_FORM: "closed form", FEM: "finite elements"}
+METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
 
 @dataclass(frozen=True)

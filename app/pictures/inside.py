@@ -12,7 +12,7 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.maps import Map, maps_figure
 from galinx.postprocess.figures.style import COLUMN, PAGE
 from galinx.postprocess.figures.typeset import folded, number, plain
-from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities import layers, stresses
 from galinx.postprocess.quantities.quantity import INSIDE, STATE
 from galinx.postprocess.stresses import maximum_shear, von_mises
 
@@ -62,7 +62,7 @@ class Fields:
             return self._choice.scale(row) * self._on_grid(self._data[row.path][state])
         XX, YY, XY = (
             self._choice.scale(row) * self._on_grid(self._data[row.path][state])
-            for row in stresses.STRESSES_INSIDE[method]
+            for row in (stresses.STRESSES_INSIDE | layers.STRESSES_INSIDE)[method]
         )
         if name == "max_shear":
             return maximum_shear(XX, YY, XY)

@@ -11,8 +11,11 @@ from galinx.app.errors import BadInput
 from galinx.app.plan import cost
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
+from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.quantities.quantity import FOUND
+from galinx.postprocess.stretched import Stretch
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.rays import NEAR
@@ -38,6 +41,20 @@ SMALL = 200_000
 
 
 @dataclass(frozen=True)
+class Tests:
+    """By what a pressure over layers is read off nodal forces.
+
+    Attributes:
+        stretch: variable in which it is smooth.
+        count: moments at the first degree; each degree more takes two more, so that what they leave
+            shows in the measured error.
+    """
+
+    stretch: Stretch
+    count: int
+
+
+@dataclass(frozen=True)
 class FemPlan:
     """Finite element work of a scene.
 
@@ -53,6 +70,8 @@ class FemPlan:
         mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND`` or ``OWN_MESHES``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
+        drawn: the mesh where it follows interfaces.
+        tests: by which the pressure is read off over layers.
     """
 
     mesh: str
@@ -66,6 +85,8 @@ class FemPlan:
     wanted: Wanted
     mode: str
     shared_speeds: bool
+    drawn: QuadMesh | None = None
+    tests: Tests | None = None
 
     @property
     def tolerance(self) -> float:
@@ -75,12 +96,13 @@ class FemPlan:
     @property
     def pattern(self) -> QuadMesh:
         """The mesh before it is cut."""
-        return self.kind.build(self.refinement)
+        return self.drawn or self.kind.build(self.refinement)
 
     @property
     def size(self) -> int:
         """Unknowns of the largest system, about the same without building the mesh."""
-        return _size(self.refinement, _largest(max(self.degrees), self.cuts, self.fixed))
+        largest = _largest(max(self.degrees), self.cuts, self.fixed)
+        return unknowns(self.drawn, largest) if self.drawn else _size(self.refinement, largest)
 
     @property
     def memory(self) -> float:
@@ -103,7 +125,9 @@ def plan_fem(
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
     """
-    solve, kind = scene.solve, MESHES[scene.solve.mesh]
+    solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
+    if isinstance(scene.solid, Layered):
+        kind, name = on_layers((scene.solid.depths / scene.body.half_width).tolist()), "layered"
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
@@ -119,16 +143,19 @@ def plan_fem(
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
     )
-    size = _size(refinement, _largest(max(degrees), solve.cuts, solve.degree is not None))
+    largest = _largest(max(degrees), solve.cuts, solve.degree is not None)
+    drawn = kind.drawn(wanted) if isinstance(kind, OnLayers) else None
+    size = unknowns(drawn, largest) if drawn else _size(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver
     if mixed or solver == "auto":
         needed = cost.bytes_of_levels(size, direct=True) * (ranks.size() if shared else 1)
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
-        mesh=solve.mesh, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
+        mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=_mode(scene), shared_speeds=shared,
+        mode=_mode(scene), shared_speeds=shared, drawn=drawn,
+        tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
     )  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """Where a scene asks for what has no answer, or for one that will cost accuracy."""
 
+import json
 from bisect import bisect_left
 from collections.abc import Collection, Iterator
 from math import inf
@@ -11,8 +12,10 @@ from galinx.app.plan import cost
 from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
+from galinx.app.scene.sense import FRICTIONS
 from galinx.meshes import MESHES, Wanted
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE
+from galinx.postprocess.quantities import layers, stresses
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
@@ -53,7 +56,13 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
         [f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:], ordered[formal:])
     )
     c_R = scene.solid.limit() if beyond or near else 0.0
-    limit = f"the Rayleigh speed c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
+    name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
+    limit = f"the {name} c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
+    if beyond and scene.layers:
+        raise BadInput(
+            f"motion: c = {listed(beyond)} is not below {limit}: a wave along the layers is not faster "
+            "than the punch; take lower speeds"
+        )
     if fem and beyond:
         raise BadInput(
             f"motion: c = {listed(beyond)} is not below {limit}: the finite element form is indefinite "
@@ -126,6 +135,30 @@ def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
         raise BadInput(
             f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
             'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
+        )
+
+
+def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
+    """Is what is asked of layers known?
+
+    Raises:
+        BadInput: something is not; the message has all of it.
+    """
+    if not body.layered:
+        return
+    known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
+    faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
+    if scene.solve.mode != "contact":
+        faults.append(f'solve.mode is "{scene.solve.mode}"')
+    if body.found:
+        faults.append(f"the punch is a {body.profile.words()}, whose contact ends are found")
+    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
+        faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}")
+    if faults:
+        raise BadInput(
+            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are punches with "
+            'two sharp edges, by methods = ["sie"], with the quantities friction, sif, surface, '
+            "interior and interfaces"
         )
 
 

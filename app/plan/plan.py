@@ -8,6 +8,7 @@ import numpy as np
 from galinx.app.plan.fem import FemPlan, plan_fem
 from galinx.app.plan.limits import (
     check_found,
+    check_layers,
     check_mode,
     check_places,
     check_pressure,
@@ -27,6 +28,7 @@ from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.yielding.strength import places as yield_places
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solution import Body, Places
 
@@ -52,23 +54,25 @@ def make_plan(scene: Scene) -> Plan:
     methods = _methods(scene, body)
     for load in {min(known.loads), max(known.loads)}:
         check_size(body.loaded(load), methods)
+    check_layers(scene, body, methods)
     check_found(scene, body, methods)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
-    places = Places(surface_grid(), np.reshape(scene.output.inside, (-1, 2)), around)
+    points = np.reshape(scene.output.inside, (-1, 2))
+    places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, known.speeds, "fem" in methods)]
     fem = None
     if "fem" in methods:
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        g, responses = enumerate_states(scene).g, [scene.solid.response(c) for c in known.speeds]
+        g, responses = enumerate_states(scene).g, [body.response(c) for c in known.speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
         warnings += warnings_of(fem)
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, known),
+        tasks=Tasks(body, places, known), tolerance=scene.solve.tolerance,
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
         warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
     )  # fmt: skip
@@ -131,7 +135,7 @@ def _skipped(
     skipped = [
         f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"
         for name, kind in METHODS.items()
-        if name not in methods
+        if name not in methods and (body.layered or not kind.of_layers)
     ]
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")
@@ -154,3 +158,13 @@ def surface_grid() -> np.ndarray:
     outside = 1.0 + np.concatenate([near, np.geomspace(0.1, 4.0, 25)[1:]])
     right = np.concatenate([inside, outside])
     return np.unique(np.concatenate([-right, right]))
+
+
+def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Depths of interfaces over a, and positions along them: as fine at the edges as these are near."""
+    if not isinstance(body.solid, Layered):
+        return np.empty(0), np.empty(0)
+    depths = body.solid.depths / body.half_width
+    near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
+    X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0])
+    return depths, np.unique(np.round(X, 9))

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.order import Order
 from galinx.postprocess.compare import FINITE, RULES
-from galinx.postprocess.quantities import Quantity, stresses
-from galinx.postprocess.quantities.quantity import INSIDE, POINT
+from galinx.postprocess.quantities import Quantity, layers, stresses
+from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places
 
@@ -63,7 +63,7 @@ class Tasks:
 
     def __iter__(self) -> Iterator[Task]:
         for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs())):
-            response = self.body.solid.response(c)
+            response = self.body.response(c)
             yield Task(i, self.body, response, self.places, runs, self.order.loads)
 
 
@@ -77,6 +77,7 @@ class Plan:
         methods: names of those that solve, none where only friction is asked for.
         quantities: read off their solutions, in the order of the table.
         tasks: one a speed.
+        tolerance: wanted relative accuracy.
         strokes: number of strokes along which friction laws are followed.
         integrated: seconds that laws without a formula take for that.
         fem: finite element work, None without.
@@ -89,6 +90,7 @@ class Plan:
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
     tasks: Tasks
+    tolerance: float
     strokes: int
     fem: FemPlan | None
     skipped: tuple[str, ...]
@@ -120,6 +122,9 @@ class Plan:
         if self.asks(stresses.BELOW):
             X, Y = self.places.points.T
             found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+        if self.asks(layers.AT_INTERFACES):
+            found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            found[layers.ALONG_X.path] = self.places.along
         return found
 
     @property
@@ -134,7 +139,10 @@ class Plan:
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a state's entry."""
-        sizes = {POINT: len(self.places.X), INSIDE: len(self.places.points)}
+        sizes = {
+            POINT: len(self.places.X), INSIDE: len(self.places.points),
+            INTERFACE: len(self.places.interfaces), ALONG: len(self.places.along),
+        }  # fmt: skip
         return tuple(sizes[dimension] for dimension in quantity.over[1:])
 
     @cached_property

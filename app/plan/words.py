@@ -41,7 +41,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
-    result = [f"mesh: {scene.solve.mesh}, {cells} quadrilaterals, shared by all speeds"]
+    result = [f"mesh: {fem.mesh}, {cells} quadrilaterals, shared by all speeds"]
     pressure = " and those of a pressure" * scene.solid.nearly_incompressible
     others = "one of a higher degree measures" if fem.fixed else "two of lower degree measure"
     solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"

@@ -10,13 +10,17 @@ from numpy.typing import NDArray
 
 from galinx.app.results.si import in_si
 from galinx.app.scene.scene import Scene
-from galinx.postprocess.quantities import runs, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.postprocess.quantities import layers, runs, states, stresses, validity, yielding
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
 from galinx.postprocess.scale import NEAR
 from galinx.solvers.contact import from_edge
 
 #: Of units, and where the one stands that means nothing.
 _PREFIXES, _MIDDLE = "pnµm kMGT", 4
+
+
+#: By method.
+_K_I_LEFT, _K_I_RIGHT = states.K_I_LEFT | layers.K_I_LEFT, states.K_I_RIGHT | layers.K_I_RIGHT
 
 
 @dataclass(frozen=True)
@@ -47,9 +51,7 @@ def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
 def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
     f = data[states.FRICTION.path]
     yield Answer("Friction coefficient f, positive in forward motion", *_span(f, "", "{:+.4f}"))
-    intensities = [
-        data[row.path] for row in (*_either(data, states.K_I_LEFT), *_either(data, states.K_I_RIGHT))
-    ]
+    intensities = [data[row.path] for row in (*_either(data, _K_I_LEFT), *_either(data, _K_I_RIGHT))]
     if intensities and np.any(intensities):
         both = np.array(intensities)
         smallest, largest = both.min(axis=0), both.max(axis=0)
@@ -86,12 +88,12 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     if stresses.SURFACE_X.path not in data:
         return
     stress, X = _unit_of_stress(data, scene), data[stresses.SURFACE_X.path]
-    for row in _either(data, stresses.PRESSURE):
+    for row in _either(data, stresses.PRESSURE | layers.PRESSURE):
         middle = int(np.abs(X).argmin())
         pressure = -stress[:, 0] * data[row.path][:, middle]
         yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
     away = from_edge(X) >= NEAR
-    for row in _either(data, stresses.IN_PLANE):
+    for row in _either(data, stresses.IN_PLANE | layers.IN_PLANE):
         σ, places = stress * data[row.path][:, away], X[away]
         beyond = f"further than {NEAR:g} a from the edges"
         for name, at in (("tension", σ.argmax()), ("compression", σ.argmin())):
@@ -112,7 +114,10 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("Yield passed up to, from the edge X = −a", yielding.REACH_LEFT),
     ("Yield passed up to, from the edge X = a", yielding.REACH_RIGHT),
     ("Depth of the yielded zone", yielding.DEPTH),
-    ("Tension under the punch", {method: rows[0] for method, rows in validity.TENSION.items()}),
+    (
+        "Tension under the punch",
+        {method: rows[0] for method, rows in (validity.TENSION | layers.TENSION).items()},
+    ),
     ("Wave crossings of the contact in a stroke", {CLOSED_FORM: validity.CROSSINGS}),
     ("Slip turned round up to, from X = −a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
     ("Slip turned round up to, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
@@ -131,9 +136,9 @@ def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
 
 
 def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
-    """One of both methods."""
+    """One of several methods."""
     return [
-        rows[method] for method in (FEM, CLOSED_FORM) if method in rows and rows[method].path in data
+        rows[method] for method in (FEM, CLOSED_FORM, SIE) if method in rows and rows[method].path in data
     ][:1]
 
 
@@ -178,8 +183,9 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]
     if all(path in data for path in record):
         cells, degree, unknowns = (int(data[path].max()) for path in record)
+        mesh = "layered" if scene.layers else scene.solve.mesh
         text += (
-            f" Finite elements: {scene.solve.mesh} mesh, {cells} cells of degree up to {degree}, "
+            f" Finite elements: {mesh} mesh, {cells} cells of degree up to {degree}, "
             f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
         )
     return text

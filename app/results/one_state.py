@@ -169,6 +169,11 @@ def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
 
 
 def _check(scene: Scene, degrees: Sequence[int | None]) -> None:
+    if scene.layers:
+        raise BadInput(
+            "layer: found layers, expected a uniform solid for fields of finite elements; "
+            'output.quantities = ["interior"] gives the stresses inside layers'
+        )
     # What the scene fixes, or what its rule gives, which is one more for given tractions.
     lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
     for degree in degrees:

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, of_states, stresses, table
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, STATE, TEXT
+from galinx.postprocess.quantities import Quantity, layers, of_states, stresses, table
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE, TEXT
 from galinx.postprocess.scaling import Scaling, as_archived
 
 #: Most cells of the table, and numbers of the curves: a page stays below 5 MB.
@@ -17,7 +17,7 @@ _CELLS, _NUMBERS = 60_000, 250_000
 #: Digits that are shown; errors have fewer.
 _DIGITS, _OF_ERRORS = 6, 2
 
-_CALLED = {CLOSED_FORM: "closed form", FEM: "finite elements"}
+_CALLED = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
 
 def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any]:
@@ -65,8 +65,10 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
         data: datasets by path.
         scaling: how quantities are told.
     """
-    known = {"σ_XX": stresses.IN_PLANE, "σ_YY": stresses.PRESSURE}
-    methods = [m for m in (CLOSED_FORM, FEM) if all(rows[m].path in data for rows in known.values())]
+    known = {
+        "σ_XX": stresses.IN_PLANE | layers.IN_PLANE, "σ_YY": stresses.PRESSURE | layers.PRESSURE
+    }  # fmt: skip
+    methods = [m for m in _CALLED if all(rows[m].path in data for rows in known.values())]
     if not methods:
         return None
     X = data[stresses.SURFACE_X.path]
@@ -74,7 +76,7 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
     count = len(data[next(iter(apart))])
     most = max(_NUMBERS // (len(X) * len(methods) * len(known)), 1)
     some = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
-    told = scaling(stresses.IN_PLANE[methods[0]], "")
+    told = scaling(known["σ_XX"][methods[0]], "")
     in_units = told is not None and told.unit == "Pa"
     factors = 1e-6 * told.factor * np.ones(count) if told and in_units else np.ones(count)
     values = [
@@ -131,7 +133,7 @@ def _head(row: Quantity) -> str:
     called = {"v0": "v_0", "alpha": "α", "beta": "β"}.get(
         name, name.replace("_", " ").replace("K I", "K_I")
     )
-    return called + {CLOSED_FORM: ", exact", FEM: ", FE"}.get(method, "")
+    return called + {CLOSED_FORM: ", exact", SIE: ", SIE", FEM: ", FE"}.get(method, "")
 
 
 def _value(row: Quantity, value: Any) -> str:

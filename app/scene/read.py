@@ -89,7 +89,7 @@ def parse(text: str, name: str = "scene") -> Scene:
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
     if not faults:
-        scene = Scene(title, text, half_plane=read.pop("solid"), **read)
+        scene = Scene(title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), **read)
         faults = contradictions(scene)
         if not faults:
             return scene

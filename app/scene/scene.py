@@ -17,6 +17,7 @@ from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.friction.strokes import positions
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import made, parameters
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
@@ -178,6 +179,7 @@ class Scene:
         text: the TOML it came from, byte for byte as archived.
         half_plane, punch, friction, motion, solve, output: its sections.
         slider: a mass on a spring, None for none.
+        layers: on the solid, from the top down.
     """
 
     title: str
@@ -189,11 +191,13 @@ class Scene:
     solve: Solve
     output: Output
     slider: Slider | None = None
+    layers: tuple[Layer, ...] = ()
 
-    @property
+    @cached_property
     def solid(self) -> Solid:
-        """The elastic solid."""
-        return self.half_plane.solid
+        """The elastic solid, with its layers."""
+        below = self.half_plane.solid
+        return Layered(self.layers, below) if self.layers else below
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from galinx.app.scene.keys import REQUIRED, Key
+from galinx.app.scene.layers import MOST
 from galinx.app.scene.sections import SECTIONS
 
 
@@ -10,6 +11,7 @@ def schema() -> dict[str, Any]:
     """JSON schema (draft 7) of a scene."""
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
     properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
+    properties["layer"] = {"type": "array", "items": _layer(properties["layer"]), "maxItems": MOST}
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "galinx scene",
@@ -38,6 +40,13 @@ def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, An
     elif needed:
         section["required"] = needed
     return section
+
+
+def _layer(one: dict[str, Any]) -> dict[str, Any]:
+    """A layer: constants of its own, a known material, or rows by depth."""
+    needed = one.pop("required", [])
+    enough = [["thickness", "material"], ["thickness", *needed], ["properties"]]
+    return one | {"anyOf": [{"required": keys} for keys in enough]}
 
 
 def entry(key: Key) -> dict[str, Any]:

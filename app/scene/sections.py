@@ -4,6 +4,7 @@ from typing import Any
 
 from galinx.app.run.methods import METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
+from galinx.app.scene.layers import LayerSections
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.numbers import Numbers
 from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve
@@ -111,7 +112,7 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "what solves the contact", ("closed_form", "fem"),
+        Choices(METHODS, at_least=0), "what solves the contact", ("closed_form", "sie", "fem"),
         "an empty list where only friction is asked for",
     ),
     "tolerance": Key(
@@ -156,7 +157,8 @@ _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
-        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]",
+        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
+        "`interfaces`: where layers meet",
     ),
     "points": Key(
         Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
@@ -167,10 +169,11 @@ _OUTPUT_KEYS = {
 }  # fmt: skip
 
 #: Sections of a scene, by name.
-SECTIONS: dict[str, Section] = {
+SECTIONS: dict[str, Any] = {
     "solid": ModelSection(
         "kind", "isotropic", SOLIDS, _solid, _SOLID_KEYS, or_else=", or solid.material"
     ),
+    "layer": LayerSections(),
     "punch": ModelSection(
         "profile", "flat", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}
     ),

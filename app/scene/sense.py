@@ -6,6 +6,7 @@ import numpy as np
 
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.slider import SLIDER
 from galinx.solvers.parameters import parameters, values
@@ -50,6 +51,10 @@ def contradictions(scene: Scene) -> list[str]:
         faults.append(
             'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
             "without which σ_ZZ is not known in plane strain"
+        )
+    if AT_INTERFACES in asked and not scene.layers:
+        faults.append(
+            'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
         )
     fixed = solve.degree is not None
     if not fixed and solve.cuts != 1:

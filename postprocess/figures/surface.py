@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, of_methods, panels
 from galinx.postprocess.figures.loops import Loop
 from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, SMALL, Look, styled
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.solvers.contact import from_edge, under_punch
 
 #: Positions that are shown of what is there all along the surface, and under the punch alone [a].
@@ -135,7 +135,7 @@ def _ranges(X: NDArray, stress: Stress, columns: Sequence[Column]) -> list[tuple
 
 
 def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -> None:
-    exact, found = stress.values.get(CLOSED_FORM), stress.values.get(FEM)
+    exact, found = stress.values.get(CLOSED_FORM, stress.values.get(SIE)), stress.values.get(FEM)
     lines = exact if exact is not None else found
     assert lines is not None
     for n, curve in enumerate(column.curves):

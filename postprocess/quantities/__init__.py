@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
 from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
+    layers,
     runs,
     slider,
     states,
@@ -12,6 +13,7 @@ from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
     yielding,
 )
 from galinx.postprocess.quantities.quantity import (
+    ALONG,
     FRICTION_ALONE,
     INSIDE,
     INTENSITIES,
@@ -61,13 +63,13 @@ def declared(path: str) -> Quantity:
 
 def of_states(path: str) -> bool:
     """Does a dataset hold values of states, or the positions of some?"""
-    return path.split("/")[0] in ("states", "surface", "interior")
+    return path.split("/")[0] in ("states", "surface", "interior", "interfaces")
 
 
 def large(path: str) -> bool:
     """Does it hold a value at every point of every state?"""
     row = table().get(path)
-    return row is not None and STATE in row.over and bool({POINT, INSIDE} & set(row.over))
+    return row is not None and STATE in row.over and bool({POINT, INSIDE, ALONG} & set(row.over))
 
 
 class _Words(Collection[str]):

@@ -14,6 +14,8 @@ from galinx.texts import unseen
 STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
     "states", "points", "points inside", "speeds", "loops", "positions",
 )  # fmt: skip
+#: Of layered solids.
+INTERFACE, ALONG = "interfaces", "points along interfaces"
 #: What a law remembers, and strokes.
 INNER, STROKE = "inner variables", "strokes"
 
@@ -21,7 +23,7 @@ INNER, STROKE = "inner variables", "strokes"
 TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
 #: Methods, and what is known without solving: the local analysis of the punch's edges.
-CLOSED_FORM, FEM, LOCAL = "closed_form", "fem", "local"
+CLOSED_FORM, SIE, FEM, LOCAL = "closed_form", "sie", "fem", "local"
 
 #: Where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"

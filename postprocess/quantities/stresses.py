@@ -61,13 +61,17 @@ def _extreme(method: str, end: str, of: Callable[[Any], NDArray], what: str) -> 
     )  # fmt: skip
 
 
+def extremes(method: str) -> tuple[Quantity, Quantity]:
+    """Highest and lowest in-plane stress by a method."""
+    return (
+        _extreme(method, "max", lambda values: values.max(axis=1), "highest"),
+        _extreme(method, "min", lambda values: values.min(axis=1), "lowest"),
+    )
+
+
 _METHODS = (CLOSED_FORM, FEM)
-HIGHEST = {
-    method: _extreme(method, "max", lambda values: values.max(axis=1), "highest") for method in _METHODS
-}
-LOWEST = {
-    method: _extreme(method, "min", lambda values: values.min(axis=1), "lowest") for method in _METHODS
-}
+HIGHEST = {method: extremes(method)[0] for method in _METHODS}
+LOWEST = {method: extremes(method)[1] for method in _METHODS}
 
 ESTIMATE_IN_PLANE = Quantity(
     "states/fem/estimate_sigma_XX", "1",
@@ -110,12 +114,19 @@ _COMPONENTS = {
     "YY": "normal stress along Y",
     "XY": "shear stress",
 }
-#: σ_XX, σ_YY, σ_XY by method.
-STRESSES_INSIDE = {
-    method: tuple(
+
+
+def components(method: str, source: str) -> tuple[Quantity, ...]:
+    """σ_XX, σ_YY, σ_XY inside by a method."""
+    return tuple(
         _component(method, source, i, ij, what) for i, (ij, what) in enumerate(_COMPONENTS.items())
     )
-    for method, source in ((CLOSED_FORM, "from the potentials"), (FEM, "from the displacement"))
+
+
+#: The same by method.
+STRESSES_INSIDE = {
+    CLOSED_FORM: components(CLOSED_FORM, "from the potentials"),
+    FEM: components(FEM, "from the displacement"),
 }
 
 
@@ -126,9 +137,9 @@ def _invariant(method: str, name: str, about: str, of: Callable[[NDArray, Any], 
     )  # fmt: skip
 
 
-#: Principal stresses and von Mises by method.
-INVARIANTS_INSIDE = {
-    method: (
+def invariants(method: str) -> tuple[Quantity, ...]:
+    """Principal stresses and von Mises inside by a method."""
+    return (
         _invariant(
             method, "sigma_1", "larger principal stress in the plane", lambda σ, _: principal(*σ)[0]
         ),
@@ -139,8 +150,10 @@ INVARIANTS_INSIDE = {
             method, "von_mises", "von Mises stress, sigma_ZZ included",
             lambda σ, solid: von_mises(σ[0], σ[1], σ[2], solid.σ_ZZ(*σ)),
         ),
-    )
-    for method in (CLOSED_FORM, FEM)
-}  # fmt: skip
+    )  # fmt: skip
+
+
+#: The same by method.
+INVARIANTS_INSIDE = {method: invariants(method) for method in (CLOSED_FORM, FEM)}
 
 QUANTITIES.add_all(globals())

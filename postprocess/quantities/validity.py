@@ -57,7 +57,9 @@ STRAIN = _within(
 STRAINED = (*SLIP_REVERSED, *STRAIN)
 
 
-def _tension(method: str) -> tuple[Quantity, Quantity]:
+def tensions(method: str) -> tuple[Quantity, Quantity]:
+    """Largest tension under the punch by a method, and its place."""
+
     def of(i: int) -> Any:
         def values(s: Any, _: Any) -> NDArray[np.float64]:
             return tension(s.surface)[i]
@@ -79,6 +81,6 @@ def _tension(method: str) -> tuple[Quantity, Quantity]:
 
 
 #: How large, and where, by method.
-TENSION = {method: _tension(method) for method in (CLOSED_FORM, FEM)}
+TENSION = {method: tensions(method) for method in (CLOSED_FORM, FEM)}
 
 QUANTITIES.add_all(globals())

@@ -38,15 +38,23 @@ class Form:
         """The integrand at unit gradients, u,X u,Y v,X v,Y, and at unit pressure: (4, 4) or (5, 5)."""
         return _density(self, tuple(float(getattr(response, name)) for name in self.constants))
 
+    def densities(self, constants: NDArray) -> NDArray[np.float64]:
+        """The same of many constants, one row each, (m, 4, 4) or (m, 5, 5)."""
+        rows, which = np.unique(constants, axis=0, return_inverse=True)
+        return np.array([_density(self, tuple(row)) for row in rows.tolist()])[which]
 
-@lru_cache(maxsize=8)
+
+@lru_cache(maxsize=1024)
 def _density(form: Form, constants: tuple[float, ...]) -> NDArray[np.float64]:
     units: list[Any] = [ufl.as_matrix(unit) for unit in _UNITS]
     if form.pressure:
         zero = ufl.as_matrix([[0.0, 0.0], [0.0, 0.0]])
         units = [(G, 0.0) for G in units] + [(zero, 1.0)]
-    values = [[ufl.as_ufl(form.energy(u, w, constants))(()) for u in units] for w in units]
-    return np.array(values, dtype=float)
+    H = np.zeros((len(units), len(units)))
+    for i, u in enumerate(units):
+        for j, w in enumerate(units[: i + 1]):
+            H[i, j] = H[j, i] = ufl.as_ufl(form.energy(u, w, constants))(())
+    return H
 
 
 def stress(G: Any, κ: Any) -> Any:

@@ -19,10 +19,11 @@ from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.held import forces_of_far, forces_of_profile, hold, ones, product, set_zero
 from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 
 @dataclass(frozen=True)
@@ -72,11 +73,17 @@ class SlidingPunch:
         self._rows = [
             A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=comm)) for i in (0, 1)
         ]
-        self._motions = [_ones(A, space.node_dofs[i::2]) for i in (0, 1)]
+        self._motions = [ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
-        self._far = [_product(A, _ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
+        self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
-        shaped = [_forces_of_profile(A, space, height) for height in shapes]
+        shaped = [forces_of_profile(A, space, height) for height in shapes]
+        #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
+        self._moved = 0
+        if isinstance(response, ByCells):
+            moved = response.far(*space.coordinates[space.far_nodes].T)
+            shaped += [forces_of_far(A, space, one) for one in moved]
+            self._moved = len(moved)
         b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
@@ -100,12 +107,15 @@ class SlidingPunch:
             share: by what the profile's heights are multiplied, of each state: less over a larger load.
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
-        level, *shaped = self.parts(g, 0 if flat else None)
         heights = np.asarray(share, dtype=float) * np.ones(len(g))
+        parts = self.parts(g, 0 if flat and not self._moved else None)
+        shapes = len(parts) - 1 - self._moved
+        # A flat punch has none of the profile; a line load's tangential force is g times the other.
+        amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        pressed = sum(heights * part.normal.sum(axis=1) for part in shaped)
-        v0 = (-2.0 - pressed) / level.normal.sum(axis=1)
-        return combined(g, [level, *shaped], np.column_stack([v0, *(heights for _ in shaped)]))
+        carried = sum(of * part.normal.sum(axis=1) for of, part in zip(amplitudes, parts[1:]))
+        v0 = (-2.0 - carried) / parts[0].normal.sum(axis=1)
+        return combined(g, parts, np.column_stack([v0, *amplitudes]))
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
         """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
@@ -225,13 +235,13 @@ class SlidingPunch:
         held = self.space.held_dofs
         t = (self._contact_motion(u)[0], v)
         w = self._without(u, t)
-        _set_zero(w, held)
-        residual = _product(self.factor.A, w)
+        set_zero(w, held)
+        residual = product(self.factor.A, w)
         residual.scale(-1.0)
         if load:
             residual.axpy(1.0, load)
         residual.maxpy(t, self._far)
-        _set_zero(residual, held)
+        set_zero(residual, held)
         w.destroy()
         return residual
 
@@ -283,45 +293,3 @@ def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactS
     normal = sum(share * part.normal for part, share in by_part)
     tangential = sum(share * part.tangential for part, share in by_part)
     return ContactStates(g, weights, np.asarray(normal), np.asarray(tangential), amplitudes[:, 0])
-
-
-def _forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -> PETSc.Vec:
-    """Forces of a contact held at the profile's height, which stands where it is held."""
-    held = A.createVecRight()
-    held.setValues(space.contact.dofs(1), height[space.contact.owned])
-    held.assemble()
-    b = _product(A, held)
-    b.scale(-1.0)
-    _set_zero(b, space.held_dofs)
-    b.axpy(1.0, held)
-    held.destroy()
-    return b
-
-
-def hold(A: PETSc.Mat, space: Space) -> PETSc.Vec:
-    """Hold the contact at v = -1 and the far boundary in a matrix; returns the forces of that."""
-    held, b = A.createVecRight(), A.createVecLeft()
-    held.setValues(space.contact.dofs(1), np.full(len(space.contact.blocks), -1.0))
-    held.assemble()
-    A.zeroRowsColumns(space.held_dofs, 1.0, held, b)
-    held.destroy()
-    return b
-
-
-def _ones(A: PETSc.Mat, dofs: NDArray[np.int32]) -> PETSc.Vec:
-    """A vector that is 1 at this rank's ``dofs`` and 0 elsewhere."""
-    x = A.createVecRight()
-    x.setValues(dofs, np.ones(len(dofs)))
-    x.assemble()
-    return x
-
-
-def _product(A: PETSc.Mat, x: PETSc.Vec) -> PETSc.Vec:
-    y = A.createVecLeft()
-    A.mult(x, y)
-    return y
-
-
-def _set_zero(x: PETSc.Vec, dofs: NDArray[np.int32]) -> None:
-    x.setValues(dofs, np.zeros(len(dofs)))
-    x.assemble()

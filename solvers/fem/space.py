@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -20,26 +19,8 @@ from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CellMatrices
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
-from galinx.solvers.solids.solid import Response
-
-
-@dataclass(frozen=True)
-class SurfaceNodes:
-    """Nodes of a part of the surface, in order of X, the same on every rank.
-
-    Attributes:
-        s: surface coordinates in the mesh's chart, (n,).
-        owned: positions in ``s`` of the nodes this rank owns.
-        blocks: global node numbers of those.
-    """
-
-    s: NDArray[np.float64]
-    owned: NDArray[np.int64]
-    blocks: NDArray[np.int32]
-
-    def dofs(self, component: int) -> NDArray[np.int32]:
-        """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
-        return 2 * self.blocks + component
+from galinx.solvers.fem.nodes import SurfaceNodes
+from galinx.solvers.solids.solid import ByCells, Response
 
 
 class Space:
@@ -131,9 +112,14 @@ class Space:
         return modes
 
     @cached_property
+    def far_nodes(self) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on the far boundary."""
+        return self._owned_blocks("far")
+
+    @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
-        blocks = self.numbers[self._owned_blocks("far")]
+        blocks = self.numbers[self.far_nodes]
         return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
 
     @cached_property
@@ -271,7 +257,12 @@ class Space:
         return self._kept[0][cells] if self._kept else self._cells(self.kernel.condense, response, cells)
 
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
-        return part(self.form.density(response), self.contracted(response), self.vertices[cells])
+        corners = self.vertices[cells]
+        if isinstance(response, ByCells):
+            H = self.form.densities(response.constants(corners[..., 1], self.form.constants))
+        else:
+            H = self.form.density(response)
+        return part(H, self.contracted(response), corners)
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

@@ -54,7 +54,7 @@ class Expansion:
         found[far] = p / (t - r[far, None]) @ w
         near = r[~far]
         p_near = self.series(near)
-        found[~far] = np.pi * p_near * _weights_hilbert(self.α, self.β, near)
+        found[~far] = np.pi * p_near * weights_hilbert(self.α, self.β, near)
         found[~far] += (p - p_near[:, None]) / (t - near[:, None]) @ w
         return found / np.pi
 
@@ -70,7 +70,7 @@ def _gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDAr
     return t, w
 
 
-def _weights_hilbert(α: float, β: float, r: NDArray) -> NDArray[np.float64]:
+def weights_hilbert(α: float, β: float, r: NDArray) -> NDArray[np.float64]:
     """(1/π) ⨍ (1 - t)^α (1 + t)^β/(t - r) dt, α + β = -1."""
     size = np.abs(1.0 - r) ** α * np.abs(1.0 + r) ** β
     under = under_punch(r)

@@ -73,20 +73,25 @@ class AnisotropicFrame:
         return self._found
 
     @cached_property
-    def _G(self) -> NDArray[Any]:
+    def G(self) -> NDArray[Any]:
         """u,Y = G u,X of what decays below the surface: the quadratic less T times that of the roots."""
         Q, R, T = self._matrices
         return np.linalg.solve(R + R.T + self.roots.sum * T, self.roots.product * T - Q)
 
     @cached_property
-    def _stiffness(self) -> NDArray[Any]:
+    def L(self) -> NDArray[Any]:
         """Y⁻¹ of the surface: (σ_XY, σ_YY) = Y⁻¹ u,X of what decays."""
         _, R, T = self._matrices
-        return R.T + T @ self._G
+        return R.T + T @ self.G
+
+    @cached_property
+    def T_inverse(self) -> NDArray[np.float64]:
+        """T⁻¹, (2, 2)."""
+        return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
 
     @cached_property
     def _Y(self) -> NDArray[Any]:
-        return np.linalg.inv(self._stiffness)
+        return np.linalg.inv(self.L)
 
     @cached_property
     def n(self) -> float:
@@ -111,7 +116,7 @@ class AnisotropicFrame:
     @cached_property
     def least_stiffness(self) -> float:
         """Smallest eigenvalue of the surface's stiffness -iY⁻¹, Hermitian; it falls with speed."""
-        Z = -1j * self._stiffness
+        Z = -1j * self.L
         return float(np.linalg.eigvalsh((Z + Z.conj().T) / 2.0)[0])
 
     @cached_property
@@ -180,9 +185,9 @@ class AnisotropicFrame:
         z = X + p * Y
         # Φ of a matrix with two eigenvalues: Φ(z₁) + Φ[z₁, z₂] Y (G - p₁).
         at, change = 1j * Φ.at(z), 1j * Φ.change(z, Y + 0j, other - p)
-        beyond = self._G - p * np.eye(2)
+        beyond = self.G - p * np.eye(2)
         strain = self._Y[0], (beyond @ self._Y)[0]
-        tractions = np.eye(2), self._stiffness @ beyond @ self._Y
+        tractions = np.eye(2), self.L @ beyond @ self._Y
 
         def part(one: NDArray, two: NDArray) -> NDArray[np.float64]:
             return ((one[0] * g + one[1]) * at + (two[0] * g + two[1]) * change).real

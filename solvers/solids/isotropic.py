@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from galinx.solvers.parameters import check, parameter
 from galinx.solvers.solids.constants import density, in_plane, modulus
 from galinx.solvers.solids.potentials import stresses
+from galinx.solvers.solids.roots import Roots
 from galinx.solvers.solids.solid import SOLIDS, Potential
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
@@ -200,6 +201,30 @@ class MovingFrame:
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Stresses from a pressure's potential at the two z_j = X + i β_j Y."""
         return stresses(self, Φ, g, X, Y)
+
+    @cached_property
+    def G(self) -> NDArray[Any]:
+        """u,Y = G u,X of what decays below the surface, (2, 2); regular up to ν = 1/2 and at rest."""
+        s, d, k, w = self.β_s, self.β_d, self.k, self._w
+        across = (1.0 - k) / ((s + d) * w)
+        return np.array([[1j * d / w, -s * across], [-d * across, 1j * s * k / w]])
+
+    @cached_property
+    def L(self) -> NDArray[Any]:
+        """Stiffness of the surface, (σ_XY, σ_YY) = L u,X of what decays, (2, 2); regular likewise."""
+        s, d, w = self.β_s, self.β_d, self._w
+        coupling = 1.0 - s * (1.0 - self.k) / ((s + d) * w)
+        return np.array([[1j * d / w, coupling], [-coupling, 1j * s / w]])
+
+    @cached_property
+    def T_inverse(self) -> NDArray[np.float64]:
+        """Inverse of the stiffness across, diag(1, λ + 2), (2, 2)."""
+        return np.diag([1.0, self.k])
+
+    @cached_property
+    def roots(self) -> Roots:
+        """iβ_s and iβ_d by their sum and product."""
+        return Roots(1j * (self.β_s + self.β_d), complex(-self.β_s * self.β_d))
 
     @property
     def ω(self) -> tuple[float, float, float, float]:

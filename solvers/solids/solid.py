@@ -1,6 +1,7 @@
 """What solvers ask of an elastic solid, at rest and at speed."""
 
-from typing import Any, ClassVar, Protocol
+from collections.abc import Sequence
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,6 +74,22 @@ class Response(Protocol):
             g: σ_XY/σ_YY on the surface.
             X, Y: positions, Y < 0.
         """
+
+
+@runtime_checkable
+class ByCells(Protocol):
+    """A response whose constants in the weak form change with depth."""
+
+    def constants(self, Y: NDArray, names: Sequence[str]) -> NDArray[np.float64]:
+        """The weak form's constants in cells, (cells, names).
+
+        Args:
+            Y: heights of the cells' vertices in the mesh, (cells, 4).
+            names: what the form calls them.
+        """
+
+    def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Displacements far away under line loads, (2, 2, n): of ∫σ_YY = -2, and of ∫σ_XY = -2."""
 
 
 class Solid(Protocol):

@@ -11,8 +11,9 @@ from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, INTENSITIES, PUNCH, SIE
 from galinx.registry import Registry
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import exponent
 from galinx.solvers.solution import Body
 
@@ -27,6 +28,20 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
         return ClosedForm(FoundPunches)
     return ClosedForm(with_given_ends)
+
+
+def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
+    from galinx.app.run.methods.layers import Layers
+
+    return Layers(plan.tolerance)
+
+
+def _layers_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if not body.layered:
+        return "the solid has no layers, and closed_form knows the solution"
+    if body.found:
+        return "of layered solids, punches with two sharp edges are known"
+    return "the pressure is given" if body.pressure else ""
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
@@ -56,6 +71,8 @@ _OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *va
 
 
 def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if body.layered:
+        return "the solid has layers, and no closed form"
     if body.found:
         return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
     if body.pressure:
@@ -80,7 +97,25 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
         return FiniteElements(plan, progress, clock)
 
 
+def _of_layers(scene: Scene, solid: Layered, quantity: Quantity | None) -> str:
+    """Why finite elements do not give a quantity of layers, "" where they do."""
+    if any(layer.bottom for layer in solid.layers):
+        return "a layer is graded; the integral equation takes such layers"
+    if solid.nearly_incompressible:
+        return "a solid is nearly incompressible; the integral equation takes such layers"
+    if scene.solve.degree or scene.solve.mesh != "confocal":
+        return "layers have meshes of their own: no mesh, and no degree"
+    if quantity is None:
+        return ""
+    if quantity is states.INDENTATION:
+        return "the far boundary moves with the load"
+    known = ("", INTENSITIES, stresses.ON_SURFACE)
+    return "" if quantity.asked_by in known else "of layers the integral equation gives it"
+
+
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
+    if isinstance(body.solid, Layered):
+        return _of_layers(scene, body.solid, quantity)
     if body.found and not isinstance(body.profile, LINEAR):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
@@ -98,6 +133,7 @@ METHODS: Registry[MethodKind] = Registry(
     "method",
     {
         CLOSED_FORM: MethodKind("closed form", _closed_form, _closed_form_refusal, loads=True),
+        SIE: MethodKind("singular integral equation of layers", _layers, _layers_refusal, of_layers=True),
         FEM: MethodKind(
             "mesh and finite elements", _finite_elements, _finite_elements_refusal, loads=True
         ),

@@ -75,6 +75,8 @@ class Discretisation:
     def _made(self, cuts: int) -> tuple[Any, Any]:
         comm, kind, pattern = self.comm, self.plan.kind, self.plan.pattern
         check_cells(pattern)
+        if self.plan.drawn is not None:  # no other run has the same
+            return distribute(pattern if comm.rank == 0 else None, comm)
         if cuts > 1:  # gmsh's copy of a cut mesh would only be large
             return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
         return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)

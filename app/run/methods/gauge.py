@@ -11,7 +11,7 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
 from galinx.postprocess import scale
-from galinx.postprocess.pressure import JacobiPressure, chebyshev
+from galinx.postprocess.pressure import JacobiPressure
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.space import Space
@@ -49,7 +49,7 @@ class Gauge:
 
 def of_pressure(pressure: JacobiPressure, moments: NDArray) -> Gauge:
     """K_I, the pressure all over the contact, and its moments 1 to 5 over the load."""
-    factor = pressure.c @ chebyshev(_ACROSS).T
+    factor = pressure.factor(_ACROSS)
     values = np.concatenate([factor, moments[:, 1:6]], axis=1)
     return Gauge(
         INTENSITIES,

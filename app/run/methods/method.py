@@ -60,9 +60,11 @@ class MethodKind:
         refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
             None: why it gives none at all.
         loads: do its solvers know states under several loads? Each load has a solver of its own if not.
+        of_layers: is it for layered solids alone? Plans of others do not speak of it.
     """
 
     about: str
     made: Callable[[Plan, Progress, Clock], Method]
     refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
     loads: bool = False
+    of_layers: bool = False

@@ -1,6 +1,6 @@
 """Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
@@ -17,7 +18,8 @@ from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
-from galinx.postprocess.pressure import JacobiPressure, contact_recovery, from_moments
+from galinx.postprocess.pressure import JacobiPressure, chebyshev, contact_recovery, from_moments
+from galinx.postprocess.stretched import from_moments as from_stretched
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
 from galinx.solvers.fem.space import Space
@@ -65,9 +67,13 @@ class PunchLevel:
 
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         plan, self.task, self.space = work.plan, task, space
+        self._tests = plan.tests
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
         self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights())
-        self.recovery = contact_recovery(space.contact.s, space.degree, space.chart, task.places.X)
+        more = 2 * (space.degree - plan.degrees[task.number])
+        self.recovery = contact_recovery(
+            space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)
+        )
         # The basis is complete before traces are taken, and the same whatever states are still to do.
         for first in range(0, len(g), work.chunk):
             self.punch.parts(g[first : first + work.chunk])
@@ -84,7 +90,10 @@ class PunchLevel:
     def pressure(self, states: ContactStates) -> JacobiPressure:
         """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""
         local = FlatPunch(self.task.response, states.g)
-        return from_moments(states.normal @ self.recovery.moments, local.α, local.β)
+        moments, tests = states.normal @ self.recovery.moments, self._tests
+        if tests:
+            return from_stretched(moments, local.α, local.β, tests.stretch)
+        return from_moments(moments, local.α, local.β)
 
     def contact(self, g: NDArray, load: Any = None) -> ContactStates:
         """States with these values of σ_XY/σ_YY, under the task's load or others [N/m]."""
@@ -108,8 +117,11 @@ class PunchLevel:
             states = self.punch.states(g, flat=True)
             pressure = self.pressure(states)
             left, right = pressure.K_I.T
+            # Over layers they differ, and what a solve leaves of its forces stands for rounding.
+            layered = self.task.body.layered
+            of_edges = self.factor.largest_residual if layered else np.abs(left / right - 1.0).max()
             stresses = self._gauges.rounding(g, states.weights, pressure.σ_YY(self.task.places.X))
-            return [float(np.abs(left / right - 1.0).max()), *stresses]
+            return [float(of_edges), *stresses]
         found = []
         for sign in (1.0, -1.0):
             states = self.punch.states(sign * g, flat=True)
@@ -124,6 +136,14 @@ class PunchLevel:
 
     def destroy(self) -> None:
         self.punch.destroy()
+
+
+def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
+    """Functions of r with which nodal forces are tested, so many more than planned over layers."""
+    tests = plan.tests
+    if tests is None:
+        return chebyshev
+    return lambda r: chebyshev(tests.stretch(r), tests.count + more)
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:

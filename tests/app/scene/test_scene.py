@@ -76,7 +76,7 @@ def test_defaults_leave_only_what_has_none():
         ({"motion.X_over_L": 1.2}, "X_over_L"),
         ({"motion.X_over_L": []}, "X_over_L"),
         ({"motion.strokes": ["sideways"]}, "strokes"),
-        ({"solve.methods": ["fme"]}, "expected closed_form or fem; did you mean fem\\?"),
+        ({"solve.methods": ["fme"]}, "expected closed_form, sie or fem; did you mean fem\\?"),
         ({"motion.strokes": ["foward"]}, "did you mean forward\\?"),
         ({"solid.material": "STEEL"}, r"has 1 fault:.*found 'STEEL', .*; did you mean steel\?"),
         ({"solid.material": "gold"}, r"has 1 fault:.*zinc or ice$"),

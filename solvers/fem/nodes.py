@@ -1,0 +1,25 @@
+"""Nodes of a part of the surface."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class SurfaceNodes:
+    """Nodes of a part of the surface, in order of X, the same on every rank.
+
+    Attributes:
+        s: surface coordinates in the mesh's chart, (n,).
+        owned: positions in ``s`` of the nodes this rank owns.
+        blocks: global node numbers of those.
+    """
+
+    s: NDArray[np.float64]
+    owned: NDArray[np.int64]
+    blocks: NDArray[np.int32]
+
+    def dofs(self, component: int) -> NDArray[np.int32]:
+        """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
+        return 2 * self.blocks + component

@@ -1,0 +1,1 @@
+"""Half-planes of several layers, and of solids graded with depth."""

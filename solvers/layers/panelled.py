@@ -1,0 +1,226 @@
+"""Pressures over solids that are graded from the surface on, by panels in x = log((1 + t)/(1 - t)).
+
+There the kernel has a logarithm and a jump, and towards both ends the pressure without its weight has
+terms like (1 - t) log(1 - t), which no polynomial follows. In x both ends lie at infinity and all is
+smooth. With p the pressure without its weight w the dominant part of the equation is regular,
+
+    (n̂/π) ∫ w(t) (p(t) - p(r))/(t - r) dt,
+
+for what p(r) alone contributes is what the exponents make vanish.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+#: Points of a panel; values there to coefficients of Legendre polynomials, and to their derivative.
+_NODES = 14
+_τ, _w = legendre.leggauss(_NODES)
+_TO_LEGENDRE = (np.arange(_NODES) + 0.5)[:, None] * legendre.legvander(_τ, _NODES - 1).T * _w
+_DERIVATIVE = (
+    np.stack([legendre.legval(_τ, legendre.legder(row)) for row in np.eye(_NODES)], axis=1) @ _TO_LEGENDRE
+)
+#: |x| beyond which the pressure is that of the ends; longest panels up to some |x|.
+_REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
+#: Panels towards a place where a kernel is rough: their grading, number, points; within how many lengths
+#: of a panel a place is near.
+_GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+_ξ, _ω = legendre.leggauss(14)
+
+
+def ends_of_panels(finest: float) -> NDArray[np.float64]:
+    """In x, none longer than ``finest`` in t, and that times the usual length in x."""
+    ends = [0.0]
+    while ends[-1] < _REACH - 1e-9:
+        x = ends[-1]
+        longest = next(length for up_to, length in _LONGEST if x < up_to)
+        there = 2.0 * finest * np.cosh(x / 2.0) ** 2
+        ends.append(min(x + min(finest * longest, there), _REACH))
+    return np.concatenate([-np.array(ends[:0:-1]), ends])
+
+
+@dataclass(frozen=True)
+class Panels:
+    """A rule for what has the weight (1 - t)^α (1 + t)^β.
+
+    Attributes:
+        α, β: exponents, their sum -1.
+        finest: longest panel in t.
+    """
+
+    α: float
+    β: float
+    finest: float
+
+    @cached_property
+    def ends(self) -> NDArray[np.float64]:
+        return ends_of_panels(self.finest)
+
+    @cached_property
+    def half(self) -> NDArray[np.float64]:
+        return np.diff(self.ends) / 2.0
+
+    @cached_property
+    def x(self) -> NDArray[np.float64]:
+        """Points, (n,)."""
+        return ((self.ends[1:] + self.ends[:-1])[:, None] / 2.0 + self.half[:, None] * _τ).ravel()
+
+    @cached_property
+    def t(self) -> NDArray[np.float64]:
+        return np.tanh(self.x / 2.0)
+
+    @cached_property
+    def weights(self) -> NDArray[np.float64]:
+        """Of integrals over t with the weight, (n,); what lies beyond is at the last points."""
+        found = (self.half[:, None] * _w).ravel() * self.density(self.x)
+        beyond = 2.0 / (1.0 + np.exp(_REACH))
+        found[-1] += 2.0**self.β * beyond ** (1.0 + self.α) / (1.0 + self.α)
+        found[0] += 2.0**self.α * beyond ** (1.0 + self.β) / (1.0 + self.β)
+        return found
+
+    def density(self, x: NDArray) -> NDArray[np.float64]:
+        """Weight times dt/dx; 1 - t = 2/(1 + e^x), and dt/dx is half the product of 1 - t and 1 + t."""
+        log = -(1.0 + self.α) * np.logaddexp(0.0, x) - (1.0 + self.β) * np.logaddexp(0.0, -x)
+        return np.asarray(np.exp(log))
+
+    def weight(self, x: NDArray) -> NDArray[np.float64]:
+        """(1 - t)^α (1 + t)^β."""
+        log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
+        return np.asarray(np.exp(log) / 2.0)
+
+    def apart(self, x: Any, δ: NDArray) -> NDArray[np.float64]:
+        """t(x + δ) - t(x), to all digits."""
+        return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh((x + δ) / 2.0)))
+
+    def panel(self, x: NDArray) -> NDArray[np.int64]:
+        """In which panels positions lie."""
+        return np.clip(np.searchsorted(self.ends, x) - 1, 0, len(self.half) - 1)
+
+    def basis(self, x: NDArray, panel: int) -> NDArray[np.float64]:
+        """Values at places of a panel by those at its points, (len(x), nodes)."""
+        middle = (self.ends[panel] + self.ends[panel + 1]) / 2.0
+        return np.asarray(legendre.legvander((x - middle) / self.half[panel], _NODES - 1) @ _TO_LEGENDRE)
+
+    def values(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
+        """p at any places by its values at the points."""
+        inside = np.clip(x, -_REACH, _REACH)
+        found = np.empty_like(inside)
+        panels = self.panel(inside)
+        for panel in np.unique(panels).tolist():
+            some = panels == panel
+            found[some] = self.basis(inside[some], panel) @ p[panel * _NODES : (panel + 1) * _NODES]
+        return found
+
+    @cached_property
+    def derivative(self) -> NDArray[np.float64]:
+        """dp/dt at the points by values in their panel, (panels, nodes, nodes)."""
+        slope = 1.0 / (2.0 * np.cosh(self.x / 2.0) ** 2)
+        return _DERIVATIVE / self.half[:, None, None] / slope.reshape(-1, _NODES, 1)
+
+    def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
+        """∫ kernel(t(x) - t) w(t) … dt by values at the points, (n, functions); rough where t = t(x)."""
+        away = -self.apart(x, self.x - x)
+        away[away == 0.0] = 1.0  # that is taken by what follows
+        by_rule = kernel(away)
+        found = by_rule * self.weights[:, None]
+        for panel, half in enumerate(self.half.tolist()):
+            low, high = self.ends[panel], self.ends[panel + 1]
+            if low - _NEAR * 2.0 * half <= x <= high + _NEAR * 2.0 * half:
+                δ, weights = self._towards(x, float(low), float(high))
+                places = x + δ
+                values = kernel(-self.apart(x, δ)) * (weights * self.density(places))[:, None]
+                near = slice(panel * _NODES, (panel + 1) * _NODES)
+                beyond = self.weights[near] - half * _w * self.density(self.x[near])
+                found[near] = self.basis(places, panel).T @ values
+                found[near] += beyond[:, None] * by_rule[near]
+        return np.asarray(found)
+
+    @staticmethod
+    def _towards(x: float, low: float, high: float) -> tuple[NDArray, NDArray]:
+        """Distances from a place and weights on a panel, graded towards it or the nearer end."""
+        steps = np.concatenate([[0.0], _GRADING ** np.arange(_STEPS, -1, -1.0)])
+        middle, half = (steps[1:] + steps[:-1]) / 2.0, np.diff(steps) / 2.0
+        s, ds = (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
+        at = min(max(x, low), high)
+        parts = [((at - x) + (end - at) * s, abs(end - at) * ds) for end in (low, high) if end != at]
+        places, weights = (np.concatenate(some) for some in zip(*parts))
+        return places, weights
+
+
+@dataclass(frozen=True)
+class PanelledPressure:
+    """A pressure by values at points of panels, see :class:`galinx.solvers.layers.pressure.Pressure`."""
+
+    panels: Panels
+    p: NDArray[np.float64]
+
+    near = 1.0
+
+    @property
+    def α(self) -> float:
+        return self.panels.α
+
+    @property
+    def β(self) -> float:
+        return self.panels.β
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.panels.values(self.p, _x(r))
+
+    def rest(self, r: NDArray) -> NDArray[np.float64]:
+        panels, found = self.panels, np.empty(len(r))
+        under = np.abs(r) < 1.0
+        found[~under] = (panels.weights * self.p / (panels.t - r[~under, None])).sum(axis=1)
+        x = _x(r[under])
+        x = np.where(np.abs(x[:, None] - panels.x).min(axis=1) < 1e-7, x + 3e-7, x)
+        difference = self.p - panels.values(self.p, x)[:, None]
+        found[under] = (
+            panels.weights * difference / panels.apart(x[:, None], panels.x - x[:, None])
+        ).sum(axis=1)
+        return found / np.pi
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        panels, under = self.panels, np.abs(r) < 1.0
+        σ = panels.weights * self.p
+        beside = np.einsum("rtf,t->rf", kernel(r[~under, None] - panels.t), σ)
+        found = np.empty((len(r), beside.shape[-1]))
+        found[~under] = beside
+        for i, x in zip(np.flatnonzero(under), _x(r[under]).tolist()):
+            found[i] = self.p @ panels.row(kernel, x)
+        return found
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        fine = Panels(self.α, self.β, min(finest, self.panels.finest))
+        return fine.t, fine.weights * self.panels.values(self.p, fine.x)
+
+
+def _x(r: NDArray) -> NDArray[np.float64]:
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.log1p(r) - np.log1p(-r))
+
+
+def solved(equation: Any, finest: float) -> PanelledPressure:
+    """The pressure of an :class:`galinx.solvers.layers.contact.Equation` on such panels."""
+    panels = Panels(equation.α, equation.β, finest)
+    n, count = equation.n, len(panels.x)
+    apart = panels.apart(panels.x[:, None], panels.x - panels.x[:, None])
+    np.fill_diagonal(apart, np.inf)
+    A = n / np.pi * panels.weights / apart
+    A -= np.diag(A.sum(axis=1))
+    for panel, D in enumerate(panels.derivative):
+        own = slice(panel * _NODES, (panel + 1) * _NODES)
+        A[own, own] += n / np.pi * panels.weights[own, None] * D
+    for i, x in enumerate(panels.x.tolist()):
+        by_kernel = panels.row(equation.kernel, x)
+        A[i] += by_kernel[:, 3] + equation.g * by_kernel[:, 2]
+    scale = 1.0 / panels.weight(panels.x)
+    A = np.vstack([A * scale[:, None], panels.weights])
+    b = np.append(equation.slope(panels.t) * scale, -2.0)
+    p, *_ = np.linalg.lstsq(A, b, rcond=None)
+    assert len(p) == count
+    return PanelledPressure(panels, p)

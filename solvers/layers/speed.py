@@ -1,0 +1,82 @@
+"""The highest speed over layers, and how fast waves along them run.
+
+Below it the stiffness against every wave, on the surface and inside, is positive; it falls with speed, so
+that the speed at which the smallest of all vanishes is found by bracketing.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.errors import SolveError
+from galinx.solvers.layers.stack import Stack
+
+#: Wavenumbers an octave at which stiffness is looked at, and over which range: kH of the whole, of the
+#: thinnest layer.
+_DENSITY, _LONGEST, _SHORTEST = 6, 1e-3, 30.0
+#: Times that the neighbourhood of the smallest one is looked at again, and wavenumbers there.
+_CLOSER, _THERE = 4, 9
+#: Halvings of a bracket at most.
+_STEPS = 90
+
+
+def weakest(stack: Stack) -> tuple[float, float]:
+    """Smallest stiffness against any wave, and its wavenumber times a."""
+    H = [layer.H for layer in stack.layers]
+    k = wavenumbers(sum(H), min(H))
+    for _ in range(_CLOSER):
+        values = stack.stands(k)
+        i = int(np.argmin(values))
+        lowest, at = float(values[i]), float(k[i])
+        if not lowest > 0.0 or i in (0, len(k) - 1):
+            break
+        k = np.geomspace(k[i - 1], k[i + 1], _THERE)
+    return lowest, at
+
+
+def wavenumbers(whole: float, thinnest: float) -> NDArray[np.float64]:
+    """From waves much longer than all layers to some much shorter than the thinnest."""
+    first, last = _LONGEST / whole, _SHORTEST / thinnest
+    return np.geomspace(first, last, int(_DENSITY * np.log2(last / first)) + 1)
+
+
+def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> float:
+    """Highest speed at which nothing gives way.
+
+    Args:
+        stack: of a speed; raises ValueError where some wave inside is not faster.
+        most: a speed that is no lower.
+        accuracy: relative.
+    """
+
+    def stands(speed: float) -> float:
+        try:
+            return weakest(stack(speed))[0]
+        except (ValueError, SolveError):
+            return -np.inf
+
+    low, high = 0.0, most
+    f_low, f_high = stands(low), stands(high)
+    if f_low <= 0.0:
+        raise SolveError("the layers have no stiffness at rest; are their constants as meant?")
+    if f_high > 0.0:
+        return most
+    side = 0
+    for _ in range(_STEPS):
+        if high - low <= accuracy * high:
+            break
+        middle = (low + high) / 2.0
+        if np.isfinite(f_high) and f_high < 0.0:  # Illinois
+            guess = (low * f_high - high * f_low) / (f_high - f_low)
+            middle = guess if low < guess < high else middle
+        value = stands(middle)
+        if value > 0.0:
+            low, f_low = middle, value
+            f_high = f_high / 2.0 if side == 1 else f_high
+            side = 1
+        else:
+            high, f_high = middle, value
+            f_low = f_low / 2.0 if side == -1 else f_low
+            side = -1
+    return low

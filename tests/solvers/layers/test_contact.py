@@ -1,0 +1,140 @@
+"""Punches on layered and graded half-planes by the singular integral equation."""
+
+import os
+
+import mpmath as mp
+import numpy as np
+import pytest
+from layers_cases import COAT, SUBSTRATE, equation, flat
+from layers_reference import plane_strain, punch
+
+from galinx.solvers.layers.contact import found
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.layers.panelled import solved as panelled
+from galinx.solvers.layers.states import Speed
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.collocation import solve
+from galinx.solvers.solids.isotropic import Isotropic
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+#: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
+#: reference.
+EXAMPLE = {
+    0.2: (-0.46191902660637, 0.46957498690109, 0.44068899120707, -0.17306141207014),
+    1e-6: (-0.46377887035456, 0.44527894507991, 0.42102580318078, -0.19463531965638),
+}
+ENDS, MIDDLE = np.array([-1.0, 1.0]), np.zeros(1)
+
+
+def read(pressure):
+    return np.array([pressure.α, *(-0.5 * pressure.series(ENDS)), *(0.5 * pressure.series(MIDDLE))])
+
+
+@pytest.mark.parametrize("V2", EXAMPLE)
+def test_the_example_to_all_digits(V2):
+    one = found(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 1e-11)
+    assert np.abs(read(one.pressure) - EXAMPLE[V2]).max() <= 2e-12
+
+
+@pytest.mark.skipif(not THOROUGH, reason="a minute")
+@pytest.mark.parametrize("V2", EXAMPLE)
+def test_the_reference_finds_the_example(V2):
+    layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
+    exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), repr(V2), "-0.4", 36)
+    assert np.abs(np.array(exact, dtype=float) - EXAMPLE[V2]).max() <= 1e-13
+
+
+def test_the_reference_finds_it_roughly():
+    layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
+    exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), "0.2", "-0.4", 12, 20, 8, 10)
+    assert np.abs(np.array(exact, dtype=float) - EXAMPLE[0.2]).max() <= 1e-5
+
+
+@pytest.mark.parametrize("V2", EXAMPLE)
+def test_panels_find_the_example_too(V2):
+    """A second discretisation, with nothing of Jacobi's polynomials in it."""
+    one = panelled(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 0.7)
+    assert np.abs(read(one) - EXAMPLE[V2]).max() <= 1e-10
+
+
+@pytest.mark.parametrize("g", [-0.9, 0.0, 0.4])
+def test_layers_of_one_solid_are_the_half_plane(g):
+    solid = Layered((Layer(0.3, COAT), Layer(0.2, COAT), Layer(1.5, COAT)), COAT)
+    one = found(equation(solid, 0.9, g), 1e-11).pressure
+    exact = FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), g)
+    assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-12
+
+
+def test_a_thick_layer_is_the_coating_alone():
+    """What the substrate does falls like a/H."""
+    off = []
+    for H in (10.0, 100.0):
+        one = found(equation(Layered((Layer(H, COAT),), SUBSTRATE), 0.2, -0.4), 1e-11).pressure
+        exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
+        off.append(np.abs(-0.5 * one.series(ENDS) / exact.K_I - 1.0).max())
+    assert off[0] <= 0.05 and 9.0 < off[0] / off[1] < 12.0
+
+
+def test_graded_layer_is_the_limit_of_uniform_ones():
+    bottom = Isotropic(2.5, 0.25, 1.0)
+    graded = Layer(1.0, COAT, bottom)
+    exact = read(found(equation(Layered((graded,), bottom), 0.2, -0.4, tolerance=1e-10), 1e-8).pressure)
+    off = []
+    for count in (4, 8, 16) + (32,) * THOROUGH:
+        middles = (np.arange(count) + 0.5) / count
+        layers = tuple(Layer(1.0 / count, graded.at(float(s))) for s in middles)
+        one = found(equation(Layered(layers, bottom), 0.2, -0.4, tolerance=1e-9), 1e-6).pressure
+        # The exponents are those of the uppermost solid, so the middle is looked at.
+        off.append(abs(read(one)[3] / exact[3] - 1.0))
+    rates = np.log2(np.array(off[:-1]) / off[1:])
+    assert off[-1] < 1e-3 and rates.min() > 1.8
+
+
+def test_graded_solid_that_does_not_change_is_uniform():
+    almost = Isotropic(7.5 * (1.0 + 1e-9), 0.3, 1.2)
+    one = found(equation(Layered((Layer(1.0, COAT, almost),), COAT), 0.2, -0.4, tolerance=1e-10), 1e-8)
+    exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
+    assert np.abs(-0.5 * one.pressure.series(ENDS) - exact.K_I).max() <= 1e-8
+
+
+def test_mirror_image():
+    """X to -X changes g in sign and swaps the ends."""
+    solid = Layered((Layer(0.4, SUBSTRATE, COAT), Layer(0.3, COAT)), COAT)
+    left, right = (found(equation(solid, 0.2, g, tolerance=1e-9), 1e-6).pressure for g in (0.5, -0.5))
+    assert np.abs(left.series(ENDS) - right.series(-ENDS)).max() <= 1e-7
+
+
+def test_sharp_punch_with_a_profile():
+    """On layers of one solid as by the collocation of the half-plane."""
+    solid = Layered((Layer(0.5, COAT),), COAT)
+
+    def slope(r):
+        return 0.3 * np.asarray(r) + 0.1
+
+    one = found(equation(solid, 0.2, -0.4, slope), 1e-11).pressure
+    exact = solve(COAT.response(0.2**0.5 / COAT.c_s), -0.4, 40, slope)
+    assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-10
+
+
+@pytest.mark.parametrize("H", [0.1, *(0.01,) * THOROUGH])
+def test_thin_coatings_tend_to_the_substrate(H):
+    """The middle of the contact sees the substrate the more the thinner the coating."""
+    solid = Layered((Layer(H, COAT),), SUBSTRATE)
+    one = found(equation(solid, 0.2, 0.0, tolerance=1e-8), 1e-5).pressure
+    exact = FlatPunch(SUBSTRATE.response(0.2**0.5), 0.0)
+    r = np.linspace(-0.5, 0.5, 5)
+    σ = (1.0 - r) ** one.α * (1.0 + r) ** one.β * one.series(r)
+    assert np.abs(σ / exact.σ_YY(r) - 1.0).max() <= 2.0 * H
+
+
+def test_frictions_between_are_interpolated_within_the_tolerance():
+    solid = Layered((Layer(1.0, COAT),), SUBSTRATE)
+    response = solid.response(0.3)
+    speed = Speed(response, response.stack(1.0), flat, 1e-8)
+    g = np.linspace(-1.0, 1.0, 301)
+    nodes, left = speed.solved(g)
+    assert len(nodes.each) < 40 and left.max() <= 1e-8
+    ends = nodes.at(g) @ nodes.read(lambda pressure: pressure.series(ENDS))
+    for i in (3, 150):
+        exact = found(equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11).pressure.series(ENDS)
+        assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8

@@ -1,0 +1,193 @@
+"""Stiffness of layered and graded half-planes, and what it says of the speed."""
+
+import os
+
+import mpmath as mp
+import numpy as np
+import pytest
+from layers_cases import COAT, SUBSTRATE, constants
+from layers_reference import admittance, graded_admittance
+from random_solids import orthotropic
+
+from galinx.solvers.errors import SolveError
+from galinx.solvers.layers.fourier import spherical_bessel, transform
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.layers.medium import inverse
+from galinx.solvers.layers.speed import weakest
+from galinx.solvers.solids.isotropic import Isotropic
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+
+
+def random_stack(seed, graded=False):
+    """Layers of random solids, moduli up to 400 times apart, and a speed below the limit."""
+    rng = np.random.default_rng(seed)
+
+    def solid(stiffness):
+        if rng.random() < 0.5:
+            return Isotropic(stiffness, rng.uniform(0.0, 0.45), rng.uniform(0.5, 2.0))
+        one = orthotropic(rng, 10.0)
+        scale = stiffness / one.E2
+        return type(one)(
+            one.E1 * scale, one.E2 * scale, one.E3 * scale, one.ν12, one.ν13, one.ν23, one.G12 * scale,
+            rng.uniform(0.5, 2.0), one.angle, "strain",
+        )  # fmt: skip
+
+    layers = []
+    for _ in range(rng.integers(1, 6)):
+        top = solid(20.0 ** rng.uniform(-1.0, 1.0))
+        bottom = None
+        if graded and isinstance(top, Isotropic):
+            bottom = Isotropic(top.E * 4.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.45), top.ρ)
+        layers.append(Layer(20.0 ** rng.uniform(-1.0, 1.0), top, bottom))
+    whole = Layered(tuple(layers), solid(1.0))
+    return whole, rng.uniform(0.1, 0.98) * whole.limit()
+
+
+def in_digits(solid, c):
+    """Layers, substrate and V² of the reference."""
+    layers = [(mp.mpf(one.thickness), constants(one.solid), mp.mpf(one.solid.ρ)) for one in solid.layers]
+    return layers, (constants(solid.substrate), mp.mpf(solid.substrate.ρ)), mp.mpf(c * solid.c_s) ** 2
+
+
+@pytest.mark.parametrize("seed", range(30 if THOROUGH else 4))
+def test_stiffness_of_random_stacks_is_that_of_the_reference(seed):
+    solid, c = random_stack(seed)
+    stack = solid.response(c).stack(1.0)
+    k = 10.0 ** np.random.default_rng(seed).uniform(-1.5, 0.7, 3) / np.min(
+        [one.H for one in stack.layers]
+    )
+    found = solid.μ**-1 * 1j * inverse(stack.stiffness(k))
+    mp.mp.dps = 60 + int(3.0 * max(k) * stack.depths[-1])
+    for one, number in zip(found, k.tolist()):
+        exact = np.array(admittance(*in_digits(solid, c), mp.mpf(number)).tolist(), dtype=complex)
+        assert np.abs(one - exact).max() <= 3e-12 * np.abs(exact).max()
+
+
+def test_excess_keeps_its_digits_where_it_is_small():
+    stack = Layered((Layer(1.0, COAT),), SUBSTRATE).response(0.3).stack(1.0)
+    mp.mp.dps = 60
+    V2 = mp.mpf(0.3 * COAT.c_s) ** 2
+    top = admittance([], (constants(COAT), mp.mpf(COAT.ρ)), V2, mp.mpf(1))
+    layers = [(mp.mpf(1), constants(COAT), mp.mpf(COAT.ρ))]
+    whole = admittance(layers, (constants(SUBSTRATE), mp.mpf(1)), V2, mp.mpf(12))
+    exact = np.array((whole - top).tolist(), dtype=complex) * COAT.μ
+    found = stack.admittance(np.array([12.0]))[0]
+    assert np.abs(exact).max() < 1e-7
+    assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize(("grading", "exponent"), [("linear", 1.0), ("exponential", 1.0), ("power", 2.5)])
+def test_graded_layers_are_those_of_the_reference(grading, exponent):
+    bottom = Isotropic(2.0, 0.2, 1.0)
+    layer = Layer(0.8, COAT, bottom, grading, exponent)
+    solid = Layered((layer,), bottom)
+    c = 0.4 * solid.limit()
+
+    def properties(depth):
+        share = (depth / 0.8) ** exponent
+        one = layer.at(share)
+        return constants(one), one.ρ
+
+    mp.mp.dps = 20
+    k = np.array([0.5, 2.0, 4.0])
+    found = 1j * inverse(solid.response(c).stack(1.0).stiffness(k)) / solid.μ
+    for one, number in zip(found, k.tolist()):
+        exact = graded_admittance(properties, 0.8, (c * solid.c_s) ** 2, number)
+        assert np.abs(one - exact).max() <= 1e-9 * np.abs(exact).max()
+
+
+def test_graded_layer_is_the_limit_of_uniform_ones():
+    """Of second order, at all wavenumbers; the first order for large k is known."""
+    bottom = Isotropic(2.0, 0.2, 1.0)
+    graded = Layer(1.0, COAT, bottom)
+    k = np.array([0.3, 3.0, 20.0])
+    exact = Layered((graded,), bottom).response(0.3).stack(1.0)
+    off = []
+    for count in (16, 32, 64):
+        middles = (np.arange(count) + 0.5) / count
+        layers = tuple(Layer(1.0 / count, graded.at(float(s))) for s in middles)
+        solid = Layered(layers, bottom)
+        c = 0.3 * COAT.c_s / solid.c_s
+        stiffness = solid.response(c).stack(1.0).stiffness(k) * (solid.μ / COAT.μ)
+        off.append(np.abs(stiffness - exact.stiffness(k)).max(axis=(1, 2)))
+    rates = np.log2(np.array(off[:-1]) / off[1:])
+    assert np.all(np.abs(rates[-1, :2] - 2.0) < 0.05)
+    far = np.array([1e5])
+    first = exact.layers[0].first_order()
+    assert np.abs(far * exact.excess(far)[0] - first).max() <= 1e-4 * np.abs(first).max()
+
+
+def test_displacement_carried_down_is_that_of_the_parts():
+    """A layer cut in two carries down what it carries down whole."""
+    k = np.array([0.4, 2.0, 9.0])
+    bottom = Isotropic(2.0, 0.2, 1.0)
+    for layer in (Layer(1.0, COAT), Layer(1.0, COAT, bottom)):
+        stack = Layered((layer,), bottom).response(0.3).stack(1.0)
+        one, below = stack.layers[0], stack.below(k)[0]
+        upper, lower = one.cut(0.3)
+        between = lower.top.down + lower.excess(k, below)
+        twice = lower.carried(k, below) @ upper.carried(k, between)
+        whole = one.carried(k, below)
+        assert np.abs(whole).min() < 0.01 < np.abs(whole).max()
+        assert np.abs(twice - whole).max() <= 1e-9
+
+
+def test_speed_limit_of_uniform_half_planes_and_of_soft_layers_inside():
+    same = Layered((Layer(0.3, COAT), Layer(2.0, COAT)), COAT)
+    assert same.limit() == pytest.approx(COAT.limit(), rel=1e-12)
+    hard = Layered((Layer(1.0, COAT),), SUBSTRATE)
+    assert hard.limit() * COAT.c_s == pytest.approx(SUBSTRATE.limit() * SUBSTRATE.c_s, rel=1e-12)
+    soft = Layered((Layer(1.0, SUBSTRATE),), COAT)
+    assert soft.limit() == pytest.approx(SUBSTRATE.limit(), rel=1e-12)
+    # Short waves in a soft layer inside run with its own shear speed.
+    inside = Layered((Layer(1.0, COAT), Layer(0.5, SUBSTRATE)), COAT)
+    assert inside.limit() * COAT.c_s == pytest.approx(SUBSTRATE.c_s, rel=1e-9)
+
+
+def heavy():
+    """A heavy plate on a light solid of the same wave speed: slowest at a wavenumber in between."""
+    return Layered((Layer(1.0, Isotropic(1.0, 0.3, 1.0)), Layer(0.5, Isotropic(5.0, 0.3, 12.0))),
+                   Isotropic(1.0, 0.3, 1.0))  # fmt: skip
+
+
+def test_speed_limit_at_a_wavenumber_inside_is_found():
+    solid = heavy()
+    limit = solid.limit()
+    ends = min(solid.surface.limit(), solid.substrate.limit() * solid.substrate.c_s / solid.c_s)
+    assert limit < 0.99 * ends
+    below, above = (weakest(solid.response(c).stack(1.0)) for c in (0.9999 * limit, 1.0001 * limit))
+    assert below[0] > 0.0 > above[0]
+    assert 0.05 < below[1] < 20.0
+    # By brute force: the smallest stiffness over many wavenumbers, in the reference's digits.
+    mp.mp.dps = 40
+    for c, sign in ((0.9995 * limit, 1.0), (1.0005 * limit, -1.0)):
+        Y = admittance(*in_digits(solid, c), mp.mpf(below[1]))
+        Z = np.linalg.inv(np.array((-1j * Y).tolist(), dtype=complex))
+        assert sign * np.linalg.eigvalsh(Z)[0] > 0.0
+
+
+def test_layers_with_a_fault_say_so():
+    with pytest.raises(ValueError, match="one sign"):
+        Layer(1.0, Isotropic(1.0, 0.3, 1.0), Isotropic(1.0, -0.1, 1.0), "exponential")
+    with pytest.raises(ValueError, match="same kind"):
+        Layer(1.0, COAT, orthotropic(np.random.default_rng(0)))
+    with pytest.raises(ValueError, match="wavenumbers > 0"):
+        Layered((Layer(1.0, COAT, SUBSTRATE),), SUBSTRATE).response(0.1).stack(1.0).excess(np.zeros(1))
+
+
+def test_fourier_integrals_are_exact():
+    x = np.array([0.0, 1e-9, 0.3, -2.0, 40.0])
+    found = transform(lambda k: np.stack([np.exp(-k), 1j * k * np.exp(-2.0 * k)], axis=-1), 0.2, 1e-13)
+    exact = np.stack([1.0 / (1.0 + x**2), -4.0 * x / (4.0 + x**2) ** 2], axis=-1) / np.pi
+    assert np.abs(found(x) - exact).max() <= 1e-13
+    with pytest.raises(SolveError, match="smooth"):
+        transform(lambda k: np.ones((len(k), 1), dtype=complex), 0.2, 1e-13)
+
+
+def test_spherical_bessel_functions():
+    from scipy.special import spherical_jn
+
+    z = np.concatenate([[0.0, 1e-10, 1e-4], np.linspace(0.05, 60.0, 400)])
+    exact = np.stack([spherical_jn(n, z) for n in range(16)], axis=-1)
+    assert np.abs(spherical_bessel(16, z) - exact).max() <= 1e-14

@@ -25,6 +25,8 @@ _RATIO = 0.25
 _GENTLER = 0.6
 #: Moments of the pressure by the logarithm of the tolerance.
 _MOMENTS = 1.1
+#: Fewest, two degrees below the first.
+_FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by that boundary over such a length over its squared distance, measured.
@@ -67,7 +69,8 @@ class OnLayers(MeshKind):
         digits = log(30.0 / wanted.tolerance)
         # Over a thick layer the stretched variable is the position, and the image is farther away.
         far = 0.7 * self.length
-        return ceil(min(_MOMENTS, 1.0 / log(far + (1.0 + far**2) ** 0.5)) * digits) + 1
+        count = ceil(min(_MOMENTS, 1.0 / log(far + (1.0 + far**2) ** 0.5)) * digits) + 1
+        return max(count, _FEWEST)
 
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""

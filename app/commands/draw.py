@@ -94,4 +94,43 @@ def plot(
     return errors.GOOD
 
 
-COMMANDS: tuple[Any, ...] = (plot,)
+@click.command()
+@options.scene
+@options.changes
+@click.option(
+    "-o",
+    "to",
+    type=options.FILE,
+    default=Path("."),
+    show_default=True,
+    help="Folder, which is made, or a file: its ending is the format.",
+)
+@options.overwrite
+def dispersion(
+    scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], to: Path, overwrite: bool
+) -> int:
+    """Tell and draw how fast the slowest waves along the layers of SCENE run.
+
+    The highest speed of a punch is that of the slowest of them; some may be slowest in between.
+
+    Example: ./run.sh dispersion scenes/coating.toml -o figures
+    """
+    from galinx.app.pictures import dispersion as waves
+    from galinx.app.pictures.files import Files
+    from galinx.app.scene.changes import from_words
+    from galinx.app.scene.read import read
+
+    files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
+    files.check(["dispersion"])
+    known = waves.curve(read(scene, from_words(changes, unset)))
+    if ranks.is_root():
+        print("kH (1)     wavelength (m)  speed (m/s)")
+        for kH, length, speed in zip(known.kH, known.length, known.speed):
+            print(f"{kH:<10.4g} {length:<15.6g} {speed:.6g}")
+        print(f"highest speed of a punch: {known.limit:.8g} m/s")
+        for one in files.write(iter([waves.drawing(known)]), None):
+            print(f"{one.noun}: {one.path}")
+    return errors.GOOD
+
+
+COMMANDS: tuple[Any, ...] = (plot, dispersion)

@@ -166,5 +166,6 @@ def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
-    X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0])
+    far = np.geomspace(5.0, max(6.0, 5.0 * depths[-1]), 33)
+    X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0, -far, far])
     return depths, np.unique(np.round(X, 9))

@@ -5,6 +5,7 @@ that the speed at which the smallest of all vanishes is found by bracketing.
 """
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,4 +80,55 @@ def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> fl
             high, f_high = middle, value
             f_low = f_low / 2.0 if side == -1 else f_low
             side = -1
+    return low
+
+
+#: Speeds over the highest at which each wave's stiffness is looked at first, and steps from there.
+_SPEEDS = np.concatenate([[0.0], 1.0 - np.geomspace(1.0, 1e-9, 40)[1:]])
+_CLOSE = 60
+
+
+def dispersion(
+    stack: Callable[[float], Stack], most: float, k: NDArray, accuracy: float
+) -> NDArray[np.float64]:
+    """Speed of the slowest wave with each wavenumber; NaN where it is no slower than waves inside.
+
+    Args:
+        stack: of a speed; raises ValueError where some wave inside is not faster.
+        most: a speed at which one is not.
+        k: wavenumbers times a, (n,).
+        accuracy: relative.
+    """
+
+    def stands(speed: float, some: NDArray) -> NDArray[np.float64]:
+        try:
+            return stack(speed).stands(some)
+        except (ValueError, SolveError):
+            return np.full(len(some), -np.inf)
+
+    slowest_inside = _bisected(lambda c: bool(np.isfinite(stands(c, k[:1]))[0]), most)
+    speeds = slowest_inside * _SPEEDS
+    values = np.array([stands(speed, k) for speed in speeds.tolist()])
+    found = np.full(len(k), np.nan)
+    for i, column in enumerate(values.T):
+        if (column <= 0.0).any():
+            j = int(np.argmax(column <= 0.0))
+            holds = partial(_one_stands, stands, k[i : i + 1])
+            found[i] = _bisected(holds, speeds[j], speeds[j - 1], accuracy)
+    return found
+
+
+def _one_stands(stands: Callable[[float, NDArray], NDArray], k: NDArray, speed: float) -> bool:
+    return bool(stands(speed, k)[0] > 0.0)
+
+
+def _bisected(
+    holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 1e-13
+) -> float:
+    """Highest number at which something holds that holds up to it."""
+    for _ in range(_CLOSE):
+        if high - low <= accuracy * high:
+            break
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if holds(middle) else (low, middle)
     return low

@@ -80,6 +80,13 @@ def test_scenes_of_a_page_are_valid(page):
         if {"solid", "friction", "motion"} <= tree.keys():
             parse(block, page.name)
             continue
+        if layers := tree.pop("layer", []):
+            for keys in layers:
+                assert keys.keys() <= SECTIONS["layer"].keys(keys).keys(), f"{page.name}: {keys}"
+            solved = changed(templates()["coating"].text, {})
+            head, _, rest = solved.partition("[[layer]]")
+            parse(f"{head}{block}\n[friction]{rest.partition('[friction]')[2]}", page.name)
+            continue
         changes = {}
         for section, keys in tree.items():
             known = SECTIONS[section].keys(keys)

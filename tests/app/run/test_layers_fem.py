@@ -32,7 +32,7 @@ def scene_of(solid, c, f, quantities=("sif",), tolerance=1e-6):
         base,
         half_plane=HalfPlane(solid.substrate, None, None),
         layers=solid.layers,
-        punch=replace(base.punch, profile=replace(base.punch.profile, half_width=1.0), load=1e-3),
+        punch=replace(base.punch, profile=replace(base.punch.profile, half_width=1.0), loads=(1e-3,)),
         motion=replace(base.motion, c=(c,), speed=None),
         friction=replace(base.friction, parameters={"mu_c": (abs(f),)}, sign=("eq25", "physical")[f > 0]),
     )

@@ -191,7 +191,7 @@ def scene_page() -> str:
 
     parts = [_SCENE]
     for name, section in SECTIONS.items():
-        parts += [f"## [{name}]\n", *_section(section)]
+        parts += [f"## {section.heading.format(name)}\n", *_section(section)]
     parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
     rows = [
         (

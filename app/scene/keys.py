@@ -45,6 +45,9 @@ class Section:
         or_else: what else would do where a key is missing, for messages.
     """
 
+    #: How the section stands in a scene.
+    heading = "[{}]"
+
     def __init__(self, build: Callable[..., Any], keys: Mapping[str, Key], or_else: str = "") -> None:
         self.build, self._keys, self.or_else = build, dict(keys), or_else
 

@@ -80,6 +80,8 @@ _KEYS = {
 class LayerSections:
     """Any number of tables [[layer]]."""
 
+    heading = "[[{}]]"
+
     def __init__(self) -> None:
         self._one = ModelSection(
             "kind", "isotropic", SOLIDS, _layer, _KEYS, or_else=", or material, or properties"
@@ -89,6 +91,11 @@ class LayerSections:
     def alternatives(self) -> dict[str, dict[str, Key]]:
         """Keys that a layer can have, by kind of its solid."""
         return self._one.alternatives
+
+    @property
+    def or_else(self) -> str:
+        """What else would do where a key is missing."""
+        return self._one.or_else
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         """Keys that a layer with these values can have."""

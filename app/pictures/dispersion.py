@@ -67,7 +67,7 @@ def drawing(known: Curve) -> Drawing:
     caption = (
         "Speed of the slowest wave along the layers over its wavenumber k times the thickness H of all "
         f"layers. The dashed line is the highest speed of a punch, {known.limit:.6g} m/s; circles are "
-        "the waves along the substrate alone (left) and along the solid of the surface (right). Where there "
-        "is no curve no such wave is slower than the waves inside one of the solids."
+        "the waves along the substrate alone (left) and along the solid of the surface (right). Where "
+        "there is no curve no such wave is slower than the waves inside one of the solids."
     )
     return Drawing("dispersion", caption, figure)

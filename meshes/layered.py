@@ -66,7 +66,7 @@ class OnLayers(MeshKind):
 
     def moments(self, wanted: Wanted) -> int:
         """Of the pressure, that tell it to the tolerance; measured."""
-        digits = log(30.0 / wanted.tolerance)
+        digits = log(3.0 / wanted.tolerance)
         # Over a thick layer the stretched variable is the position, and the image is farther away.
         far = 0.7 * self.length
         count = ceil(min(_MOMENTS, 1.0 / log(far + (1.0 + far**2) ** 0.5)) * digits) + 1

@@ -3,15 +3,13 @@
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
-from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
-    layers,
-    runs,
-    slider,
-    states,
-    stresses,
-    validity,
-    yielding,
-)
+# Each adds its own; tables have them in this order.
+# isort: off
+from galinx.postprocess.quantities import runs, slider, states  # noqa: F401
+from galinx.postprocess.quantities import stresses, validity, yielding  # noqa: F401
+from galinx.postprocess.quantities import layers  # noqa: F401
+
+# isort: on
 from galinx.postprocess.quantities.quantity import (
     ALONG,
     FRICTION_ALONE,

@@ -36,6 +36,7 @@ GOOD = {
     "materials": ([], []),
     "schema": ([], []),
     "csv": (["quick.h5"], [["--states"], ["--si"]]),
+    "dispersion": (None, []),
     "plot": (None, []),
     "fields": (None, []),
     "fit": (None, []),

@@ -4,10 +4,10 @@ from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
 from galinx.postprocess.quantities import (  # noqa: F401 - each adds its own
-    layers,
     runs,
     slider,
     states,
+    strata,
     stresses,
     validity,
     yielding,

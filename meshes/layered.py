@@ -31,8 +31,9 @@ _FEWEST = 12
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by that boundary over such a length over its squared distance, measured.
 _MOVED = 6.0
-#: Distance of the far boundary over the root of a length of the layers over the tolerance; at least.
-_FAR, _NEAREST_FAR = 10.0, 300.0
+#: Distance of the far boundary over the root of a length of the layers over the tolerance, at least
+#: (stiff layers and speeds near the limit need it), and at most: longer cells lose digits.
+_FAR, _NEAREST_FAR, _FARTHEST = 60.0, 300.0, 2e5
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class OnLayers(MeshKind):
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
         length = max(1.0, self.depths[-1])
-        far = _FAR * (length / wanted.tolerance) ** 0.5
+        far = min(_FAR * (length / wanted.tolerance) ** 0.5, _FARTHEST)
         return max(far, _NEAREST_FAR, 30.0 * length, 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
-from galinx.postprocess.quantities import layers as on_layers
 from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity

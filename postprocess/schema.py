@@ -17,7 +17,8 @@ import numpy as np
 from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite
-from galinx.postprocess.quantities import Quantity, layers, runs, states, stresses, table
+from galinx.postprocess.quantities import Quantity, runs, states, stresses, table
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.parameters import Range
 

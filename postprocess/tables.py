@@ -8,8 +8,9 @@ import numpy as np
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, layers, runs, slider, validity, yielding
+from galinx.postprocess.quantities import Quantity, runs, slider, validity, yielding
 from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 

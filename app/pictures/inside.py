@@ -12,7 +12,8 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.maps import Map, maps_figure
 from galinx.postprocess.figures.style import COLUMN, PAGE
 from galinx.postprocess.figures.typeset import folded, number, plain
-from galinx.postprocess.quantities import layers, stresses
+from galinx.postprocess.quantities import strata as layers
+from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import INSIDE, STATE
 from galinx.postprocess.stresses import maximum_shear, von_mises
 

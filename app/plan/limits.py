@@ -14,7 +14,8 @@ from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS
 from galinx.meshes import MESHES, Wanted
-from galinx.postprocess.quantities import layers, stresses
+from galinx.postprocess.quantities import strata as layers
+from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.solvers.solution import Body, Places
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.order import Order
 from galinx.postprocess.compare import FINITE, RULES
-from galinx.postprocess.quantities import Quantity, layers, stresses
+from galinx.postprocess.quantities import Quantity, stresses
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from galinx.app.results.si import in_si
 from galinx.app.scene.scene import Scene
-from galinx.postprocess.quantities import layers, runs, states, stresses, validity, yielding
+from galinx.postprocess.quantities import runs, states, stresses, validity, yielding
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
 from galinx.postprocess.scale import NEAR
 from galinx.solvers.contact import from_edge

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, layers, of_states, stresses, table
+from galinx.postprocess.quantities import Quantity, of_states, stresses, table
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE, TEXT
 from galinx.postprocess.scaling import Scaling, as_archived
 

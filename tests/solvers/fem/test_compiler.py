@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import FEW_DEGREES, HOME, SCENE, clean_environment, command
+from support import FEW_DEGREES, HOME, SCENE, clean_environment, command, space_on
 
+from galinx.meshes.rings import Refinement
 from galinx.postprocess.hdf5 import reader
 from galinx.solvers.errors import CompilerError
 from galinx.solvers.fem import compiler
@@ -30,6 +31,17 @@ FLIPS, COMPILED = (5000, 500) if os.environ.get("GALINX_THOROUGH") else (100, 2)
 def cache(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     return tmp_path
+
+
+@pytest.fixture(scope="module")
+def compiles(tmp_path_factory):
+    """For what dolfinx has to compile: newer ones compile nothing of an element."""
+    folder = tmp_path_factory.mktemp("compiles")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        space_on("confocal", Refinement(2, 0.35, 1, (3.0,)), 1)
+    if not list(folder.rglob("*.so")):
+        pytest.skip("this dolfinx compiles nothing")
 
 
 def compiled(what="form"):
@@ -112,7 +124,7 @@ def test_forms_that_changed_places_are_damaged(cache):
         assert not found and "is damaged" in said[0]
 
 
-def test_a_run_with_damaged_caches(cache):
+def test_a_run_with_damaged_caches(cache, compiles):
     """Loading half a library ends the program with SIGBUS, an empty one is refused for ever."""
     first = command("run", SCENE, "-o", cache / "one.h5", *FEW_DEGREES)
     assert first.returncode == 0 and "damaged" not in first.stderr
@@ -178,7 +190,7 @@ def test_nobody_waits_for_what_a_killed_run_left(cache):
     assert not ruin.exists() and compiled()[0]
 
 
-def test_no_compiler(cache, monkeypatch):
+def test_no_compiler(cache, compiles):
     tools = cache / "bin"
     tools.mkdir()
     for name in ("bash", "env", "nproc", "dirname", "sed", "grep", "dpkg-query", "id", "cat", "readlink"):

@@ -26,6 +26,9 @@ from galinx.solvers.sie.collocation import Expansion
 FIRST, _MORE, MOST = 24, 1.5, 1400
 #: Where pressures of two numbers of polynomials are compared.
 _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
+#: Least distance from -1 of the pressure's exponents: points of quadrature fall on the edges beyond it.
+_STRONGEST = 1e-4
+
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
 #: Longest panel at first where the kernel is rough, over the contact's half-width, by how much shorter
@@ -96,6 +99,12 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
     Raises:
         SolveError: it was not reached; the message says what is left.
     """
+    least = 1.0 + min(equation.α, equation.β)
+    if not least >= _STRONGEST:
+        raise SolveError(
+            f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
+            f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
+        )
     before: Pressure | None = None
     change = np.inf
     for now in _ever_finer(equation, first):

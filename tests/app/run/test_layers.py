@@ -12,6 +12,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.app.scene.schema import schema
+from galinx.solvers.errors import SolveError
 
 SCENE = """
 [solid]
@@ -167,6 +168,12 @@ def test_too_fast_for_the_layers_is_refused():
     ).replace("447.2", "947.2")
     with pytest.raises(BadInput, match=r"speed limit of the layers .* 919.402 m/s"):
         make_plan(parse(text))
+
+
+@pytest.mark.parametrize("mu", [1e5, 1e16, 1e308])
+def test_friction_that_leaves_no_pressure_but_at_an_edge_is_told(mu):
+    with pytest.raises(SolveError, match="exponent at an edge is -1"):
+        galinx.compute(scene(mu=mu))
 
 
 def test_plans_of_uniform_solids_do_not_speak_of_layers():

@@ -283,7 +283,8 @@ class _Found:
     def archived(self, scene: Scene) -> dict[str, NDArray]:
         """What strokes take, by path, times the load."""
         N = scene.punch.load
-        dissipated, breakaway, slope = (N * np.array(rows) for rows in self.taken.values())
+        with np.errstate(over="ignore"):  # friction of 1e308 is somebody's
+            dissipated, breakaway, slope = (N * np.array(rows) for rows in self.taken.values())
         first = last_cycle(scene.legs)
         cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)
         return {

@@ -32,7 +32,7 @@ class RateAndState(FrictionLaw):
 
     f0: float = parameter(
         "reference_friction", "friction coefficient f₀ at the reference speed", symbol="f_0", above=0.0,
-        usual=(1e-4, 10.0),
+        at_most=1e3, usual=(1e-4, 10.0),
     )  # fmt: skip
     V0: float = parameter("reference_speed", "reference speed V₀", "m/s", symbol="V_0", above=0.0)
     a: float = parameter("a", "direct effect a", symbol="a", above=0.0, usual=(1e-5, 0.3))

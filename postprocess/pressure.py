@@ -48,13 +48,13 @@ class JacobiPressure:
         left, right = np.log1p(r[inside]), np.log1p(-r[inside])
         result = np.full((len(self.c), len(r)), np.nan)
         weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
-        result[:, inside] = weight * (self.c @ chebyshev(r[inside]).T)
+        result[:, inside] = weight * self.factor(r[inside])
         return result
 
     @property
     def K_I(self) -> NDArray[np.float64]:
         """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57: (states, 2)."""
-        return -0.5 * self.c @ chebyshev(np.array([-1.0, 1.0])).T
+        return -0.5 * self.factor(np.array([-1.0, 1.0]))
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.postprocess.pressure import JacobiPressure, chebyshev
-from galinx.solvers.contact import under_punch
 from galinx.solvers.layers.panelled import Panels
 
 #: Longest panel of the rule for products of polynomials, over 1 and over h.
@@ -41,19 +40,6 @@ class StretchedPressure(JacobiPressure):
 
     def factor(self, r: NDArray) -> NDArray[np.float64]:
         return np.asarray(self.c @ chebyshev(self.stretch(r), self.c.shape[1]).T)
-
-    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
-        r = np.asarray(r, dtype=float)
-        inside = under_punch(r)
-        left, right = np.log1p(r[inside]), np.log1p(-r[inside])
-        result = np.full((len(self.c), len(r)), np.nan)
-        weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
-        result[:, inside] = weight * self.factor(r[inside])
-        return result
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        return -0.5 * self.factor(np.array([-1.0, 1.0]))
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch) -> StretchedPressure:

@@ -13,14 +13,7 @@ from galinx.app.console.terminal import say
 
 @click.command()
 @options.archive
-@click.option(
-    "-o",
-    "to",
-    type=options.FILE,
-    default=Path("."),
-    show_default=True,
-    help="Folder, which is made, or a file: its ending is the format.",
-)
+@options.figures_to
 @click.option(
     "--figure",
     default="",
@@ -97,14 +90,7 @@ def plot(
 @click.command()
 @options.scene
 @options.changes
-@click.option(
-    "-o",
-    "to",
-    type=options.FILE,
-    default=Path("."),
-    show_default=True,
-    help="Folder, which is made, or a file: its ending is the format.",
-)
+@options.figures_to
 @options.overwrite
 def dispersion(
     scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], to: Path, overwrite: bool

@@ -63,6 +63,15 @@ def changes(command: Any) -> Any:
 
 si = click.option("--si", is_flag=True, help="Stresses in Pa, lengths in m, speeds in m/s.")
 
+figures_to = click.option(
+    "-o",
+    "to",
+    type=FILE,
+    default=Path("."),
+    show_default=True,
+    help="Folder, which is made, or a file: its ending is the format.",
+)
+
 overwrite = click.option(
     "--overwrite", is_flag=True, help="Replace what has that name, whatever kind of file it is."
 )

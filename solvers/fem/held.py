@@ -11,13 +11,7 @@ def forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -
     """Forces of a contact held at the profile's height, which stands where it is held."""
     held = A.createVecRight()
     held.setValues(space.contact.dofs(1), height[space.contact.owned])
-    held.assemble()
-    b = product(A, held)
-    b.scale(-1.0)
-    set_zero(b, space.held_dofs)
-    b.axpy(1.0, held)
-    held.destroy()
-    return b
+    return _forces(A, space, held)
 
 
 def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64]) -> PETSc.Vec:
@@ -25,6 +19,11 @@ def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64])
     held, blocks = A.createVecRight(), space.numbers[space.far_nodes]
     for i in (0, 1):
         held.setValues(2 * blocks + i, displacement[i])
+    return _forces(A, space, held)
+
+
+def _forces(A: PETSc.Mat, space: Space, held: PETSc.Vec) -> PETSc.Vec:
+    """Forces of what is held at ``held``, and there the displacements themselves; frees ``held``."""
     held.assemble()
     b = product(A, held)
     b.scale(-1.0)

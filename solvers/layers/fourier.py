@@ -12,13 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.errors import SolveError
+from galinx.solvers.panel import legendre_panel
 
 #: Gauss points of a panel, their weights, from values to coefficients of Legendre polynomials.
 _NODES = 16
-_τ, _w = np.polynomial.legendre.leggauss(_NODES)
-_TO_LEGENDRE = (
-    (np.arange(_NODES) + 0.5)[:, None] * np.polynomial.legendre.legvander(_τ, _NODES - 1).T * _w
-)
+_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 #: Coefficients that tell how well a panel is resolved; most panels, and rounds of halving them; octaves
 #: that are taken at once.
 _LAST, _MOST, _ROUNDS, _AT_ONCE = 3, 4000, 60, 9

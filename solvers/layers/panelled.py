@@ -18,10 +18,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from galinx.solvers.panel import legendre_panel
+
 #: Points of a panel; values there to coefficients of Legendre polynomials, and to their derivative.
 _NODES = 14
-_τ, _w = legendre.leggauss(_NODES)
-_TO_LEGENDRE = (np.arange(_NODES) + 0.5)[:, None] * legendre.legvander(_τ, _NODES - 1).T * _w
+_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 _DERIVATIVE = (
     np.stack([legendre.legval(_τ, legendre.legder(row)) for row in np.eye(_NODES)], axis=1) @ _TO_LEGENDRE
 )

@@ -23,12 +23,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.panel import legendre_panel
+
 #: Gauss points of a panel, their weights, and from values there to coefficients of Legendre polynomials.
 _NODES = 20
-_τ, _w = np.polynomial.legendre.leggauss(_NODES)
-_TO_LEGENDRE = (
-    (np.arange(_NODES) + 0.5)[:, None] * np.polynomial.legendre.legvander(_τ, _NODES - 1).T * _w
-)
+_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 
 #: Longest panel; |x| beyond which f is that of the end and the rest is known; grading next to a place
 #: where the slope is not smooth, and how far it goes.

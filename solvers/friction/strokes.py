@@ -108,16 +108,23 @@ def follow(
         many: does the law stand for many?
 
     Raises:
-        ValueError: the integrator cannot do it.
+        ValueError: the integrator cannot do it, or friction is beyond what doubles can hold.
     """
     result, z = [], _at_rest(law, many)
     for leg, X in zip(all_legs, places):
         speed = V if leg.speed is None else leg.speed
-        z, whole = law.pause(z, leg.rest), length * leg.length
-        slip = length * np.abs(X - leg.start)
-        states = advance(law, z, leg.s, speed, whole, np.append(slip, whole))
-        passed = states[..., :-1, :]
-        result.append(Stroke(leg.name, leg.s, X, passed, law.friction(passed, leg.s, speed)))
+        slip, whole = length * np.abs(X - leg.start), length * leg.length
+        with np.errstate(all="ignore"):  # what comes of it is looked at
+            states = advance(law, law.pause(z, leg.rest), leg.s, speed, whole, np.append(slip, whole))
+            passed = states[..., :-1, :]
+            f = law.friction(passed, leg.s, speed)
+        if not np.isfinite(f).all():
+            raise ValueError(
+                f"along {leg.name} found a friction coefficient that is not finite; expected "
+                f"parameters of {law.about} with which doubles can compute it: is one of them far from "
+                "its usual size?"
+            )
+        result.append(Stroke(leg.name, leg.s, X, passed, f))
         z = _last(states, z)
     return result
 

@@ -3,10 +3,12 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+import random_laws as random
 
-from galinx.solvers.friction import FrictionLaw
+from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.strokes import friction_along
+from galinx.solvers.parameters import made, parameters
 
 STROKES = ["forward", "backward", "forward"]
 
@@ -59,3 +61,18 @@ def test_a_law_that_knows_its_rate_alone_is_integrated_and_carries_its_state():
         np.testing.assert_allclose(backward.z[0], wanted[-1], rtol=1e-10)
     with pytest.raises(ValueError, match="no limit of stable steps"):
         friction_along(Spring(), STROKES, 1e-4, X, integrator="rk4")
+
+
+@pytest.mark.parametrize("name", random.EXACT)
+@pytest.mark.parametrize("size", [1e308, 1e-308, 1e150])
+def test_friction_is_finite_or_refused_whatever_the_parameters(name, size, recwarn):
+    usual = random.parameters(name, np.random.default_rng(3))
+    for key, known in parameters(LAWS[name]).items():
+        if known.single and not known.options:
+            try:
+                law = made(LAWS[name], {**usual, key: size})
+                for stroke in friction_along(law, STROKES, 1e-4, [0.0, 0.3, 1.0], 1e-3):
+                    assert np.isfinite(stroke.f).all(), key
+            except ValueError as error:
+                assert "expected" in str(error)
+    assert not recwarn.list

@@ -7,8 +7,8 @@ from scipy.linalg import schur
 
 from galinx.solvers.errors import SolveError
 
-#: Contact forces are found to this relative residual; the last digits are rounding.
-TOLERANCE = 1e-13
+#: Least relative residual of contact forces that is asked for; the last digits are rounding.
+LEAST = 1e-13
 LIMIT = 120
 
 
@@ -19,14 +19,16 @@ class KrylovSpace:
         field: the punch without friction.
         forces: its forces in X and Y at the contact nodes, (2, n).
         refines: solutions are refined.
+        left: relative residual of the contact forces that may be left, if it is above the least.
 
     Attributes:
         fields, forces: the first, then those of each tangential load.
         complete: the space holds every answer.
     """
 
-    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool) -> None:
+    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float) -> None:
         self.fields, self.forces, self.refines = [field], [forces], refines
+        self._left = max(left, LEAST)
         self._size = np.linalg.norm(forces[1])
         self._V = [forces[1] / self._size]
         self._H = np.zeros((LIMIT + 1, LIMIT))
@@ -64,12 +66,12 @@ class KrylovSpace:
             return None
         y, left = self.solve(g)
         worst = int(np.argmax(left))
-        if self.complete or left[worst] <= TOLERANCE:
+        if self.complete or left[worst] <= self._left:
             return y
         if m == LIMIT:
             raise SolveError(
                 f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {TOLERANCE:g}"
+                f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {self._left:g}"
             )
         return None
 

@@ -56,6 +56,7 @@ class SlidingPunch:
             first solution is refined in any case and tells what that does to the others.
         heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
             that are combined, (shapes, nodes); None for a flat punch.
+        left: relative residual of the contact forces that friction may leave.
     """
 
     def __init__(
@@ -65,8 +66,9 @@ class SlidingPunch:
         solver: str = "direct",
         negligible: float = 0.0,
         heights: NDArray[np.float64] | None = None,
+        left: float = 0.0,
     ) -> None:
-        self.space, self.response = space, response
+        self.space, self.response, self._left = space, response, left
         nodes = space.contact
         A = space.assemble(response)
         comm = A.comm
@@ -161,7 +163,7 @@ class SlidingPunch:
         for field, before, b in zip(fields, rough, forces):
             after = self._reactions(field)
             change = np.linalg.norm(after - before) / np.linalg.norm(before)
-            spaces.append(KrylovSpace(field, after, bool(change > negligible)))
+            spaces.append(KrylovSpace(field, after, bool(change > negligible), self._left))
             b.destroy()
         return spaces
 

@@ -26,8 +26,9 @@ from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Body, Surface
 
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
-#: most keeps results on any number of ranks equal to 1e-9.
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and,
+#: without stresses, nothing more is added for friction. The most keeps results on any number of ranks
+#: equal to 1e-9.
 NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
 
 
@@ -69,7 +70,9 @@ class PunchLevel:
         plan, self.task, self.space = work.plan, task, space
         self._tests = plan.tests
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights())
+        # Next to a tip stresses show what is left of a pressure that vanishes there.
+        left = 0.0 if work.stresses else negligible
+        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights(), left)
         more = 2 * (space.degree - plan.degrees[task.number])
         self.recovery = contact_recovery(
             space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)

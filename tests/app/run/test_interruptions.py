@@ -149,7 +149,8 @@ def test_whoever_is_hit_the_run_ends_in_order_and_is_resumed(
     elif process.returncode:
         assert process.returncode == 3 and re.fullmatch(SAID, errors), errors
     else:
-        assert target.exists() and not errors
+        # It was done before the signal came, and tells what it tells of its scene.
+        assert target.exists() and all(line.startswith("warning: ") for line in errors.splitlines())
     if not target.exists():
         done = command(*ranks, "run", scene, "-o", target, "--resume")
         assert done.returncode == 0, done.stderr

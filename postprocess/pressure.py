@@ -10,6 +10,7 @@ All states of a speed are treated at once: what depends on the mesh alone is a s
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -86,9 +87,19 @@ def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
         moments: ∫ σ_YY T_k dr of each state, (states, ``MOMENTS``).
         α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
     """
-    P = jacobi_in_chebyshev(α, β)
-    b = np.einsum("snk,sk->sn", P, moments) / jacobi_norms(α, β)
-    return JacobiPressure(α, β, np.einsum("sn,snk->sk", b, P))
+    maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
+    return JacobiPressure(α, β, np.einsum("skm,sm->sk", maps, moments))
+
+
+@lru_cache(maxsize=4)
+def _to_factors(α: bytes, β: bytes) -> NDArray[np.float64]:
+    """Maps from moments to coefficients of the smooth factor, (states, k, moments).
+
+    The levels on which an error is measured have the same exponents, so they are kept for a while.
+    """
+    of = np.frombuffer(α), np.frombuffer(β)
+    P = jacobi_in_chebyshev(*of)
+    return P.swapaxes(1, 2) @ (P / jacobi_norms(*of)[..., None])
 
 
 def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
     recovery = contact_recovery(space.contact.s, degree, space.chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), g)
-    pressure = from_moments(punch.states(g).normal @ recovery.moments, local.α, local.β)
+    pressure = from_moments(punch.states(g).tested(recovery.moments), local.α, local.β)
     punch.destroy()
     return np.abs(pressure.K_I / local.K_I[:, None] - 1.0).max(axis=1)
 

@@ -32,6 +32,7 @@ class KrylovSpace:
         self._size = np.linalg.norm(forces[1])
         self._V = [forces[1] / self._size]
         self._H = np.zeros((LIMIT + 1, LIMIT))
+        self._triangle = np.empty((0, 0)), np.empty((0, 0))
         self.complete = False
 
     @property
@@ -78,8 +79,9 @@ class KrylovSpace:
     def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
         """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
         m = len(self.fields) - 1
-        # A triangle once for all g: Schur's form keeps the digits that eigenvectors may lose.
-        T, Q = schur(self._H[:m, :m], output="complex")
+        T, Q = self._triangle
+        if len(T) != m:  # once for all g: Schur's form keeps the digits that eigenvectors may lose
+            T, Q = self._triangle = schur(self._H[:m, :m], output="complex")
         solved = np.tile((self._size * Q[0].conj())[:, None], len(g))
         for i in reversed(range(m)):
             solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])

@@ -13,6 +13,7 @@ Of a contact whose ends are found P is a combination of some shapes, each with a
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,23 +26,53 @@ from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import ByCells, Response
 
+#: Frictions for which a basis is completed at most.
+_SPREAD = 33
+
 
 @dataclass(frozen=True)
-class ContactStates:
-    """Several friction states; lengths over a, stresses over N/(2a), so forces over N/2.
+class Part:
+    """Combinations of fields of a punch; lengths over a, stresses over N/(2a), so forces over N/2.
+
+    Attributes:
+        weights: of the fields, (states, fields).
+        forces: of each field, (fields, 2, nodes): consistent nodal forces of σ_XY and σ_YY at the contact
+            nodes, read off the assembled equations.
+    """
+
+    weights: NDArray[np.float64]
+    forces: NDArray[np.float64]
+
+    @cached_property
+    def normal(self) -> NDArray[np.float64]:
+        """Nodal forces of σ_YY, (states, nodes)."""
+        return self.weights @ self.forces[:, 1]
+
+    @cached_property
+    def tangential(self) -> NDArray[np.float64]:
+        """Nodal forces of σ_XY, (states, nodes)."""
+        return self.weights @ self.forces[:, 0]
+
+    def tested(self, tests: NDArray) -> NDArray[np.float64]:
+        """Nodal forces of σ_YY times some tests (nodes, n), (states, n); nodal forces are not formed."""
+        return self.weights @ (self.forces[:, 1] @ tests)
+
+    @property
+    def load(self) -> NDArray[np.float64]:
+        """∫σ_YY dX, (states,)."""
+        return self.weights @ self.forces[:, 1].sum(axis=1)
+
+
+@dataclass(frozen=True)
+class ContactStates(Part):
+    """Several friction states.
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).
-        weights: of the basis fields, (states, fields).
-        normal: consistent nodal forces of σ_YY at the contact nodes, (states, nodes).
-        tangential: the same of σ_XY, read off the assembled equations.
         v0: indentation relative to the far boundary over N/(2μ), (states,).
     """
 
     g: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    normal: NDArray[np.float64]
-    tangential: NDArray[np.float64]
     v0: NDArray[np.float64]
 
 
@@ -115,11 +146,19 @@ class SlidingPunch:
         # A flat punch has none of the profile; a line load's tangential force is g times the other.
         amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        carried = sum(of * part.normal.sum(axis=1) for of, part in zip(amplitudes, parts[1:]))
-        v0 = (-2.0 - carried) / parts[0].normal.sum(axis=1)
+        carried = sum(of * part.load for of, part in zip(amplitudes, parts[1:]))
+        v0 = (-2.0 - carried) / parts[0].load
         return combined(g, parts, np.column_stack([v0, *amplitudes]))
 
-    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
+    def prepare(self, g: NDArray[np.float64]) -> None:
+        """Complete the basis for these values of σ_XY/σ_YY, sorted.
+
+        What the basis leaves is a smooth function of them, so that some spread over all stand for them.
+        """
+        some = np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))
+        self._contact_forces(self._spaces, g[some])
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
 
         Args:
@@ -129,13 +168,12 @@ class SlidingPunch:
         wanted = self._spaces[: None if shapes is None else 1 + shapes]
         return [self._of(space, g, y) for space, y in zip(wanted, self._contact_forces(wanted, g))]
 
-    def _of(self, space: KrylovSpace, g: NDArray, y: NDArray) -> "Part":
+    def _of(self, space: KrylovSpace, g: NDArray, y: NDArray) -> Part:
         """What a Krylov space makes of friction, by the coefficients of the contact forces."""
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
-        tangential, normal = np.tensordot(weights, np.array(space.forces), axes=1).swapaxes(0, 1)
-        return Part(weights, normal, tangential)
+        return Part(weights, np.array(space.forces))
 
     def release(self) -> None:
         """Free factor and fields; states that were asked for before can be asked for again."""
@@ -273,15 +311,6 @@ class SlidingPunch:
         return comm.allreduce(mine)
 
 
-@dataclass(frozen=True)
-class Part:
-    """Weights of a Krylov space's fields, (states, fields), and nodal forces, (states, nodes)."""
-
-    weights: NDArray[np.float64]
-    normal: NDArray[np.float64]
-    tangential: NDArray[np.float64]
-
-
 def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactStates:
     """States that are sums of a punch's parts, the first of which is the flat one.
 
@@ -290,8 +319,6 @@ def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactS
         parts: of :meth:`SlidingPunch.parts`.
         amplitudes: of each, (states, parts); the first is the indentation v₀.
     """
-    by_part = [(part, amplitudes[:, [i]]) for i, part in enumerate(parts)]
-    weights = np.concatenate([share * part.weights for part, share in by_part], axis=1)
-    normal = sum(share * part.normal for part, share in by_part)
-    tangential = sum(share * part.tangential for part, share in by_part)
-    return ContactStates(g, weights, np.asarray(normal), np.asarray(tangential), amplitudes[:, 0])
+    weights = [amplitudes[:, [i]] * part.weights for i, part in enumerate(parts)]
+    forces = np.concatenate([part.forces for part in parts])
+    return ContactStates(np.concatenate(weights, axis=1), forces, g, amplitudes[:, 0])

@@ -82,7 +82,7 @@ class MeasuredError:
 
     def __init__(self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None) -> None:
         self._ladder = ladder
-        found = self._measured(probes, loads)
+        found = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         if not ladder.task.response.mirrored:
@@ -109,9 +109,19 @@ class MeasuredError:
             changes[degree] = change
         return {"change_by_degree": changes.tolist() if changes.any() else []}
 
-    def of(self, g: NDArray, load: Any = None) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
-        return self._errors(self._measured(g, load), g)
+    def of(
+        self, g: NDArray, load: Any = None, last: list[Gauge] | None = None
+    ) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors, (states,), by the word of output.quantities that asks for them.
+
+        Args:
+            g: σ_XY/σ_YY, (states,).
+            load: of each state [N/m], (states,); that of the task if not given.
+            last: what was measured of these states on the last level, if it was.
+        """
+        *coarser, finest = self._ladder.levels
+        found = [level.measured(g, load) for level in coarser]
+        return self._errors([*found, last or finest.measured(g, load)], g)
 
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
@@ -127,9 +137,6 @@ class MeasuredError:
             return before(changes[0], rate)
         first, second = changes
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
-
-    def _measured(self, g: NDArray, load: Any) -> list[list[Gauge]]:
-        return [level.measured(g, load) for level in self._ladder.levels]
 
     def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""

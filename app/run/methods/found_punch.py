@@ -8,7 +8,7 @@ half-width and middle follow. Every friction and every load is found in the basi
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -113,29 +113,24 @@ class FoundLevel(PunchLevel):
         """
         parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
         solve = _tilted if isinstance(self.task.body.profile, Flat) else _parabola
-        K = np.stack([self._intensities(part, local) for part in parts], axis=2)
-        loads = np.stack([part.normal.sum(axis=1) for part in parts], axis=1)
+        K = np.stack([self._smooth(part, local).K_I for part in parts], axis=2)
+        loads = np.stack([part.load for part in parts], axis=1)
         body = self.task.body.loaded(load)
         amplitudes, h, m, free, lowest = solve(body, loads, K)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = combined(g, parts, amplitudes)
-        factor = self._factor(contact.normal, local)
-        deeper = ContactStates(
-            g, contact.weights, contact.normal, contact.tangential, contact.v0 + lowest
-        )
+        factor = self._smooth(contact, local).c
+        deeper = replace(contact, v0=contact.v0 + lowest)
         return FoundStates(deeper, h, m, free, factor, local)
 
-    def _factor(self, normal: NDArray, local: FlatPunch) -> NDArray[np.float64]:
-        return from_moments(normal @ self.recovery.moments, local.α, local.β).c
-
-    def _intensities(self, part: Part, local: FlatPunch) -> NDArray[np.float64]:
-        """At the left and the right end, (states, 2)."""
-        return from_moments(part.normal @ self.recovery.moments, local.α, local.β).K_I
+    def _smooth(self, part: Part, local: FlatPunch) -> JacobiPressure:
+        """Its pressure over a flat punch's weight."""
+        return from_moments(part.tested(self.recovery.moments), local.α, local.β)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         found = self.found(g, load)
-        moments = found.contact.normal @ self.recovery.moments
+        moments = found.contact.tested(self.recovery.moments)
         whole = JacobiPressure(found.local.α, found.local.β, found.factor)
         of_pressure = gauge.of_pressure(whole, moments)
         lengths = np.column_stack([found.half_width, found.centre])
@@ -257,7 +252,7 @@ class FoundPunches:
     @property
     def normal_force(self) -> NDArray[np.float64]:
         """Resultant over N/2, (states,)."""
-        return self.found.contact.normal.sum(axis=1)
+        return self.found.contact.load
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
@@ -277,7 +272,7 @@ class FoundPunches:
     @cached_property
     def surface(self) -> Surface:
         contact, places = self.found.contact, self.at.task.places
-        raw = contact.normal @ self.at.level.recovery.raw
+        raw = contact.tested(self.at.level.recovery.raw)
         σ_YY = self.found.pressure.σ_YY(places.X)
         return self.at.displacement.surface(self.g, contact.weights, σ_YY, raw)
 

@@ -89,6 +89,11 @@ class StressGauges:
         self._displacement = Displacement(self._task, space, fields)
         self._displacement.prepare(self._words)
 
+    @property
+    def wanted(self) -> bool:
+        """Are there any?"""
+        return bool(self._words)
+
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""
         found, places = [], self._task.places

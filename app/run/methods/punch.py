@@ -50,7 +50,7 @@ def one_state(
         states = punch.states(g)  # the fields are complete after this
         recovery = contact_recovery(space.contact.s, space.degree, space.chart, np.empty(0))
         local = FlatPunch(task.response, states.g)
-        pressure = from_moments(states.normal @ recovery.moments, local.α, local.β)
+        pressure = from_moments(states.tested(recovery.moments), local.α, local.β)
         yield space, punch.fields, states.weights[0], lambda X: pressure.σ_YY(X)[0]
     finally:
         punch.destroy()
@@ -78,8 +78,7 @@ class PunchLevel:
             space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)
         )
         # The basis is complete before traces are taken, and the same whatever states are still to do.
-        for first in range(0, len(g), work.chunk):
-            self.punch.parts(g[first : first + work.chunk])
+        self.punch.prepare(g)
         self._gauges = StressGauges(work, task, space, self.punch.fields)
 
     def heights(self) -> NDArray[np.float64] | None:
@@ -93,7 +92,7 @@ class PunchLevel:
     def pressure(self, states: ContactStates) -> JacobiPressure:
         """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""
         local = FlatPunch(self.task.response, states.g)
-        moments, tests = states.normal @ self.recovery.moments, self._tests
+        moments, tests = states.tested(self.recovery.moments), self._tests
         if tests:
             return from_stretched(moments, local.α, local.β, tests.stretch)
         return from_moments(moments, local.α, local.β)
@@ -104,12 +103,15 @@ class PunchLevel:
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         states = self.contact(g, load)
-        pressure = self.pressure(states)
-        moments = states.normal @ self.recovery.moments
-        return [
-            gauge.of_pressure(pressure, moments),
-            *self._gauges.of(g, states.weights, pressure.σ_YY(self.task.places.X)),
-        ]
+        return self.gauges(states, self.pressure(states))
+
+    def gauges(self, states: ContactStates, pressure: JacobiPressure) -> list[Gauge]:
+        """What the error is measured on of states and their pressure."""
+        moments = states.tested(self.recovery.moments)
+        found = [gauge.of_pressure(pressure, moments)]
+        if self._gauges.wanted:
+            found += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
+        return found
 
     def rounding(self, g: NDArray) -> list[float]:
         """What is not the mirror image of itself at -g, of a flat punch: a profile need not be one.
@@ -212,7 +214,7 @@ class Punches:
     @property
     def normal_force(self) -> NDArray[np.float64]:
         """Resultant over N/2, (states,)."""
-        return self.contact.normal.sum(axis=1)
+        return self.contact.load
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
@@ -227,12 +229,13 @@ class Punches:
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g, self.body.load)
+        seen = self.at.level.gauges(self.contact, self._pressure)
+        return self.at.error.of(self.g, self.body.load, seen)
 
     @cached_property
     def surface(self) -> Surface:
         σ_YY = self._pressure.σ_YY(self.at.task.places.X)
-        raw = self.contact.normal @ self.at.level.recovery.raw
+        raw = self.contact.tested(self.at.level.recovery.raw)
         return self.at.displacement.surface(self.g, self.contact.weights, σ_YY, raw)
 
     @cached_property

@@ -5,7 +5,9 @@ from math import pi
 from galinx.meshes.charts import Confocal
 from galinx.meshes.kind import MESHES, MeshKind
 
-CONFOCAL = MeshKind("confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0)
+CONFOCAL = MeshKind(
+    "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=4.3
+)  # fmt: skip
 
 UNIFORM = MeshKind(
     "confocal, squares all over", Confocal(), ratio=0.5, column=pi / 4.0, rings=False

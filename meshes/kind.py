@@ -23,8 +23,15 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
 #: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
 _STRONGEST = -0.95
 
-#: How far apart fields may live before cells finer in angle are needed.
-_APART = 1.25
+#: How far apart fields may live before cells finer in angle are needed; from what on, and by how much, a
+#: sector more stands for each step.
+_APART, _FROM, _STEP = 1.2, 0.9, 0.8
+
+#: Sectors up to which, being more than isotropic solids need, they spare a degree.
+_SPARING = 3
+
+#: How far sectors crowd where they are more: planes apart turn fields along the axes, where legs end.
+_CROWDING = 0.3
 
 #: Digits of moments that go with a digit of stresses.
 _OF_STRESSES = 1.5
@@ -69,6 +76,7 @@ class MeshKind:
         ratio: size of a ring over that of the ring outside it. Straight cells in the physical plane need
             gentler rings than confocal ones: a ratio t there is t² in distance.
         column: largest width in ξ of a column outside the rings.
+        alone: the same where K_I and the pressure's moments are wanted alone; see ``column`` if None.
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
@@ -89,6 +97,7 @@ class MeshKind:
     chart: Confocal | Physical
     ratio: float
     column: float
+    alone: float | None = None
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
     fan: bool = False
     rings: bool = True
@@ -123,13 +132,15 @@ class MeshKind:
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
-        first = min(self.column, 1.0)
-        count = ceil((reach - first) / self.column)
+        widest = self.column if wanted.nearest is not None else self.alone or self.column
+        first = min(widest, 1.0)
+        count = ceil((reach - first) / widest)
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        pieces = 1 + max(ceil(finer / 2), self._apart(wanted) > 0.5) + self._cuts_middle(wanted)
-        return Refinement(levels, ratio, sectors, columns, pieces)
+        parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > 0.5)
+        pieces = 1 + parts + self._cuts_middle(wanted)
+        return Refinement(levels, ratio, sectors, columns, pieces, _CROWDING if finer else 0.0)
 
     def _cuts_middle(self, wanted: Wanted) -> bool:
         """Is the outermost ring cut, which meets in the middle of the contact?
@@ -150,7 +161,8 @@ class MeshKind:
         The large cells around the punch cannot follow both, whatever the degree is; those within them
         can, whose outermost ring is cut before that. Measured, see docs/verification.md.
         """
-        more = max(ceil(1.3 * (self._apart(wanted) - _APART)), 0)
+        apart = self._apart(wanted)
+        more = ceil((apart - _FROM) / _STEP) if apart > _APART else 0
         return more + more % 2 if self.walls else more
 
     def _innermost(self, wanted: Wanted) -> float:
@@ -174,8 +186,7 @@ class MeshKind:
         lost = -log10(margin)
         stresses = wanted.nearest is not None
         degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
-        # The first sector more does more than is asked of it.
-        degree -= _APART < self._apart(wanted) < 1.4 * _APART or self._cuts_middle(wanted)
+        degree -= 0 < self._finer(wanted) <= _SPARING or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:

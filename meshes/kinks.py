@@ -32,7 +32,7 @@ def with_kinks(refinement: Refinement, places: NDArray) -> QuadMesh:
         above = (unit * [width, -half] + [0.0, low])[:, ::-1]
         quads += [above, below]
         for start in (low, low + half):
-            rows += (start + half * np.linspace(0.0, 1.0, refinement.sectors + 1)[1:]).tolist()
+            rows += (start + half * refinement.legs[1:]).tolist()
     ξ = _columns(width, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns))
     quads.append(
         np.reshape(

@@ -29,6 +29,7 @@ class Refinement:
         sectors: cells along each of the two legs of an L, so 2·sectors columns of cells in angle.
         columns: widths in ξ of the columns outside the rings.
         pieces: of the outermost ring, of equal width.
+        crowding: of the sectors towards both ends of a leg: 0 for equal ones, 1 as Chebyshev's points.
     """
 
     levels: int
@@ -36,6 +37,13 @@ class Refinement:
     sectors: int
     columns: tuple[float, ...]
     pieces: int = 1
+    crowding: float = 0.0
+
+    @property
+    def legs(self) -> NDArray[np.float64]:
+        """Where sectors begin and end along a leg, from 0 to 1."""
+        even = np.linspace(0.0, 1.0, self.sectors + 1)
+        return even + self.crowding * ((1.0 - np.cos(np.pi * even)) / 2.0 - even)
 
     @property
     def sizes(self) -> NDArray[np.float64]:
@@ -88,7 +96,8 @@ def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
     half = np.pi / 2.0
     right, growth = corner(half, refinement, fan)
     ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
-    η = np.linspace(-np.pi, 0.0, 2 * refinement.sectors + 1)
+    upwards = half * refinement.legs
+    η = np.concatenate([upwards - np.pi, upwards[1:] - half])
     columns = [
         [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
     ]
@@ -124,8 +133,7 @@ def corner(
     size: float, refinement: Refinement, fan: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2), (m, 2)."""
-    sectors = refinement.sectors
-    t = np.linspace(0.0, 1.0, sectors + 1)
+    sectors, t = refinement.sectors, refinement.legs
     leg = np.concatenate(
         [np.column_stack([np.ones_like(t), -t]), np.column_stack([t[-2::-1], -np.ones(sectors)])]
     )

@@ -135,11 +135,15 @@ def _found_pressure(data: dict[str, Any], _: float) -> float:
     """Over each state's largest; next to a tip, where it is infinite, nothing is compared."""
     under = under_punch(data[at.SURFACE_X.path])
     X, (fem, exact) = data[at.SURFACE_X.path][under], _both(data, at.PRESSURE, under)
-    tip = X[np.abs(exact).argmax(axis=1)][:, None]
     infinite = np.isnan(data[of.LARGEST[CLOSED_FORM].path])[:, None]
-    left_out = infinite & (np.abs(X - tip) < _NEAR_TIP)
+    left_out = infinite & ~scale.off_tips(X, _tips(X, exact))
     size = np.where(left_out, 0.0, np.abs(exact)).max(axis=1, keepdims=True)
     return (np.where(left_out, 0.0, np.abs(fem - exact)) / size).max()
+
+
+def _tips(X: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
+    """Where the pressure of each state is largest, (states, 1)."""
+    return X[np.abs(σ_YY).argmax(axis=1)][:, None]
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
@@ -198,9 +202,6 @@ def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
 
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
-
-#: Distance over a from an infinite pressure within which it is not compared.
-_NEAR_TIP = 0.02
 
 #: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
 _VANISHING = 0.1

@@ -71,6 +71,10 @@ class LoadsAtDegree:
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         return self._gauges.of(g, self.weights(g), self.σ_YY(g))
 
+    @property
+    def mirrored(self) -> bool:
+        return True
+
     def rounding(self, g: NDArray) -> list[float]:
         """Not seen here: the mirror images of loads are no loads."""
         return [0.0] * len(self.measured(g[:1]))

@@ -87,6 +87,10 @@ class PunchLevel:
     def factor(self) -> Any:
         return self.punch.factor
 
+    @property
+    def mirrored(self) -> bool:
+        return self.task.response.mirrored
+
     def pressure(self, states: ContactStates) -> JacobiPressure:
         """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""
         local = FlatPunch(self.task.response, states.g)

@@ -1,0 +1,78 @@
+"""The pressure of a contact with free ends and kinks, from its nodal forces alone.
+
+Its moments converge slowly where it has a logarithm. Cells are small and many there instead, so that the
+piecewise polynomial that has the nodal forces is as good as they are; towards the ends it falls as the
+local analysis says.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.intensity import places_at_end, towards_end
+from galinx.postprocess.pressure import density_of_forces, facets_of, lagrange, reference_nodes
+from galinx.solvers.contact import under_punch
+
+#: Places at which a largest pressure is looked for at a time; steps between them from which on it is found.
+_LOOKED_AT, _STEP = 81, 2e-5
+
+
+class KinkedPressure:
+    """σ_YY over N/(2a) of one state.
+
+    Args:
+        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
+        degree: polynomial degree p.
+        chart: the mesh's chart, see :class:`galinx.solvers.fem.chart.Chart`.
+        forces: consistent nodal forces over N/2, (F p + 1,).
+        kinks: places of the kinks over a, in their order.
+        exponents: of the pressure at the left and the right end, positive.
+    """
+
+    def __init__(
+        self,
+        s: NDArray,
+        degree: int,
+        chart: Any,
+        forces: NDArray,
+        kinks: NDArray,
+        exponents: tuple[float, float],
+    ) -> None:
+        facets = facets_of(s, degree)
+        self._chart, self._kinks, self._exponents = chart, kinks, exponents
+        self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
+        self._nodes = reference_nodes(s, facets)
+        self._density = density_of_forces(s, facets, forces)[facets]
+        gaps = 1.0 + kinks.min(initial=1.0), 1.0 - kinks.max(initial=-1.0)
+        self._known = [places_at_end(gap) for gap in gaps]
+        self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """At positions over a, (n,); NaN beside the contact."""
+        found, inside = np.full(len(r), np.nan), under_punch(r)
+        found[inside] = self._piecewise(r[inside])
+        ends = zip((1.0 + r, 1.0 - r), self._known, self._there, self._exponents)
+        for d, known, values, exponent in ends:
+            near = (d > 0.0) & (d < known[0])
+            found[near] = towards_end(d[near], known, values, exponent)
+        return found
+
+    def largest(self) -> tuple[float, float]:
+        """Largest pressure over N/(2a), and its place over a, by looking nearer and nearer."""
+        low, high, step = -1.0, 1.0, 1.0
+        while step > _STEP:
+            # Next to a kink it may have a cusp, which is no place that a grid would meet.
+            r = np.linspace(low, high, _LOOKED_AT)[1:-1]
+            r = np.unique(np.append(r, self._kinks[(self._kinks > r[0]) & (self._kinks < r[-1])]))
+            p = -self.σ_YY(r)
+            i, step = int(p.argmax()), (high - low) / (_LOOKED_AT - 1)
+            low, high = max(r[i] - 2.0 * step, -1.0), min(r[i] + 2.0 * step, 1.0)
+        return float(p[i]), float(r[i])
+
+    def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
+        at = self._chart.surface_coordinate(r)
+        facet = np.clip(np.searchsorted(self._start, at, side="right") - 1, 0, len(self._start) - 1)
+        values = lagrange(self._nodes, (at - self._start[facet]) / self._length[facet])
+        density = np.einsum("qi,qi->q", values, self._density[facet])
+        return np.asarray(density / self._chart.surface_stretch(at))

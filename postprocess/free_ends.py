@@ -22,8 +22,8 @@ from galinx.postprocess.pressure import jacobi_in_chebyshev, jacobi_norms
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import kinks
 
-#: Shapes: of two the factors would be known, the others say how good they are.
-SHAPES = 4
+#: Shapes: of two the factors would be known, the third says how good they are.
+SHAPES = 3
 
 #: Gauss points of a panel; sizes of panels towards a kink and towards an end, over the next larger one's.
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3

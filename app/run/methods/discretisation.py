@@ -23,7 +23,7 @@ from galinx.solvers.fem.space import Space
 
 #: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
 #: them are by about ε/√d. And the least, above rounding.
-_OF_ENDS, _LEAST = 1e-4, 1e-11
+_OF_ENDS, _LEAST = 1e-3, 1e-11
 
 
 class Discretisation:

@@ -42,24 +42,46 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
     return d**exponent * smooth(d)
 
 
-def end_intensity(r: NDArray, kink: float, exponent: float, terms: int = TERMS) -> NDArray[np.float64]:
-    """What multiplies nodal forces to give the limit of σ_YY/(1 - ρ)^α at the right end.
+#: Distances from an end, over that of the nearest kink, between which slopes beside and under it are
+#: looked at; places there, even in their root; terms of each of the two series.
+_SEEN, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), 12, 3
+
+
+def slopes_towards_ends(
+    X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How displacement gradients next to free ends follow from those a little farther away.
+
+    They are A(d) + d^a B(d) on either side, A and B smooth. Nearer than ``_SEEN`` a derivative of finite
+    elements has less digits left than that has.
 
     Args:
-        r: positions of the nodes over a, (n,); with a minus sign for the left end.
-        kink: position of the nearest kink, on the same axis; -1 for none.
-        exponent: α, in (-1, 0).
-        terms: of the expansion; fewer tell how good it is.
+        X: positions that are wanted, over a, (n,).
+        gaps: distances of the left and the right end from the nearest kink, over a.
+        exponents: a, at the left and at the right end.
 
     Returns:
-        (n,), in the coordinate ρ that is -1 at the kink and 1 at the end.
+        Positions (m,) at which gradients are to be known, and what multiplies these, (n, m).
     """
-    ρ = np.clip(2.0 * (r - kink) / (1.0 - kink) - 1.0, -1.0, 1.0)
-    n = np.arange(terms)
-    α, q = exponent, float(POWER)
-    logs = (
-        (α + q + 1.0) * np.log(2.0) - np.log(2.0 * n + α + q + 1.0)
-        + gammaln(n + α + 1.0) + gammaln(n + q + 1.0) - gammaln(n + 1.0) - gammaln(n + α + q + 1.0)
-    )  # fmt: skip
-    at_end = eval_jacobi(n, α, q, 1.0) / np.exp(logs)
-    return (1.0 + ρ) ** POWER * (eval_jacobi(n, α, q, ρ[:, None]) @ at_end)
+    places, rows = [X], [np.eye(len(X))]
+    for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
+        for side in (-1.0, 1.0):
+            d = side * (X - end)
+            near = (d > 0.0) & (d < _SEEN[0] * min(gap, 1.0))
+            if near.any():
+                low, high = (np.sqrt(share * min(gap, 1.0)) for share in _SEEN)
+                t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
+                known = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2
+                unit, powers = high**2, np.arange(_TERMS_OF_EACH)
+                seen, wanted = (
+                    np.column_stack([np.power.outer(x / unit, powers), np.power.outer(x / unit, a + powers)])
+                    for x in (known, d[near])
+                )
+                rows[0][near] = 0.0
+                more = np.zeros((len(X), _SEEN_AT))
+                more[near] = wanted @ np.linalg.pinv(seen)
+                places.append(end + side * known)
+                rows.append(more)
+    return np.concatenate(places), np.concatenate(rows, axis=1)
+
+

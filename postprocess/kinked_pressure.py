@@ -18,6 +18,11 @@ from galinx.solvers.contact import under_punch
 _LOOKED_AT, _STEP = 81, 2e-5
 
 
+def gaps_of(kinks: NDArray) -> tuple[float, float]:
+    """Distances of the left and the right end from the nearest kink, or from one another."""
+    return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
+
+
 class KinkedPressure:
     """σ_YY over N/(2a) of one state.
 
@@ -44,8 +49,7 @@ class KinkedPressure:
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
-        gaps = 1.0 + kinks.min(initial=1.0), 1.0 - kinks.max(initial=-1.0)
-        self._known = [places_at_end(gap) for gap in gaps]
+        self._known = [places_at_end(gap) for gap in gaps_of(kinks)]
         self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:

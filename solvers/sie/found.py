@@ -38,6 +38,7 @@ class Group:
         half_width, centre: of the contact [m], (rows,).
         K_I: at the left and the right end, (rows, 2).
         infinite: places over the half-width at which the pressure is infinite inside the contact.
+        kinks: places over the half-width of all kinks, at which it may have a cusp.
     """
 
     rows: NDArray[np.int64]
@@ -48,6 +49,7 @@ class Group:
     centre: NDArray[np.float64]
     K_I: NDArray[np.float64]
     infinite: Sequence[float] = ()
+    kinks: Sequence[float] = ()
 
     def off(self, r: NDArray) -> NDArray[np.float64]:
         """Positions, none where the pressure is infinite."""
@@ -133,7 +135,7 @@ class Contacts:
         some = slice(i, i + 1)
         alone = Group(
             np.array([0]), pressure, group.α[some], group.β[some], group.half_width[some],
-            group.centre[some], group.K_I[some], group.infinite,
+            group.centre[some], group.K_I[some], group.infinite, group.kinks,
         )  # fmt: skip
         return Contacts(self.response, self.g[row : row + 1], (alone,))
 
@@ -165,7 +167,12 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     bend = left - 2.0 * middle + right
     u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
     top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
-    return np.array([max(top, middle)]), np.array([r[i] + u * step])
+    places, values = np.array([r[i] + u * step, *group.kinks]), np.array([max(top, middle)])
+    if group.kinks:
+        # No grid meets a cusp.
+        values = np.append(values, -group.pressure.σ_YY(places[1:]))
+    best = values.argmax()
+    return values[[best]], places[[best]]
 
 
 @dataclass(frozen=True)
@@ -272,6 +279,7 @@ def _by_quadrature(
             group = Group(
                 np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
                 np.array([m]), np.zeros((1, 2)), tips,
+                [(x - m) / h for x in kinks(profile) if abs(x - m) < h],
             )  # fmt: skip
             found.append(group)
     return found

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge, StressGauges
+from galinx.app.run.methods.kinked_displacement import KinkedDisplacement
 from galinx.app.run.methods.kinked_ends import Ends
 from galinx.app.run.methods.punch import NEGLIGIBLE, NEGLIGIBLE_MOST
 from galinx.meshes.kinks import with_kinks
-from galinx.postprocess.kinked_pressure import KinkedPressure
+from galinx.postprocess.kinked_pressure import KinkedPressure, gaps_of
 from galinx.postprocess.pressure import chebyshev
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.scale import off_tips
@@ -84,6 +85,7 @@ class KinkedLevel:
     Attributes:
         contact: nodal forces of the state.
         field: its displacement over N/(2μ), condensed.
+        displacement: what is read off that.
         pressure: the contact's.
         factor: of the linear system, freed, with numbers of its work.
     """
@@ -112,7 +114,8 @@ class KinkedLevel:
         )
         tips = places if jumps(body.profile) else np.empty(0)
         self._task, self._across = _off(task, tips), _ACROSS[off_tips(_ACROSS, tips)]
-        self._gauges = StressGauges(work, self._task, space, [self.field])
+        self.displacement = KinkedDisplacement(task, space, self.field, gaps_of(places), exponents)
+        self._gauges = StressGauges(work, self._task, self.displacement.at_places_of)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Of the one state there is."""

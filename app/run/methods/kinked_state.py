@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import climb
 from galinx.app.run.methods.kinked_ends import Ends
 from galinx.app.run.methods.kinked_level import ONE, KinkedLevel, OwnMeshes, places_of_kinks
@@ -25,7 +24,6 @@ class KinkedState:
         task: the speed, and the load.
         ends: of the contact.
         level: the last.
-        displacement: what is read off its field.
         estimates: relative errors by the word of output.quantities that asks for what they are of.
         record: numbers of the work, as they are archived.
     """
@@ -33,7 +31,6 @@ class KinkedState:
     task: Task
     ends: Ends
     level: KinkedLevel
-    displacement: Displacement
     estimates: dict[str, float]
     record: dict[str, Any]
 
@@ -41,12 +38,12 @@ class KinkedState:
     def surface(self) -> Surface:
         """Stresses on the surface, of one state."""
         σ_YY = self.level.pressure.σ_YY(self.task.places.X)[None]
-        return self.displacement.surface(self.level.contact.g, ONE, σ_YY)
+        return self.level.displacement.surface(self.level.contact.g, ONE, σ_YY)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, m)."""
-        return self.displacement.inside(ONE)[:, 0]
+        return self.level.displacement.inside(ONE)[:, 0]
 
     @cached_property
     def largest(self) -> tuple[float, float]:
@@ -55,7 +52,7 @@ class KinkedState:
 
     def at(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (..., 2) over a, (3, ...)."""
-        found = self.displacement.at(points.reshape(1, -1, 2), ONE)
+        found = self.level.displacement.at(points.reshape(1, -1, 2), ONE)
         return found.reshape(3, *points.shape[:-1])
 
     def destroy(self) -> None:
@@ -89,6 +86,5 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
     last: KinkedLevel = ladder.levels[-1]
     estimates = {word: float(values[0]) for word, values in error.of(np.array([g])).items()}
     estimates[INTENSITIES] += ends.error
-    displacement = Displacement(task, last.space, [last.field])
     size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
-    return KinkedState(task, ends, last, displacement, estimates, size | error.record())
+    return KinkedState(task, ends, last, estimates, size | error.record())

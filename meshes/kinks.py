@@ -4,6 +4,7 @@ Between neighbouring places, both ends of the contact among them, the strip alon
 the middle; each half is a corner of :mod:`galinx.meshes.rings`, stretched. Columns go on outwards.
 """
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,21 +16,25 @@ from galinx.meshes.rings import QuadMesh, Refinement, corner, joined
 _WIDE, _GROWTH = 1.3, 1.6
 
 
-def with_kinks(refinement: Refinement, places: NDArray) -> QuadMesh:
+def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMesh:
     """The rectangle in the (ξ, η) plane of a confocal mesh.
 
     Args:
         refinement: of the mesh without kinks.
         places: X over a of the kinks, in (-1, 1).
+        more: rings around these than around the ends.
     """
     η = np.concatenate([[-np.pi], np.sort(-np.arccos(places)), [0.0]])
     width = min(_WIDE * np.pi / (2.0 * (len(η) - 1)), np.pi / 2.0)
-    unit = corner(1.0, refinement, False)[0]
+    of_end, of_kink = (
+        corner(1.0, replace(refinement, levels=refinement.levels + levels), False)[0]
+        for levels in (0, more)
+    )
     quads, rows = [], [-np.pi]
     for low, high in pairwise(η):
         half = (high - low) / 2.0
-        below = unit * [width, half] + [0.0, high]
-        above = (unit * [width, -half] + [0.0, low])[:, ::-1]
+        below = (of_end if high == η[-1] else of_kink) * [width, half] + [0.0, high]
+        above = ((of_end if low == η[0] else of_kink) * [width, -half] + [0.0, low])[:, ::-1]
         quads += [above, below]
         for start in (low, low + half):
             rows += (start + half * np.linspace(0.0, 1.0, refinement.sectors + 1)[1:]).tolist()

@@ -42,9 +42,42 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
     return d**exponent * smooth(d)
 
 
-#: Distances from an end, over that of the nearest kink, between which slopes beside and under it are
-#: looked at; places there, even in their root; terms of each of the two series.
-_SEEN, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), 12, 3
+#: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
+#: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
+#: there, even in the root of d; terms of each of the two series.
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), (1e-3, 5e-2), 12, 3
+
+
+def _two_series(
+    gap: float, seen: tuple[float, float], exponent: float, wanted: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances (m,) at which A(d) + d^a B(d) is to be known, and what multiplies it, (n, m).
+
+    Args:
+        gap: that distances are over.
+        seen: the nearest and the farthest.
+        exponent: a.
+        wanted: distances that are asked for, (n,).
+    """
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
+    known, powers = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2, np.arange(_TERMS_OF_EACH)
+    at_known, at_wanted = (
+        np.power.outer(d / high**2, np.concatenate([powers, exponent + powers])) for d in (known, wanted)
+    )
+    return known, at_wanted @ np.linalg.pinv(at_known)
+
+
+def towards_cusp(gap: float, exponent: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances (m,) from a kink at which the pressure is to be known, and what multiplies it there to
+    give that at the kink, (m,).
+
+    Args:
+        gap: distance of the next kink or end, over a.
+        exponent: of the distance from the kink, in (0, 1).
+    """
+    known, weights = _two_series(gap, _SEEN_AT_CUSP, exponent, np.zeros(1))
+    return known, weights[0]
 
 
 def slopes_towards_ends(
@@ -52,8 +85,7 @@ def slopes_towards_ends(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """How displacement gradients next to free ends follow from those a little farther away.
 
-    They are A(d) + d^a B(d) on either side, A and B smooth. Nearer than ``_SEEN`` a derivative of finite
-    elements has less digits left than that has.
+    Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
 
     Args:
         X: positions that are wanted, over a, (n,).
@@ -69,17 +101,10 @@ def slopes_towards_ends(
             d = side * (X - end)
             near = (d > 0.0) & (d < _SEEN[0] * min(gap, 1.0))
             if near.any():
-                low, high = (np.sqrt(share * min(gap, 1.0)) for share in _SEEN)
-                t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
-                known = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2
-                unit, powers = high**2, np.arange(_TERMS_OF_EACH)
-                seen, wanted = (
-                    np.column_stack([np.power.outer(x / unit, powers), np.power.outer(x / unit, a + powers)])
-                    for x in (known, d[near])
-                )
+                known, weights = _two_series(gap, _SEEN, a, d[near])
                 rows[0][near] = 0.0
                 more = np.zeros((len(X), _SEEN_AT))
-                more[near] = wanted @ np.linalg.pinv(seen)
+                more[near] = weights
                 places.append(end + side * known)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)

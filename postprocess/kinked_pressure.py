@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.intensity import places_at_end, towards_end
+from galinx.postprocess.intensity import places_at_end, towards_cusp, towards_end
 from galinx.postprocess.pressure import density_of_forces, facets_of, lagrange, reference_nodes
 from galinx.solvers.contact import under_punch
 
@@ -33,6 +33,8 @@ class KinkedPressure:
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: places of the kinks over a, in their order.
         exponents: of the pressure at the left and the right end, positive.
+        cusp: exponent of the distance from a kink with which the pressure leaves its value there, if it
+            is below 1; 0 for none.
     """
 
     def __init__(
@@ -43,9 +45,10 @@ class KinkedPressure:
         forces: NDArray,
         kinks: NDArray,
         exponents: tuple[float, float],
+        cusp: float = 0.0,
     ) -> None:
         facets = facets_of(s, degree)
-        self._chart, self._kinks, self._exponents = chart, kinks, exponents
+        self._chart, self._kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
@@ -72,7 +75,19 @@ class KinkedPressure:
             p = -self.σ_YY(r)
             i, step = int(p.argmax()), (high - low) / (_LOOKED_AT - 1)
             low, high = max(r[i] - 2.0 * step, -1.0), min(r[i] + 2.0 * step, 1.0)
-        return float(p[i]), float(r[i])
+        found = [(float(p[i]), float(r[i]))]
+        if self._cusp:
+            found += [(self._at_cusp(i), float(kink)) for i, kink in enumerate(self._kinks)]
+        return max(found)
+
+    def _at_cusp(self, number: int) -> float:
+        """The pressure at a kink, from both sides: no polynomial has a cusp."""
+        at, ends = self._kinks[number], np.concatenate([[-1.0], self._kinks, [1.0]])
+        found = []
+        for side, other in ((-1.0, ends[number]), (1.0, ends[number + 2])):
+            known, weights = towards_cusp(abs(other - at), self._cusp)
+            found.append(-float(weights @ self._piecewise(at + side * known)))
+        return float(np.mean(found))
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         at = self._chart.surface_coordinate(r)

@@ -20,7 +20,7 @@ from galinx.postprocess.scale import off_tips
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
-from galinx.solvers.profiles import jumps, kinks
+from galinx.solvers.profiles import cusp, jumps, kinks
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Body
 
@@ -29,6 +29,9 @@ _MOST, _NEXT_TO_END = 12, 0.98
 
 #: Places under the punch at which the pressure is measured.
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+
+#: Rings more around a cusp of the pressure.
+AROUND_CUSPS = 4
 
 #: Weights of a single field.
 ONE = np.ones((1, 1))
@@ -57,14 +60,15 @@ class OwnMeshes:
     Args:
         work: of all states.
         places: of the kinks over the half-width.
+        more: rings around these.
 
     Attributes:
         plan: of all states.
     """
 
-    def __init__(self, work: Discretisation, places: NDArray) -> None:
+    def __init__(self, work: Discretisation, places: NDArray, more: int) -> None:
         self._work, self.plan = work, work.plan
-        self._mesh = work.own_mesh(with_kinks(work.plan.refinement, places))
+        self._mesh = work.own_mesh(with_kinks(work.plan.refinement, places, more))
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree."""
@@ -110,8 +114,9 @@ class KinkedLevel:
         local = FlatPunch(task.response, self._g)
         exponents = float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
         self.pressure = KinkedPressure(
-            space.contact.s, space.degree, space.chart, self.contact.normal[0], places, exponents
-        )
+            space.contact.s, space.degree, space.chart, self.contact.normal[0], places, exponents,
+            cusp(body.profile),
+        )  # fmt: skip
         tips = places if jumps(body.profile) else np.empty(0)
         self._task, self._across = _off(task, tips), _ACROSS[off_tips(_ACROSS, tips)]
         self.displacement = KinkedDisplacement(task, space, self.field, gaps_of(places), exponents)

@@ -11,9 +11,16 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import climb
 from galinx.app.run.methods.kinked_ends import Ends
-from galinx.app.run.methods.kinked_level import ONE, KinkedLevel, OwnMeshes, places_of_kinks
+from galinx.app.run.methods.kinked_level import (
+    AROUND_CUSPS,
+    ONE,
+    KinkedLevel,
+    OwnMeshes,
+    places_of_kinks,
+)
 from galinx.app.run.methods.ladder import Ladder, WorkDone
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.solvers.profiles import cusp
 from galinx.solvers.solution import Surface
 
 @dataclass(frozen=True)
@@ -79,7 +86,8 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
         done.count(found)
         return found
 
-    ladder = Ladder(OwnMeshes(work, places), task, level)
+    more = AROUND_CUSPS if cusp(task.body.profile) else 0
+    ladder = Ladder(OwnMeshes(work, places, more), task, level)
     error = climb(ladder, np.array([g]))
     for early in ladder.levels[:-1]:
         early.destroy()

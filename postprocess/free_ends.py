@@ -29,7 +29,7 @@ SHAPES = 3
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
 
 #: First half-width that is tried [m], doublings of it, and of the middle over it; halvings.
-_FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 24
+_FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
 #: Steps of Newton's method, the largest of m/h and of log h, difference for derivatives; residuals that
 #: are met, and those that are rounding.
 _STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11

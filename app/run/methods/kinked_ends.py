@@ -20,7 +20,12 @@ from galinx.app.run.methods.punch import PunchLevel
 from galinx.postprocess.free_ends import FreeEnds, heights_of_shapes
 from galinx.postprocess.pressure import from_moments
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
+
+
+#: σ_XY/σ_YY and load [N/m]; middle and half-width [m].
+State, Lengths = tuple[float, float], tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -40,18 +45,57 @@ class Ends:
 @contextmanager
 def ends_at_speed(work: Discretisation, task: Task, g: NDArray) -> Iterator["EndsAtSpeed"]:
     """Raise the degree until the measured error of the ends of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: EndsLevel(work, task, space, g)) as (ladder, error):
+    near: dict[State, Lengths] = {}
+    with climbed(work, task, g, lambda space, g: EndsLevel(work, task, space, g, near)) as (
+        ladder, error,
+    ):  # fmt: skip
         yield EndsAtSpeed(ladder, error)
 
 
 class EndsLevel(PunchLevel):
-    """Ends at one degree; see :class:`PunchLevel`."""
+    """Ends at one degree; see :class:`PunchLevel`.
+
+    Args:
+        work, task, space, g: of that.
+        near: middles and half-widths [m] of states by σ_XY/σ_YY and load, as levels before knew them.
+    """
+
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, near: dict[State, Lengths]
+    ) -> None:
+        super().__init__(work, task, space, g)
+        self._near = near
+        self._conditions: dict[float, FreeEnds] = {}
+        self._found: dict[State, Lengths] = {}
 
     def heights(self) -> NDArray[np.float64]:
         return heights_of_shapes(self.space.chart.surface_position(self.space.contact.s))
 
     def conditions(self, g: NDArray) -> list[FreeEnds]:
         """Of every friction."""
+        missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
+        if len(missing):
+            self._conditions |= zip(missing.tolist(), self._solved(missing))
+        return [self._conditions[value] for value in g.tolist()]
+
+    def found(self, g: NDArray, load: Any = None) -> list[Lengths]:
+        """Middle and half-width [m] of every state.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        body, last = self.task.body, None
+        loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
+        states = list(zip(g.tolist(), loads))
+        for state, known in zip(states, self.conditions(g)):
+            if state not in self._found:
+                unit = body.loaded(state[1]).displacement
+                start = self._near.get(state, last)
+                self._found[state] = self._near[state] = known.found(body.profile, unit, start)
+            last = self._found[state]
+        return [self._found[state] for state in states]
+
+    def _solved(self, g: NDArray) -> list[FreeEnds]:
         parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
         K = np.stack(
             [from_moments(part.normal @ self.recovery.moments, local.α, local.β).K_I for part in parts],
@@ -59,27 +103,8 @@ class EndsLevel(PunchLevel):
         )
         N = np.stack([part.normal.sum(axis=1) for part in parts], axis=-1)[:, None]
         share = K[..., :1] / N[..., :1]
-        return [
-            FreeEnds(float(α), float(β), moments, wanted)
-            for α, β, moments, wanted in zip(
-                local.α, local.β, (K - share * N)[..., 1:], 2.0 * share[..., 0]
-            )
-        ]
-
-    def found(
-        self, g: NDArray, load: Any = None, start: list[tuple[float, float]] | None = None
-    ) -> list[tuple[float, float]]:
-        """Middle and half-width [m] of every state.
-
-        Raises:
-            SolveError: no contact carries the load.
-        """
-        body, found = self.task.body, []
-        loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
-        for i, (known, N) in enumerate(zip(self.conditions(g), loads)):
-            first = start[i] if start else found[-1] if found else None
-            found.append(known.found(body.profile, body.loaded(N).displacement, first))
-        return found
+        moments, wanted = (K - share * N)[..., 1:], 2.0 * share[..., 0]
+        return [FreeEnds(*one) for one in zip(local.α.tolist(), local.β.tolist(), moments, wanted)]
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         ends = np.array(self.found(g, load))

@@ -14,6 +14,7 @@ from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
+from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
 
@@ -134,29 +135,17 @@ def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
 def _found_pressure(data: dict[str, Any], _: float) -> float:
     """Over each state's largest; next to a tip, where it is infinite, nothing is compared."""
     under = under_punch(data[at.SURFACE_X.path])
-    X, (fem, exact) = data[at.SURFACE_X.path][under], _both(data, at.PRESSURE, under)
-    infinite = np.isnan(data[of.LARGEST[CLOSED_FORM].path])[:, None]
-    left_out = infinite & ~scale.off_tips(X, _tips(X, exact))
+    fem, exact = _both(data, at.PRESSURE, under)
+    left_out = next_to_tips(data)[:, under]
     size = np.where(left_out, 0.0, np.abs(exact)).max(axis=1, keepdims=True)
     return (np.where(left_out, 0.0, np.abs(fem - exact)) / size).max()
 
 
-def _tips(X: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
-    """Where the pressure of each state is largest, (states, 1)."""
-    return X[np.abs(σ_YY).argmax(axis=1)][:, None]
-
-
 def _in_plane(data: dict[str, Any], _: float) -> float:
-    """Next to a tip inside the contact, where stresses are infinite, nothing is compared."""
+    """Next to a tip inside the contact nothing is compared; edges stand for themselves."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
-    X = data[at.SURFACE_X.path]
-    off = np.abs(fem - exact) / scale.of_in_plane(exact, X)
-    if of.LARGEST[CLOSED_FORM].path in data and at.PRESSURE[CLOSED_FORM].path in data:
-        infinite = np.isnan(data[of.LARGEST[CLOSED_FORM].path])[:, None]
-        tips = _tips(X, np.nan_to_num(data[at.PRESSURE[CLOSED_FORM].path]))
-        inside = infinite & (np.abs(tips) < 1.0 - scale.NEAR_TIP)
-        off = np.where(inside & ~scale.off_tips(X, tips), 0.0, off)
-    return off.max()
+    off = np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])
+    return np.where(next_to_tips(data, 1.0 - scale.NEAR_TIP), 0.0, off).max()
 
 
 def _inside(data: dict[str, Any], _: float) -> float:

@@ -114,9 +114,7 @@ class FreeEnds:
         _check_reach(profile, (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h)
         return float(point[0]) * h, h
 
-    def _newton(
-        self, profile: Any, unit: float, point: NDArray, value: NDArray
-    ) -> NDArray[np.float64]:
+    def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
         J = np.empty((2, 2))
         for i, d in enumerate(np.eye(2) * _ε):
             after, before = (self._residual(profile, unit, point + sign * d) for sign in (1.0, -1.0))
@@ -131,9 +129,7 @@ class FreeEnds:
         lifted, carried = self._conditions(profile, unit, float(point[0]), float(np.exp(point[1])))
         return np.array([lifted, np.log(carried) if carried > 0.0 else np.inf])
 
-    def _conditions(
-        self, profile: Any, unit: float, lean: float, h: float
-    ) -> tuple[float, float]:
+    def _conditions(self, profile: Any, unit: float, lean: float, h: float) -> tuple[float, float]:
         """How far the ends are from balance, over what they could be, and the load over that wanted."""
         at = np.array(kinks(profile), dtype=float) / h - lean
         s, weights = _rule(at[np.abs(at) < 1.0], self.α, self.β)
@@ -185,8 +181,8 @@ def _check_reach(profile: Any, left: float, right: float) -> None:
     first, last = getattr(profile, "reach", (-np.inf, np.inf))
     if left < first or right > last:
         raise SolveError(
-            f"by finite elements the contact would reach from X = {left:g} m to {right:g} m, found a "
-            f"punch that is known from {first:g} m to {last:g} m; give more of its shape, or a smaller load"
+            f"by finite elements the contact would reach from X = {left:g} m to {right:g} m, but the punch "
+            f"is known from {first:g} m to {last:g} m only; give more of its shape, or a smaller load"
         )
 
 

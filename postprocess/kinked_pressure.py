@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.intensity import places_at_end, towards_cusp, towards_end
+from galinx.postprocess.near_ends import places_at_end, towards_cusp, towards_end
 from galinx.postprocess.pressure import density_of_forces, facets_of, lagrange, reference_nodes
 from galinx.solvers.contact import under_punch
 
-#: Places at which a largest pressure is looked for at a time; steps between them from which on it is found.
+#: Places at which a largest pressure is looked for at a time; steps between them that are small enough.
 _LOOKED_AT, _STEP = 81, 2e-5
 
 

@@ -20,7 +20,6 @@ from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
 
-
 #: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
 #: them are by about ε/√d. And the least, above rounding.
 _OF_ENDS, _LEAST = 1e-3, 1e-11

@@ -62,9 +62,7 @@ class LoadsAtDegree:
         for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
             self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
-        self._gauges = StressGauges(
-            work, task, lambda at: Displacement(at, space, self.loaded.fields)
-        )
+        self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.loaded.fields))
 
     @property
     def factor(self) -> Any:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.displacement import Displacement
-from galinx.postprocess.intensity import slopes_towards_ends
+from galinx.postprocess.near_ends import slopes_towards_ends
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
 

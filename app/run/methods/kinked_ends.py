@@ -6,7 +6,7 @@ A few polynomial shapes tell where every friction and every load ends; no mesh k
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,9 @@ from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 
-
 #: σ_XY/σ_YY and load [N/m]; middle and half-width [m].
-State, Lengths = tuple[float, float], tuple[float, float]
+State: TypeAlias = tuple[float, float]
+Lengths: TypeAlias = tuple[float, float]
 
 
 @dataclass(frozen=True)

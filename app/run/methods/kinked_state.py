@@ -23,6 +23,7 @@ from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.profiles import cusp
 from galinx.solvers.solution import Surface
 
+
 @dataclass(frozen=True)
 class KinkedState:
     """A solved contact; lengths over its half-width from its middle.

@@ -6,13 +6,22 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Task
-from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.solvers.fem.space import Space
 
 #: Levels that are held at once: two differences measure the error.
 _HELD = 3
+
+
+class Spaces(Protocol):
+    """What gives the spaces of a ladder."""
+
+    @property
+    def plan(self) -> FemPlan: ...
+
+    def space(self, degree: int, cuts: int = 1) -> Space: ...
 
 
 class Level(Protocol):
@@ -59,7 +68,7 @@ class Ladder:
         levels: the last ones.
     """
 
-    def __init__(self, work: Discretisation, task: Task, solved: Callable[[Space, NDArray], Any]) -> None:
+    def __init__(self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any]) -> None:
         self.work, self.task, self.degree = work, task, work.plan.degrees[task.number]
         self.levels: list[Any] = []
         self._solved = solved
@@ -107,9 +116,7 @@ class WorkDone:
     def count(self, level: Any) -> None:
         """Count the work of what has a factor."""
         factor = level.factor
-        self.add(
-            WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition)
-        )
+        self.add(WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition))
 
     def add(self, other: "WorkDone") -> None:
         """Count other work, too."""

@@ -77,9 +77,7 @@ class PunchLevel:
         # The basis is complete before traces are taken, and the same whatever states are still to do.
         for first in range(0, len(g), work.chunk):
             self.punch.parts(g[first : first + work.chunk])
-        self._gauges = StressGauges(
-            work, task, lambda at: Displacement(at, space, self.punch.fields)
-        )
+        self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.punch.fields))
 
     def heights(self) -> NDArray[np.float64] | None:
         """The punch's over N/(2μ) at the contact nodes, or of shapes; None for a flat punch."""

@@ -1,17 +1,10 @@
-"""A pressure near the ends of the contact, from there alone: is it singular, how does it fall?
+"""Pressure and slopes next to the free ends and the cusps of a contact, from a little farther away.
 
-Jacobi moments over the whole contact converge slowly where the pressure has a logarithm inside, at a kink
-of the punch's slope. So the pressure between the end and the nearest kink is expanded, with a weight
-that vanishes at the kink like a power: what is not smooth there is hardly seen.
+By the local analysis they are smooth functions there, one of them times a power of the distance.
 """
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import eval_jacobi, gammaln
-
-#: Power of the weight at the kink, and terms of the expansion.
-POWER, TERMS = 8, 12
-
 
 #: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
 #: there, and the degree of the polynomial through them.
@@ -108,5 +101,3 @@ def slopes_towards_ends(
                 places.append(end + side * known)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)
-
-

@@ -181,7 +181,7 @@ def _check_reach(profile: Any, left: float, right: float) -> None:
     first, last = getattr(profile, "reach", (-np.inf, np.inf))
     if left < first or right > last:
         raise SolveError(
-            f"by finite elements the contact would reach from X = {left:g} m to {right:g} m, but the punch "
+            f"finite elements found a contact from X = {left:g} m to {right:g} m, but the punch "
             f"is known from {first:g} m to {last:g} m only; give more of its shape, or a smaller load"
         )
 

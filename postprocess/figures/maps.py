@@ -154,7 +154,7 @@ class _Grid:
     def frame(self, axis: Axes) -> None:
         axis.plot(self._contact, [0.0, 0.0], color="black", linewidth=2.5, clip_on=False)
         axis.set(xlim=(self._X[0], self._X[-1]), ylim=(self._Y[0], 0.0))
-        axis.locator_params(axis="x", nbins=6)
+        axis.locator_params(axis="x", nbins=6 if self._contact == [-1.0, 1.0] else 3)
         axis.locator_params(axis="y", nbins=4)
 
     def bar(self, axis: Axes, limit: float, extend: str, shown: Map) -> None:

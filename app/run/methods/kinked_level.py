@@ -1,11 +1,13 @@
 """A contact with kinks at one degree, and what its error is measured on."""
 
 from dataclasses import replace
+from math import ceil, log
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge, StressGauges
@@ -20,7 +22,7 @@ from galinx.postprocess.scale import off_tips
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
-from galinx.solvers.profiles import cusp, jumps, kinks
+from galinx.solvers.profiles import cusp, exponent, jumps, kinks
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Body
 
@@ -30,8 +32,8 @@ _MOST, _NEXT_TO_END = 12, 0.98
 #: Places under the punch at which the pressure is measured.
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
-#: Rings more around a cusp of the pressure.
-AROUND_CUSPS = 4
+#: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
+_AROUND_CUSP, _INNERMOST = 4, 30.0
 
 #: Weights of a single field.
 ONE = np.ones((1, 1))
@@ -52,6 +54,21 @@ def places_of_kinks(body: Body, ends: Ends) -> NDArray[np.float64]:
             f'{1.0 - _NEXT_TO_END:.2g} of an end; take methods = ["closed_form"]'
         )
     return inside
+
+
+def rings_around_kinks(plan: FemPlan, body: Body) -> int:
+    """How many more than around the ends.
+
+    Next to a kink of the slope's derivative the pressure is d log d, and what the innermost cells make of
+    it is of their size whatever the degree is. At a tip it is infinite, and looked at farther away.
+    """
+    if jumps(body.profile):
+        return 0
+    if cusp(body.profile):
+        return _AROUND_CUSP
+    order = max((exponent(body.profile) or 2.0) - 1.0, 1.0)
+    size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
+    return max(0, ceil(log(size) / log(plan.refinement.ratio)) - plan.refinement.levels)
 
 
 class OwnMeshes:

@@ -12,15 +12,14 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import climb
 from galinx.app.run.methods.kinked_ends import Ends
 from galinx.app.run.methods.kinked_level import (
-    AROUND_CUSPS,
     ONE,
     KinkedLevel,
     OwnMeshes,
     places_of_kinks,
+    rings_around_kinks,
 )
 from galinx.app.run.methods.ladder import Ladder, WorkDone
 from galinx.postprocess.quantities.quantity import INTENSITIES
-from galinx.solvers.profiles import cusp
 from galinx.solvers.solution import Surface
 
 
@@ -87,7 +86,7 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
         done.count(found)
         return found
 
-    more = AROUND_CUSPS if cusp(task.body.profile) else 0
+    more = rings_around_kinks(work.plan, task.body)
     ladder = Ladder(OwnMeshes(work, places, more), task, level)
     error = climb(ladder, np.array([g]))
     for early in ladder.levels[:-1]:

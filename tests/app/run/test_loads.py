@@ -82,7 +82,7 @@ def same_as_alone(changes, loads=LOADS):
     return many
 
 
-@pytest.mark.parametrize("name", ("flat", "tilted", "parabolic"))
+@pytest.mark.parametrize("name", ("flat", "tilted", "parabolic", "wedge"))
 def test_states_under_several_loads_are_those_under_each(name):
     """By both methods; the tilted punch lifts off at the least load alone."""
     many = same_as_alone(ALL | ROUGH | punch(name))

@@ -14,6 +14,9 @@ from galinx.meshes.rings import QuadMesh, Refinement, corner, joined
 
 #: Width of the strip over the mean height of its halves, and what a column grows by outwards.
 _WIDE, _GROWTH = 1.3, 1.6
+#: Elliptic coordinate, some 4 000 a, beyond which a field is that of a line load to all digits that are
+#: told, linear in this coordinate, and columns need no largest width.
+_FAR = 9.0
 
 
 def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMesh:
@@ -53,9 +56,9 @@ def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMe
 
 
 def _columns(first: float, last: float, widest: float) -> list[float]:
-    """Where columns end in ξ, from the strip's width to the far boundary."""
+    """Where columns end in ξ, from the strip's width to the far boundary; near by at most ``widest``."""
     found, step = [first], first
     while last - found[-1] > 1.5 * step:
         found.append(found[-1] + step)
-        step = min(_GROWTH * step, widest)
+        step = min(_GROWTH * step, widest if found[-1] < _FAR else np.inf)
     return [*found, last]

@@ -62,7 +62,7 @@ def of_states(data):
     }  # fmt: skip
 
 
-def same_as_alone(changes, loads=LOADS):
+def same_as_alone(changes, loads=LOADS, digits=1e-12):
     """A scene of several loads has what scenes of these loads have; returns its result."""
     many = computed("tables4_5", changes | {"punch.load": list(loads)})
     assert many.verdict != "FAIL", many.attributes["verdict_reasons"]
@@ -76,7 +76,7 @@ def same_as_alone(changes, loads=LOADS):
             found = many.data[path][i * count : (i + 1) * count]
             size = np.nanmax(np.abs(values), initial=0.0)
             # Errors are of the last digits, measured on samples; the place of a maximum has half of them.
-            within = 1e-4 if re.search("estimate|error|position", path) else 1e-12
+            within = 1e-4 if re.search("estimate|error|position", path) else digits
             np.testing.assert_allclose(found, values, rtol=within, atol=within * size, err_msg=path)
         assert (many.data["states/load"][i * count : (i + 1) * count] == load).all()
     return many
@@ -85,7 +85,8 @@ def same_as_alone(changes, loads=LOADS):
 @pytest.mark.parametrize("name", ("flat", "tilted", "parabolic", "wedge"))
 def test_states_under_several_loads_are_those_under_each(name):
     """By both methods; the tilted punch lifts off at the least load alone."""
-    many = same_as_alone(ALL | ROUGH | punch(name))
+    # Ends are found to rounding, and next to these stresses make a thousand times as much of it.
+    many = same_as_alone(ALL | ROUGH | punch(name), digits=1e-8 if name == "wedge" else 1e-12)
     if name == "tilted":
         a = many.data["states/fem/half_width"]
         assert (a[:2] < 0.9e-3).all() and (a[2:] == 1e-3).all()

@@ -14,6 +14,7 @@ from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
+from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
 
@@ -134,17 +135,17 @@ def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
 def _found_pressure(data: dict[str, Any], _: float) -> float:
     """Over each state's largest; next to a tip, where it is infinite, nothing is compared."""
     under = under_punch(data[at.SURFACE_X.path])
-    X, (fem, exact) = data[at.SURFACE_X.path][under], _both(data, at.PRESSURE, under)
-    tip = X[np.abs(exact).argmax(axis=1)][:, None]
-    infinite = np.isnan(data[of.LARGEST[CLOSED_FORM].path])[:, None]
-    left_out = infinite & (np.abs(X - tip) < _NEAR_TIP)
+    fem, exact = _both(data, at.PRESSURE, under)
+    left_out = next_to_tips(data)[:, under]
     size = np.where(left_out, 0.0, np.abs(exact)).max(axis=1, keepdims=True)
     return (np.where(left_out, 0.0, np.abs(fem - exact)) / size).max()
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
+    """Next to a tip inside the contact nothing is compared; edges stand for themselves."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
-    return (np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])).max()
+    off = np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])
+    return np.where(next_to_tips(data, 1.0 - scale.NEAR_TIP), 0.0, off).max()
 
 
 def _inside(data: dict[str, Any], _: float) -> float:
@@ -198,9 +199,6 @@ def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
 
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
-
-#: Distance over a from an infinite pressure within which it is not compared.
-_NEAR_TIP = 0.02
 
 #: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
 _VANISHING = 0.1

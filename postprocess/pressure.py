@@ -186,15 +186,15 @@ def contact_recovery(
             and beyond this distance the pressure's second term biases the exponent.
         tests: smooth functions of r, (points, moments), with which forces are tested.
     """
-    facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
-    density = _density_of_forces(s, facets, degree)  # symmetric
+    facets = facets_of(s, degree)
+    density = density_of_forces(s, facets, np.eye(len(s)))  # symmetric
     start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
-    nodes = _reference_nodes(s, facets)
+    nodes = reference_nodes(s, facets)
 
     inside = under_punch(r)
     at = chart.surface_coordinate(r[inside])
     facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
-    values = _lagrange(nodes, (at - start[facet]) / length[facet])
+    values = lagrange(nodes, (at - start[facet]) / length[facet])
     raw = np.full((len(s), len(r)), np.nan)
     raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
     raw[:, inside] /= chart.surface_stretch(at)
@@ -204,7 +204,7 @@ def contact_recovery(
         start[:, None] - s[0] + length[:, None] * t,
         s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
     )
-    at_gauss = density[:, facets] @ _lagrange(nodes, t).T / stretch
+    at_gauss = density[:, facets] @ lagrange(nodes, t).T / stretch
     edges = []
     for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
@@ -213,27 +213,39 @@ def contact_recovery(
     return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
 
 
-def _density_of_forces(s: NDArray, facets: NDArray, degree: int) -> NDArray[np.float64]:
-    """Inverse of the contact's mass matrix per surface coordinate: forces to σ_YY dX/ds at nodes."""
+def facets_of(s: NDArray, degree: int) -> NDArray[np.int64]:
+    """Numbers of the nodes of each facet of the contact, (F, p + 1)."""
+    return np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
+
+
+def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[np.float64]:
+    """σ_YY dX/ds at the nodes, by the contact's mass matrix per surface coordinate.
+
+    Args:
+        s: surface coordinates of the contact nodes, (n,).
+        facets: their numbers, (F, p + 1).
+        forces: at the nodes, (n, ...).
+    """
+    degree = facets.shape[1] - 1
     t, w = np.polynomial.legendre.leggauss(degree + 1)
-    nodes = _reference_nodes(s, facets)
-    basis = _lagrange(nodes, (t + 1.0) / 2.0)
+    nodes = reference_nodes(s, facets)
+    basis = lagrange(nodes, (t + 1.0) / 2.0)
     unit_mass = basis.T * (w / 2.0) @ basis
     banded = np.zeros((degree + 1, len(s)))
     for row in facets:
         mass = unit_mass * (s[row[-1]] - s[row[0]])
         for k in range(degree + 1):
             banded[degree - k, row[k:]] += np.diagonal(mass, k)
-    return solveh_banded(banded, np.eye(len(s)))
+    return np.asarray(solveh_banded(banded, forces))
 
 
-def _reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
+def reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
     """Nodes of a facet over its length, from the widest: rounding of positions spoils the smallest."""
     widest = facets[np.argmax(s[facets[:, -1]] - s[facets[:, 0]])]
     return (s[widest] - s[widest[0]]) / (s[widest[-1]] - s[widest[0]])
 
 
-def _lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
+def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
     """Values at t of the Lagrange polynomials of the nodes, all in [0, 1]: (len(t), len(nodes))."""
     at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
     return at_t @ np.linalg.inv(at_nodes)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,9 @@ from galinx.solvers.contact import from_edge
 
 #: Distance over a from a punch edge within which stresses, infinite there, stand for themselves only.
 NEAR = 1e-2
+
+#: Distance over a from a tip of the punch, where stresses are infinite, within which none is measured.
+NEAR_TIP = 0.02
 
 #: Share of the largest below which the smooth factor of a pressure, which may vanish, is not measured
 #: against itself.
@@ -27,6 +31,20 @@ def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
         (states, n).
     """
     return _at_least_far(np.abs(σ_XX), from_edge(X) >= NEAR)
+
+
+def off_tips(X: NDArray, tips: NDArray, Y: Any = 0.0) -> NDArray[np.bool_]:
+    """Which places are further than ``NEAR_TIP`` from all tips.
+
+    Args:
+        X, Y: of the places over a, (n,).
+        tips: their positions over a on the surface, (k,) for all states, or (states, k).
+
+    Returns:
+        (n,), or (states, n).
+    """
+    from_tips = np.hypot(X[:, None] - np.asarray(tips)[..., None, :], np.reshape(Y, (-1, 1)))
+    return np.all(from_tips >= NEAR_TIP, axis=-1)
 
 
 def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float64]:

@@ -40,7 +40,7 @@ from galinx.app.console.terminal import say
     metavar="NAMES",
     help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
 )
-@click.option("--si", is_flag=True, help="Stresses in MPa.")
+@click.option("--si", is_flag=True, help="Stresses in MPa; positions in mm where ends are found.")
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
@@ -57,7 +57,7 @@ def plot(
     from galinx.app.pictures.files import Files
     from galinx.app.results.drawings import write
     from galinx.app.results.result import load
-    from galinx.app.results.si import unit_of_stress
+    from galinx.app.results.si import drawn_in_si
 
     wanted = choice.Choice(
         figures=choice.words(figure), quantities=choice.words(quantity),
@@ -67,18 +67,8 @@ def plot(
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
     result = load(archive)
     if ranks.is_root():
-        if si and result.scene.body.found:
-            raise errors.BadInput(
-                "--si: found a contact whose ends are found, and so another unit N/(2a) in every state; "
-                "leave it away, half-widths in m are among the parameters that are drawn"
-            )
-        if si and len(result.scene.punch.loads) > 1:
-            raise errors.BadInput(
-                "--si: found states under several loads, and so several units N/(2a), over which all "
-                "stresses are the same; leave it away, or take csv --si"
-            )
         if si:
-            wanted = replace(wanted, unit=1e-6 * unit_of_stress(result.scene))
+            wanted = replace(wanted, **drawn_in_si(result.data, result.scene))
         written = write(result.data, result.scene, wanted, files)
         for one, after in zip(written, [*written[1:], None]):
             print(f"{one.noun}: {one.path}")

@@ -1,9 +1,12 @@
 """What a user wants drawn, and how large: options of plot, checked against what an archive has."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.excerpt import nearest, short
@@ -31,7 +34,10 @@ class Choice:
         x, by: what curves are drawn over, and what tells them apart.
         y: names of what is drawn over ``x``.
         size: of every figure.
-        unit: of stresses, N/(2a), in MPa; 0: they are drawn over it.
+        unit: of stresses, N/(2a), in MPa, that of each state where they differ, (states,); 0: they are
+            drawn over it.
+        ends: half-widths and middles of contacts [mm], (states,) each, where every state has its own and
+            is drawn in mm; None: positions are over the half-width.
     """
 
     figures: tuple[str, ...] = ()
@@ -42,7 +48,8 @@ class Choice:
     y: tuple[str, ...] = ()
     by: str = ""
     size: Size | None = None
-    unit: float = 0.0
+    unit: Any = 0.0
+    ends: tuple[NDArray, NDArray] | None = None
 
     @property
     def given(self) -> set[str]:
@@ -50,17 +57,32 @@ class Choice:
         names = ("states", "quantities", "method", "x", "y", "by")
         return {name for name in names if getattr(self, name)}
 
-    def scale(self, row: Quantity) -> float:
-        """What a quantity's numbers are multiplied by."""
-        return self.unit if self.unit and row.unit == "N/(2a)" else 1.0
+    @property
+    def in_si(self) -> bool:
+        """Are stresses drawn in MPa?"""
+        return bool(np.any(self.unit))
+
+    def scale(self, row: Quantity) -> NDArray[np.float64]:
+        """What a quantity's numbers are multiplied by, (1, 1) or (states, 1)."""
+        unit = self.unit if self.in_si and row.unit == "N/(2a)" else 1.0
+        return np.reshape(np.asarray(unit, dtype=float), (-1, 1))
+
+    def scale_of(self, row: Quantity, state: int) -> float:
+        """The same of a state."""
+        scale = self.scale(row)
+        return float(scale[state if len(scale) > 1 else 0, 0])
+
+    def frames(self, states: Sequence[int]) -> list[tuple[float, float]]:
+        """Half-width and middle [mm] of some states' contacts; none where positions are over a."""
+        return [] if self.ends is None else [(self.ends[0][i], self.ends[1][i]) for i in states]
 
     def called(self, row: Quantity) -> str:
         """A quantity without a symbol, with its unit where that is not N/(2a)."""
-        return noun(row) + " (MPa)" * (self.scale(row) != 1.0)
+        return noun(row) + " (MPa)" * (self.in_si and row.unit == "N/(2a)")
 
     def label(self, stress: str, symbol: str, between: str = " ") -> str:
         """What a stress is called, its symbol in TeX, and its unit."""
-        unit = "$ (MPa)" if self.unit else "/(N/2a)$"
+        unit = "$ (MPa)" if self.in_si else "/(N/2a)$"
         return f"{stress}{between}${symbol}{unit}"
 
     def check_states(self, data: dict[str, Any]) -> None:

@@ -60,9 +60,9 @@ class Fields:
         """One quantity of a state, (rows, columns)."""
         if name in self._known:
             row = self._known[name][method]
-            return self._choice.scale(row) * self._on_grid(self._data[row.path][state])
+            return self._choice.scale_of(row, state) * self._on_grid(self._data[row.path][state])
         XX, YY, XY = (
-            self._choice.scale(row) * self._on_grid(self._data[row.path][state])
+            self._choice.scale_of(row, state) * self._on_grid(self._data[row.path][state])
             for row in (stresses.STRESSES_INSIDE | layers.STRESSES_INSIDE)[method]
         )
         if name == "max_shear":
@@ -106,7 +106,7 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     if len(names) == 1 or width < columns * _LEAST:
         differences, columns = [], len(some)
     titles = [folded(told.label(i, apart), int((width - 1.0) / columns / 0.062)) for i in some]
-    figure = maps_figure(X, Y, shown, titles, differences, choice.size)
+    figure = maps_figure(X, Y, shown, titles, differences, choice.size, choice.frames(some))
     caption = _caption(told, some, METHODS[fields.methods[0]], largest)
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
     return Drawing("inside", caption, figure, True, not_shown(told, some, how, choice.states))

@@ -54,7 +54,7 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """A column for each speed, or else for each value of what varies most slowly."""
     loops = Loops(data, scene)
     told, width = loops.told, choice.size.width if choice.size else PAGE
-    same = scene.body.alike and N in told.parameters and not choice.states
+    same = scene.body.alike and N in told.parameters and not choice.states and not choice.in_si
     some = told.where(told.all, **{N: told.values(N)[0]}) if same else told.all
     groups = _groups(told, some, choice.states, width)
     # Curves of one name look the same in all columns.
@@ -65,9 +65,13 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     shown = [state for _, some, _ in groups for state in some]
     fixed = [name for name in told.parameters if name not in told.varied(shown)]
     varied = [name for name in told.varied() if name in fixed]
-    figure = surface_figure(data[SURFACE_X.path], stresses(data, choice), columns, choice.size)
+    figure = surface_figure(
+        data[SURFACE_X.path], stresses(data, choice), columns, choice.size, choice.ends
+    )
     caption = "Stresses along the surface, under the punch (grey) and beside it"
-    if scene.body.found:
+    if choice.ends is not None:
+        caption += "; positions are from the punch's axis."
+    elif scene.body.found:
         caption += "; lengths are over each state's own half-width, from the middle of its contact."
     else:
         caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."

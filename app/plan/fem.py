@@ -33,6 +33,10 @@ _NEAR_FREE_END = 1e-2
 #: which every state of another has a mesh of its own.
 LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 
+#: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
+#: without it grows towards these.
+_FARTHER = 1e3
+
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
 
@@ -70,6 +74,7 @@ class FemPlan:
         mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND`` or ``OWN_MESHES``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
+        sharp: exponent of the strongest pressure next to a sharp edge.
         drawn: the mesh where it follows interfaces.
         tests: by which the pressure is read off over layers.
     """
@@ -85,6 +90,7 @@ class FemPlan:
     wanted: Wanted
     mode: str
     shared_speeds: bool
+    sharp: float = -0.5
     drawn: QuadMesh | None = None
     tests: Tests | None = None
 
@@ -137,6 +143,8 @@ def plan_fem(
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
         wanted = replace(wanted, bends=_mode(scene) == FOUND)
+    if _mode(scene) == OWN_MESHES:
+        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
@@ -154,7 +162,7 @@ def plan_fem(
     return FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=_mode(scene), shared_speeds=shared, drawn=drawn,
+        mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
     )  # fmt: skip
 

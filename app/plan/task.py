@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import FemPlan
+from galinx.app.plan.fem import OWN_MESHES, FemPlan
 from galinx.app.plan.order import Order
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, stresses
@@ -18,6 +18,9 @@ from galinx.solvers.solution import Body, Places
 
 #: Floating-point numbers that the states of a chunk may have at once.
 CHUNK_NUMBERS = 1_200_000
+
+#: States whose own meshes are held at once.
+OWN_MESHES_KEPT = 32
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,9 @@ class Plan:
     @cached_property
     def chunk(self) -> int:
         """States treated at once: what they hold in memory is bounded."""
-        return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, 1000))
+        own_meshes = self.fem is not None and self.fem.mode == OWN_MESHES
+        most = OWN_MESHES_KEPT if own_meshes else 1000
+        return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, most))
 
     @property
     def numbers(self) -> int:

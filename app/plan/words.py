@@ -10,8 +10,8 @@ from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 
-#: Seconds of a state that has meshes of its own, some ten of them.
-_SECONDS_OF_OWN_MESHES = 7.0
+#: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
+_SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -36,8 +36,9 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
 def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     if fem.mode == OWN_MESHES:
         return [
-            f"finite elements: {plan.different} states, each on confocal meshes of its own, graded "
-            f"towards the kinks of the punch; degrees 4 and up to {max(fem.degrees) + 2}"
+            f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
+            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error asks "
+            "for; where their contacts end is found once a speed"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
@@ -105,7 +106,7 @@ def _seconds_of_levels(fem: FemPlan, states: int) -> float:
     """Seconds of the levels of every speed, one after the other."""
     mesh, direct = fem.pattern, fem.solver == "direct"
     if fem.mode == OWN_MESHES:
-        return _SECONDS_OF_OWN_MESHES * states
+        return _SECONDS_OF_OWN_MESH * states + _SECONDS_OF_ENDS * len(fem.degrees)
     return sum(
         cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
         for p, k in _levels(fem)

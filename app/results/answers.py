@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.results.si import in_si
+from galinx.app.results.si import in_si, stress_of_states
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states, stresses, validity, yielding
 from galinx.postprocess.quantities import strata as layers
@@ -66,13 +66,6 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
         yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
 
 
-def _unit_of_stress(data: dict[str, Any], scene: Scene) -> NDArray[np.float64]:
-    """N/(2a) [Pa] of every state, (states, 1)."""
-    of_states = _either(data, states.HALF_WIDTH)
-    load = data.get(states.LOAD.path, np.full(len(data[states.FRICTION.path]), scene.punch.load))
-    return (load / (2.0 * (data[of_states[0].path] if of_states else scene.body.half_width)))[:, None]
-
-
 def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     """Of contacts whose ends are found."""
     for row in _either(data, states.HALF_WIDTH):
@@ -80,7 +73,7 @@ def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     for row in _either(data, states.CENTRE):
         yield Answer("Middle of the contact, from the punch's axis", *_span(data[row.path], "m"))
     for row in _either(data, states.LARGEST):
-        pressure = _unit_of_stress(data, scene)[:, 0] * data[row.path]
+        pressure = stress_of_states(data, scene)[:, 0] * data[row.path]
         if np.isfinite(pressure).any():
             yield Answer("Largest contact pressure", *_span(pressure, "Pa"))
 
@@ -88,7 +81,7 @@ def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
 def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     if stresses.SURFACE_X.path not in data:
         return
-    stress, X = _unit_of_stress(data, scene), data[stresses.SURFACE_X.path]
+    stress, X = stress_of_states(data, scene), data[stresses.SURFACE_X.path]
     for row in _either(data, stresses.PRESSURE | layers.PRESSURE):
         middle = int(np.abs(X).argmin())
         pressure = -stress[:, 0] * data[row.path][:, middle]

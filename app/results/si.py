@@ -1,11 +1,15 @@
 """Quantities of archives in SI: what is over N/(2a), a and the wave speed, in Pa, m and m/s."""
 
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.plan.states import order
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import Quantity
-from galinx.postprocess.quantities.states import SPEED, VELOCITY
+from galinx.postprocess.quantities.states import CENTRE, FRICTION, HALF_WIDTH, LOAD, SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 
@@ -25,6 +29,28 @@ def unit_of_stress(scene: Scene) -> Any:
         return scene.body.stress
     known = order(scene)
     return scene.body.loaded(known.load(slice(0, len(known)))).stress
+
+
+def stress_of_states(data: Mapping[str, Any], scene: Scene) -> NDArray[np.float64]:
+    """N/(2a) [Pa] of every state of an archive, (states, 1)."""
+    of_states = [data[row.path] for row in HALF_WIDTH.values() if row.path in data]
+    load = data.get(LOAD.path, np.full(len(data[FRICTION.path]), scene.punch.load))
+    return (load / (2.0 * (of_states[0] if of_states else scene.body.half_width)))[:, None]
+
+
+def drawn_in_si(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
+    """What :class:`galinx.app.pictures.choice.Choice` is to know of units: ``unit``, and ``ends`` where
+    every state has its own."""
+    ends = [
+        (1e3 * data[h.path], 1e3 * data[m.path])
+        for h, m in zip(HALF_WIDTH.values(), CENTRE.values())
+        if h.path in data
+    ]
+    if not ends and len(scene.punch.loads) == 1:
+        return {"unit": 1e-6 * unit_of_stress(scene)}
+    return {
+        "unit": 1e-6 * stress_of_states(data, scene)[:, 0], "ends": ends[0] if ends else None,
+    }  # fmt: skip
 
 
 def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:

@@ -47,6 +47,7 @@ def maps_figure(
     titles: Sequence[str],
     differences: Sequence[NDArray] = (),
     size: Size | None = None,
+    frames: Sequence[tuple[float, float]] = (),
 ) -> Figure:
     """Maps: a row for each quantity, a column for each solution, then a column for each difference.
 
@@ -56,6 +57,7 @@ def maps_figure(
         titles: of the columns.
         differences: by row, over the row's largest value, (columns, rows, columns); none for none.
         size: of the figure.
+        frames: half-width and middle [mm] of each solution's contact, drawn in mm; none: over a.
     """
     alone = len(titles) == 1 and len(maps) == 1
     # Two columns of many rows would be taller than a page.
@@ -64,27 +66,27 @@ def maps_figure(
     columns = len(titles) + (len(differences[0]) if len(differences) else 0)
     right = _BAR + (_BAR if len(differences) else 0.0)
     lines = max(title.count("\n") for title in titles) + (3 if len(differences) else 1)
-    room = Room(0.45, right, 0.38, 0.09 + 0.167 * lines, 0.12, 0.26)
+    room = Room(0.45, right, 0.38, 0.09 + 0.167 * lines, 0.45 if frames else 0.12, 0.26)
     # The first column of differences stands beside the bars of the stresses.
     figure, axes = panels(len(maps), columns, size, (Y[-1] - Y[0]) / (X[-1] - X[0]), room)
     if len(differences):
         _make_way(axes[:, len(titles) :], _BAR / size.width)
-    grid = _Grid(X, Y)
+    grids = [_Grid(X, Y, *frame) for frame in frames] or [_Grid(X, Y)] * len(titles)
     for shown, row in zip(maps, axes):
         limit, extend = _limits(shown)
-        for axis, values in zip(row, shown.values):
+        for grid, axis, values in zip(grids, row, shown.values):
             grid.draw(axis, values, limit, signed=shown.signed, lines=alone)
-        grid.bar(row[len(titles) - 1], limit, extend, shown)
+        grids[0].bar(row[len(titles) - 1], limit, extend, shown)
     if len(differences):
-        _differences(grid, axes[:, len(titles) :], np.asarray(differences))
-    for axis in axes[:, 1:].flat:
+        _differences(grids, axes[:, len(titles) :], np.asarray(differences))
+    for axis in [] if frames else axes[:, 1:].flat:
         axis.set_yticklabels([])
     for axis in axes[:-1].flat:
         axis.set_xticklabels([])
     for axis in axes[-1]:
-        axis.set_xlabel("$X/a$")
+        axis.set_xlabel("$X$ (mm)" if frames else "$X/a$")
     for axis in axes[:, 0]:
-        axis.set_ylabel("$Y/a$")
+        axis.set_ylabel("$Y$ (mm)" if frames else "$Y/a$")
     _name(axes, titles)
     return figure
 
@@ -125,10 +127,16 @@ def moving(axis: Axes, X: NDArray, Y: NDArray, shown: Map) -> Callable[[int], No
 
 
 class _Grid:
-    """Where maps lie."""
+    """Where maps lie.
 
-    def __init__(self, X: NDArray, Y: NDArray) -> None:
-        self._X, self._Y = X, Y
+    Args:
+        X, Y: positions over a.
+        half_width, centre: of the contact.
+    """
+
+    def __init__(self, X: NDArray, Y: NDArray, half_width: float = 1.0, centre: float = 0.0) -> None:
+        self._X, self._Y = X, Y = centre + half_width * X, half_width * Y
+        self._contact = [centre - half_width, centre + half_width]
         half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
         self._extent = (X[0] - half_X, X[-1] + half_X, Y[0] - half_Y, Y[-1] + half_Y)
 
@@ -144,9 +152,9 @@ class _Grid:
         self.frame(axis)
 
     def frame(self, axis: Axes) -> None:
-        axis.plot([-1.0, 1.0], [0.0, 0.0], color="black", linewidth=2.5, clip_on=False)
+        axis.plot(self._contact, [0.0, 0.0], color="black", linewidth=2.5, clip_on=False)
         axis.set(xlim=(self._X[0], self._X[-1]), ylim=(self._Y[0], 0.0))
-        axis.locator_params(axis="x", nbins=6)
+        axis.locator_params(axis="x", nbins=6 if self._contact == [-1.0, 1.0] else 3)
         axis.locator_params(axis="y", nbins=4)
 
     def bar(self, axis: Axes, limit: float, extend: str, shown: Map) -> None:
@@ -159,14 +167,14 @@ class _Grid:
         bar.update_ticks()
 
 
-def _differences(grid: _Grid, axes: NDArray, values: NDArray) -> None:
+def _differences(grids: Sequence[_Grid], axes: NDArray, values: NDArray) -> None:
     """Sizes of differences, all in one range of colours."""
     sizes = np.abs(values)
     some = sizes[sizes > 0.0]
     low, high = np.quantile(some, (_LEAST, 1.0)) if len(some) else (1e-16, 1e-15)
     norm = colors.LogNorm(low, max(high, 2.0 * low))
     for row, of_row in zip(axes, sizes):
-        for axis, shown in zip(row, of_row):
+        for grid, axis, shown in zip(grids, row, of_row):
             axis.imshow(
                 np.maximum(shown, low), extent=grid._extent, origin="lower", aspect="equal", norm=norm,
                 cmap="cividis", interpolation="bilinear",

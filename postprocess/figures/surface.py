@@ -77,7 +77,11 @@ class Column:
 
 @styled
 def surface_figure(
-    X: NDArray, stresses: Sequence[Stress], columns: Sequence[Column], size: Size | None = None
+    X: NDArray,
+    stresses: Sequence[Stress],
+    columns: Sequence[Column],
+    size: Size | None = None,
+    ends: tuple[NDArray, NDArray] | None = None,
 ) -> Figure:
     """Stresses along the surface: a row for each, one column for each group of states.
 
@@ -86,6 +90,7 @@ def surface_figure(
         stresses: what to draw.
         columns: of which states.
         size: of the figure.
+        ends: half-widths and middles of contacts [mm], (states,) each; positions are drawn in mm then.
     """
     size = size or Size(COLUMN if len(columns) == 1 else PAGE)
     curves = {curve.label: curve for column in columns for curve in column.curves}
@@ -99,12 +104,9 @@ def surface_figure(
     for row, stress, limits_ in zip(axes, stresses, ranges):
         half = half_width(X, [stress])
         for axis, column, y in zip(row, columns, limits_):
-            _draw(axis, X, stress, column, half)
-            axis.set(xlim=(-half, half), ylim=y, xlabel="position on the surface $X/a$")
-            axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
-            axis.xaxis.set_minor_locator(MultipleLocator(0.25))
-            if half == _BESIDE:
-                axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
+            _draw(axis, X, stress, column, half, ends)
+            axis.set_ylim(y)
+            _positions(axis, column, half, ends)
             axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
             if axis is not row[0] and not apart:
                 axis.set_yticklabels([])
@@ -117,6 +119,23 @@ def surface_figure(
     figure.align_ylabels(axes[:, 0])
     legend.put(figure)
     return figure
+
+
+def _positions(axis: Axes, column: Column, half: float, ends: tuple[NDArray, NDArray] | None) -> None:
+    """The axis of positions, over a or in mm, and the contact where all have the same."""
+    if ends is not None:
+        h, m = (values[[curve.state for curve in column.curves]] for values in ends)
+        axis.set(
+            xlim=(np.nanmin(m - half * h), np.nanmax(m + half * h)),
+            xlabel="position on the surface $X$ (mm)",
+        )
+        axis.locator_params(axis="x", nbins=6)
+        return
+    axis.set(xlim=(-half, half), xlabel="position on the surface $X/a$")
+    axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
+    axis.xaxis.set_minor_locator(MultipleLocator(0.25))
+    if half == _BESIDE:
+        axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
 
 
 def _top(columns: Sequence[Column], stresses: Sequence[Stress]) -> float:
@@ -134,14 +153,23 @@ def _ranges(X: NDArray, stress: Stress, columns: Sequence[Column]) -> list[tuple
     return [(low, high)] * len(every)
 
 
-def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -> None:
+def _draw(
+    axis: Axes,
+    X: NDArray,
+    stress: Stress,
+    column: Column,
+    half: float,
+    ends: tuple[NDArray, NDArray] | None,
+) -> None:
     exact, found = stress.values.get(CLOSED_FORM, stress.values.get(SIE)), stress.values.get(FEM)
     lines = exact if exact is not None else found
     assert lines is not None
     for n, curve in enumerate(column.curves):
+        h, m = (1.0, 0.0) if ends is None else (values[curve.state] for values in ends)
+        places = m + h * X
         for part in parts(X):
             axis.plot(
-                X[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
+                places[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
             )
         if exact is not None and found is not None:
             # Those of one curve stand between those of the others.
@@ -150,7 +178,7 @@ def _draw(axis: Axes, X: NDArray, stress: Stress, column: Column, half: float) -
             wanted = -half + step * (np.arange(count) + (n + 0.5) / len(column.curves))
             pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
             axis.plot(
-                X[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
+                places[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
                 markerfacecolor="none",
             )  # fmt: skip
 

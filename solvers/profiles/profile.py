@@ -63,5 +63,14 @@ def exponent(profile: Any) -> float | None:
     return getattr(profile, "exponent", None)
 
 
+def cusp(profile: Any) -> float:
+    """Exponent below 1 of the distance from a kink with which the pressure leaves its value; 0 for none.
+
+    Where the height is |X|^k, 1 < k < 2, that is k - 1.
+    """
+    k = exponent(profile) or 2.0
+    return k - 1.0 if 1.0 < k < 2.0 and len(kinks(profile)) else 0.0
+
+
 #: Profiles by the name that scenes use; every profile adds itself.
 PROFILES: Registry[type[Profile]] = Registry("profile of the punch")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import jumps, kinks
+from galinx.solvers.profiles import cusp, jumps, kinks
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -23,6 +23,8 @@ from galinx.solvers.solids.solid import Response
 
 #: Positions nearer than this to where the pressure is infinite are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6
+#: Distance over a from a cusp of the pressure at which it is looked at.
+_CUSP = 1e-5
 #: Places at which a largest pressure is looked for, and how often nearer.
 _LOOKED_AT, _ROUNDS = 41, 8
 
@@ -38,6 +40,7 @@ class Group:
         half_width, centre: of the contact [m], (rows,).
         K_I: at the left and the right end, (rows, 2).
         infinite: places over the half-width at which the pressure is infinite inside the contact.
+        cusps: places over the half-width at which it has a cusp, and the exponent there.
     """
 
     rows: NDArray[np.int64]
@@ -48,6 +51,7 @@ class Group:
     centre: NDArray[np.float64]
     K_I: NDArray[np.float64]
     infinite: Sequence[float] = ()
+    cusps: tuple[Sequence[float], float] = ((), 0.0)
 
     def off(self, r: NDArray) -> NDArray[np.float64]:
         """Positions, none where the pressure is infinite."""
@@ -133,7 +137,7 @@ class Contacts:
         some = slice(i, i + 1)
         alone = Group(
             np.array([0]), pressure, group.α[some], group.β[some], group.half_width[some],
-            group.centre[some], group.K_I[some], group.infinite,
+            group.centre[some], group.K_I[some], group.infinite, group.cusps,
         )  # fmt: skip
         return Contacts(self.response, self.g[row : row + 1], (alone,))
 
@@ -165,7 +169,16 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     bend = left - 2.0 * middle + right
     u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
     top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
-    return np.array([max(top, middle)]), np.array([r[i] + u * step])
+    found = [(max(top, middle), r[i] + u * step)]
+    places, exponent = group.cusps
+    if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
+        for at in places:
+            near, far = (
+                -group.pressure.σ_YY(at + d * np.array([-1.0, 1.0])).mean() for d in (_CUSP, 2.0 * _CUSP)
+            )
+            found.append((near + (near - far) / (2.0**exponent - 1.0), at))
+    value, place = max(found)
+    return np.array([value]), np.array([place])
 
 
 @dataclass(frozen=True)
@@ -272,6 +285,7 @@ def _by_quadrature(
             group = Group(
                 np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
                 np.array([m]), np.zeros((1, 2)), tips,
+                ([(x - m) / h for x in kinks(profile) if abs(x - m) < h], cusp(profile)),
             )  # fmt: skip
             found.append(group)
     return found

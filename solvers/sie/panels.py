@@ -17,7 +17,6 @@ Cauchy integrals are Legendre's functions of the second kind.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -54,10 +53,11 @@ def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
         steps = _GRADING ** np.arange(_STEPS)
         at = np.concatenate([at, *(x + np.concatenate([-steps, steps]) for x in at)])
     fixed = np.unique(np.concatenate([[-_REACH, _REACH], at]))
-    parts = [
-        np.linspace(x0, x1, int(np.ceil((x1 - x0) / _LONGEST)) + 1)[:-1] for x0, x1 in pairwise(fixed)
-    ]
-    return np.concatenate([*parts, [_REACH]])
+    gaps = np.diff(fixed)
+    count = np.ceil(gaps / _LONGEST).astype(int)
+    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    starts = np.repeat(fixed[:-1], count) + number * np.repeat(gaps / count, count)
+    return np.append(starts, _REACH)
 
 
 @dataclass(frozen=True)

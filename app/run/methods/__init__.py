@@ -63,9 +63,6 @@ def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
     return ""
 
 
-#: What finite elements give at points, of contacts on meshes of their own.
-_OF_CONTACT = (stresses.PRESSURE[FEM], *validity.TENSION[FEM])
-
 #: What is told of two sharp edges alone.
 _OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
 
@@ -122,9 +119,8 @@ def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None
     if body.found and not isinstance(body.profile, LINEAR):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
-        told = not quantity or quantity in _OF_CONTACT or not quantity.asked_by
-        if not told or quantity in states.LARGEST.values() or quantity in states.LARGEST_X.values():
-            return "of such a contact finite elements find the ends, the forces and the pressure"
+        if quantity is stresses.RAW_PRESSURE:
+            return "σ_YY itself is that of the nodal forces there"
     if why := _of_found_ends(body, quantity):
         return why
     if quantity is states.SLOPE and (body.pressure or not body.flat):

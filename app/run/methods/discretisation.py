@@ -3,12 +3,13 @@
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 from mpi4py import MPI
 
 from galinx.app.console.progress import Progress
-from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Plan
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells
@@ -18,6 +19,10 @@ from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
+
+#: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
+#: them are by about ε/√d. And the least, above rounding.
+_OF_ENDS, _LEAST = 1e-3, 1e-11
 
 
 class Discretisation:
@@ -37,13 +42,28 @@ class Discretisation:
 
     def __init__(self, plan: Plan, progress: Progress, clock: Clock) -> None:
         assert plan.fem
-        self.plan: FemPlan = plan.fem
+        self._whole, self.plan = plan, plan.fem
         self.chunk, self.clock = plan.chunk, clock
         self.stresses = frozenset(word for word in (ON_SURFACE, BELOW, YIELD) if plan.asks(word, FEM))
         self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
         self._progress = progress
         self._meshes: dict[int, tuple[Any, Any]] = {}
         self._spaces: dict[tuple[int, int], Space] = {}
+
+    @cached_property
+    def for_ends(self) -> "Discretisation":
+        """What serves no stress, but the ends of the contacts alone, at all speeds."""
+        plan = self.plan
+        tolerance = max(_OF_ENDS * plan.tolerance, _LEAST)
+        wanted = replace(
+            plan.wanted, tolerance=tolerance, nearest=None, farthest=0.0, around=False, bends=True,
+            exponent=plan.sharp,
+        )  # fmt: skip
+        degrees = tuple(plan.kind.degree(wanted, task.response.margin) for task in self._whole.tasks)
+        fem = replace(plan, wanted=wanted, refinement=plan.kind.refinement(wanted), degrees=degrees)
+        other = Discretisation(replace(self._whole, fem=fem), self._progress, self.clock)
+        other.stresses = frozenset()
+        return other
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree on a mesh; speeds share it, its form and its numbering."""
@@ -57,12 +77,21 @@ class Discretisation:
 
     def space_on(self, pattern: QuadMesh, degree: int) -> Space:
         """The space of a degree on a mesh of its own, which no other state has."""
+        return self.space_of(self.own_mesh(pattern), degree)
+
+    def own_mesh(self, pattern: QuadMesh) -> tuple[Any, Any]:
+        """A mesh that no other state has, shared out over ranks, and its facet tags."""
         with self.clock("mesh"):
             check_cells(pattern)
-            mesh = distribute(pattern if self.comm.rank == 0 else None, self.comm)
-        return Space(
-            *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock, self._progress.warn
-        )
+            return distribute(pattern if self.comm.rank == 0 else None, self.comm)
+
+    def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
+        """The space of a degree on such a mesh."""
+        with quiet_compiler():
+            return Space(
+                *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock,
+                self._progress.warn,
+            )  # fmt: skip
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
         """The mesh with every cell cut, shared out over ranks, and its facet tags."""

@@ -37,7 +37,7 @@ class Displacement:
             self._around  # noqa: B018
 
     @cached_property
-    def _slopes(self) -> SurfaceSlopes:
+    def _slopes(self) -> Any:
         return SurfaceSlopes(self._space, self._fields, self._task.places.X)
 
     @cached_property

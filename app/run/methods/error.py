@@ -85,7 +85,7 @@ class MeasuredError:
         found = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(found)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
-        if not ladder.task.response.mirrored:
+        if not ladder.levels[-1].mirrored:
             # Only what rounding might do is known there; what it does is in the last change, once.
             for word, changes in self._sample.items():
                 shown = float(changes[-1].max()) / ROUNDING

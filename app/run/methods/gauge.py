@@ -1,8 +1,7 @@
 """What the error of finite elements is measured on: numbers of states, and what they are relative to."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,6 @@ from galinx.postprocess import scale
 from galinx.postprocess.pressure import JacobiPressure
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
-from galinx.solvers.fem.space import Space
 
 #: Points inside on which the error is measured; of more, so many are picked.
 _POINTS = 400
@@ -80,13 +78,14 @@ class StressGauges:
     Args:
         work: knows what is asked for.
         task: the speed, and the places.
-        space: the finite element space.
-        fields: displacements over N/(2μ), all of them.
+        displaced: gives the displacement at a task's places.
     """
 
-    def __init__(self, work: Discretisation, task: Task, space: Space, fields: Sequence[Any]) -> None:
+    def __init__(
+        self, work: Discretisation, task: Task, displaced: Callable[[Task], Displacement]
+    ) -> None:
         self._words, self._task = work.stresses, gauged(task)
-        self._displacement = Displacement(self._task, space, fields)
+        self._displacement = displaced(self._task)
         self._displacement.prepare(self._words)
 
     @property

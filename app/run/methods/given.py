@@ -62,7 +62,7 @@ class LoadsAtDegree:
         for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
             self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
-        self._gauges = StressGauges(work, task, space, self.loaded.fields)
+        self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.loaded.fields))
 
     @property
     def factor(self) -> Any:
@@ -70,6 +70,10 @@ class LoadsAtDegree:
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         return self._gauges.of(g, self.weights(g), self.σ_YY(g))
+
+    @property
+    def mirrored(self) -> bool:
+        return True
 
     def rounding(self, g: NDArray) -> list[float]:
         """Not seen here: the mirror images of loads are no loads."""

@@ -6,13 +6,22 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Task
-from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.solvers.fem.space import Space
 
 #: Levels that are held at once: two differences measure the error.
 _HELD = 3
+
+
+class Spaces(Protocol):
+    """What gives the spaces of a ladder."""
+
+    @property
+    def plan(self) -> FemPlan: ...
+
+    def space(self, degree: int, cuts: int = 1) -> Space: ...
 
 
 class Level(Protocol):
@@ -23,6 +32,10 @@ class Level(Protocol):
     @property
     def factor(self) -> Any:
         """Of the linear system, with numbers of its work."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Does ``rounding`` say what mirror images show, and not only what rounding might do?"""
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """What the error is measured on of states with these values of σ_XY/σ_YY.
@@ -55,7 +68,7 @@ class Ladder:
         levels: the last ones.
     """
 
-    def __init__(self, work: Discretisation, task: Task, solved: Callable[[Space, NDArray], Any]) -> None:
+    def __init__(self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any]) -> None:
         self.work, self.task, self.degree = work, task, work.plan.degrees[task.number]
         self.levels: list[Any] = []
         self._solved = solved
@@ -74,11 +87,16 @@ class Ladder:
 
     def record(self) -> dict[str, Any]:
         """Numbers of the work on all levels, and the size of the last."""
+        space = self.levels[-1].space
+        return {"cells": space.cells, "unknowns": space.size, "degree": space.degree} | vars(self.done)
+
+    @property
+    def done(self) -> "WorkDone":
+        """Numbers of the work on all levels."""
         total = WorkDone(**vars(self._work))
         for level in self.levels:
             total.count(level)
-        space = self.levels[-1].space
-        return {"cells": space.cells, "unknowns": space.size, "degree": space.degree} | vars(total)
+        return total
 
     def destroy(self) -> None:
         for level in self.levels:
@@ -98,8 +116,12 @@ class WorkDone:
     def count(self, level: Any) -> None:
         """Count the work of what has a factor."""
         factor = level.factor
-        self.factorisations += 1
-        self.back_substitutions += factor.solves
-        self.iterations = max(self.iterations, factor.iterations)
-        self.largest_residual = max(self.largest_residual, factor.largest_residual)
-        self.largest_condition = max(self.largest_condition, factor.condition)
+        self.add(WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition))
+
+    def add(self, other: "WorkDone") -> None:
+        """Count other work, too."""
+        self.factorisations += other.factorisations
+        self.back_substitutions += other.back_substitutions
+        self.iterations = max(self.iterations, other.iterations)
+        self.largest_residual = max(self.largest_residual, other.largest_residual)
+        self.largest_condition = max(self.largest_condition, other.largest_condition)

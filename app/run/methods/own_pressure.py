@@ -150,6 +150,10 @@ class PiecesLevel:
         G = G.reshape(*points.shape[:2], 2, 2, -1)
         return self._task.response.stresses(G[..., 0] + g[:, None, None, None] * G[..., 1])
 
+    @property
+    def mirrored(self) -> bool:
+        return True
+
     def rounding(self, g: NDArray) -> list[float]:
         """Not seen here: the mirror images of loads are no loads."""
         return [0.0] * len(self.measured(g[:1]))

@@ -79,7 +79,7 @@ class PunchLevel:
         )
         # The basis is complete before traces are taken, and the same whatever states are still to do.
         self.punch.prepare(g)
-        self._gauges = StressGauges(work, task, space, self.punch.fields)
+        self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.punch.fields))
 
     def heights(self) -> NDArray[np.float64] | None:
         """The punch's over N/(2μ) at the contact nodes, or of shapes; None for a flat punch."""
@@ -88,6 +88,10 @@ class PunchLevel:
     @property
     def factor(self) -> Any:
         return self.punch.factor
+
+    @property
+    def mirrored(self) -> bool:
+        return self.task.response.mirrored
 
     def pressure(self, states: ContactStates) -> JacobiPressure:
         """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""

@@ -16,6 +16,7 @@ from galinx.app.results.answers import answers, summary
 from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
 from galinx.app.results.one_state import displacement
+from galinx.app.results.si import drawn_in_si
 from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
 from galinx.solvers.parameters import parameter
@@ -61,7 +62,7 @@ def of_states(data):
     }  # fmt: skip
 
 
-def same_as_alone(changes, loads=LOADS):
+def same_as_alone(changes, loads=LOADS, digits=1e-12):
     """A scene of several loads has what scenes of these loads have; returns its result."""
     many = computed("tables4_5", changes | {"punch.load": list(loads)})
     assert many.verdict != "FAIL", many.attributes["verdict_reasons"]
@@ -75,16 +76,17 @@ def same_as_alone(changes, loads=LOADS):
             found = many.data[path][i * count : (i + 1) * count]
             size = np.nanmax(np.abs(values), initial=0.0)
             # Errors are of the last digits, measured on samples; the place of a maximum has half of them.
-            within = 1e-4 if re.search("estimate|error|position", path) else 1e-12
+            within = 1e-4 if re.search("estimate|error|position", path) else digits
             np.testing.assert_allclose(found, values, rtol=within, atol=within * size, err_msg=path)
         assert (many.data["states/load"][i * count : (i + 1) * count] == load).all()
     return many
 
 
-@pytest.mark.parametrize("name", ("flat", "tilted", "parabolic"))
+@pytest.mark.parametrize("name", ("flat", "tilted", "parabolic", "wedge"))
 def test_states_under_several_loads_are_those_under_each(name):
     """By both methods; the tilted punch lifts off at the least load alone."""
-    many = same_as_alone(ALL | ROUGH | punch(name))
+    # Ends are found to rounding, and next to these stresses make a thousand times as much of it.
+    many = same_as_alone(ALL | ROUGH | punch(name), digits=1e-8 if name == "wedge" else 1e-12)
     if name == "tilted":
         a = many.data["states/fem/half_width"]
         assert (a[:2] < 0.9e-3).all() and (a[2:] == 1e-3).all()
@@ -270,6 +272,35 @@ def test_stresses_that_no_load_changes_are_drawn_once(name, curves):
     drawn = [line for line in drawing.figure.axes[0].get_lines() if len(line.get_xdata()) > 50]
     assert len(drawn) == 3 * curves  # left of the contact, in it, and to its right
     assert ("the same under every load" in drawing.caption) == (curves == 1)
+
+
+def test_in_si_every_load_has_its_own_unit_and_place():
+    """MPa of each state; positions in mm where the contact's ends are found, else over a."""
+    changes = ALL | CLOSED | {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
+    changes |= {"output.points": None, "output.map": {"X": [-2, 2, 9], "Y": [-2, -0.5, 5]}}
+    for name in ("rounded", "parabolic", "flat"):
+        result = computed("tables4_5", changes | punch(name))
+        data, si = result.data, drawn_in_si(result.data, result.scene)
+        a = data.get("states/closed_form/half_width", np.full(3, 1e-3))
+        m = data.get("states/closed_form/centre", np.zeros(3))
+        (surface,) = result.drawings(figures=("surface",), quantities=("sigma_XX",), **si)
+        axis = surface.figure.axes[0]
+        drawn = [line for line in axis.get_lines() if len(line.get_xdata()) > 20]
+        assert len(drawn) == 9 and "(MPa)" in axis.get_ylabel()
+        assert ("mm" in axis.get_xlabel()) == (name != "flat")
+        for i in range(3):
+            under = drawn[3 * i + 1]
+            X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"][i]
+            some = np.abs(X) < 1.0
+            places = X if name == "flat" else 1e3 * (m[i] + a[i] * X)
+            np.testing.assert_allclose(under.get_xdata(), places[some], rtol=1e-12)
+            in_MPa = 1e-6 * σ[some] * LOADS[i] / (2.0 * a[i])
+            np.testing.assert_allclose(under.get_ydata(), in_MPa, rtol=1e-12)
+        (inside,) = result.drawings(figures=("inside",), quantities=("von_mises",), states=(0, 2), **si)
+        first, last = (axis for axis in inside.figure.axes if axis.get_xlabel())
+        width = [np.ptp(axis.get_xlim()) for axis in (first, last)]
+        expected = (4e3 * a[[0, 2]]) if name != "flat" else [4.0, 4.0]
+        np.testing.assert_allclose(width, expected, rtol=1e-12)
 
 
 def test_a_slider_moves_under_every_load():

@@ -1,0 +1,98 @@
+"""One contact with kinks, found, and its degree raised until the measured error is within tolerance."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.plan.task import Task
+from galinx.app.run.methods.discretisation import Discretisation
+from galinx.app.run.methods.error import climb
+from galinx.app.run.methods.kinked_ends import Ends
+from galinx.app.run.methods.kinked_level import (
+    ONE,
+    KinkedLevel,
+    OwnMeshes,
+    places_of_kinks,
+    rings_around_kinks,
+)
+from galinx.app.run.methods.ladder import Ladder, WorkDone
+from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.solvers.solution import Surface
+
+
+@dataclass(frozen=True)
+class KinkedState:
+    """A solved contact; lengths over its half-width from its middle.
+
+    Attributes:
+        task: the speed, and the load.
+        ends: of the contact.
+        level: the last.
+        estimates: relative errors by the word of output.quantities that asks for what they are of.
+        record: numbers of the work, as they are archived.
+    """
+
+    task: Task
+    ends: Ends
+    level: KinkedLevel
+    estimates: dict[str, float]
+    record: dict[str, Any]
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Stresses on the surface, of one state."""
+        σ_YY = self.level.pressure.σ_YY(self.task.places.X)[None]
+        return self.level.displacement.surface(self.level.contact.g, ONE, σ_YY)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, m)."""
+        return self.level.displacement.inside(ONE)[:, 0]
+
+    @cached_property
+    def largest(self) -> tuple[float, float]:
+        """Largest pressure over N/(2a), and its place over a."""
+        return self.level.pressure.largest()
+
+    def at(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (..., 2) over a, (3, ...)."""
+        found = self.level.displacement.at(points.reshape(1, -1, 2), ONE)
+        return found.reshape(3, *points.shape[:-1])
+
+    def destroy(self) -> None:
+        self.level.destroy()
+
+
+def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDone) -> KinkedState:
+    """The contact at a friction.
+
+    Args:
+        work: gives spaces.
+        task: the speed, and the load.
+        g: σ_XY/σ_YY.
+        ends: of the contact.
+        done: takes the numbers of the work.
+
+    Raises:
+        SolveError: cells cannot be graded towards its kinks, or the equations could not be solved.
+    """
+    places = places_of_kinks(task.body, ends)
+
+    def level(space: Any, _: NDArray) -> KinkedLevel:
+        found = KinkedLevel(work, task, space, places, ends, g)
+        done.count(found)
+        return found
+
+    more = rings_around_kinks(work.plan, task.body)
+    ladder = Ladder(OwnMeshes(work, places, more), task, level)
+    error = climb(ladder, np.array([g]))
+    for early in ladder.levels[:-1]:
+        early.destroy()
+    last: KinkedLevel = ladder.levels[-1]
+    estimates = {word: float(values[0]) for word, values in error.of(np.array([g])).items()}
+    estimates[INTENSITIES] += ends.error
+    size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
+    return KinkedState(task, ends, last, estimates, size | error.record())

@@ -1,0 +1,103 @@
+"""Pressure and slopes next to the free ends and the cusps of a contact, from a little farther away.
+
+By the local analysis they are smooth functions there, one of them times a power of the distance.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
+#: there, and the degree of the polynomial through them.
+_LOOKED_AT, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
+
+
+def places_at_end(gap: float) -> NDArray[np.float64]:
+    """Distances over a from an end at which the pressure tells how it falls to it, growing.
+
+    Args:
+        gap: distance of the nearest kink, or of the other end.
+    """
+    near, far = (share * min(gap, 1.0) for share in _LOOKED_AT)
+    t = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES))
+    return (near + far) / 2.0 + (far - near) / 2.0 * t
+
+
+def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> NDArray[np.float64]:
+    """A pressure d^a times a smooth function, nearer to the end than where it is known.
+
+    Args:
+        d: distances that are wanted, over a.
+        known: those of :func:`places_at_end`.
+        σ_YY: at these.
+        exponent: a, at the free end.
+    """
+    smooth = np.polynomial.Chebyshev.fit(known, σ_YY / known**exponent, _DEGREE)
+    return d**exponent * smooth(d)
+
+
+#: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
+#: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
+#: there, even in the root of d; terms of each of the two series.
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), (1e-3, 5e-2), 12, 3
+
+
+def _two_series(
+    gap: float, seen: tuple[float, float], exponent: float, wanted: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances (m,) at which A(d) + d^a B(d) is to be known, and what multiplies it, (n, m).
+
+    Args:
+        gap: that distances are over.
+        seen: the nearest and the farthest.
+        exponent: a.
+        wanted: distances that are asked for, (n,).
+    """
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
+    known, powers = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2, np.arange(_TERMS_OF_EACH)
+    at_known, at_wanted = (
+        np.power.outer(d / high**2, np.concatenate([powers, exponent + powers])) for d in (known, wanted)
+    )
+    return known, at_wanted @ np.linalg.pinv(at_known)
+
+
+def towards_cusp(gap: float, exponent: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances (m,) from a kink at which the pressure is to be known, and what multiplies it there to
+    give that at the kink, (m,).
+
+    Args:
+        gap: distance of the next kink or end, over a.
+        exponent: of the distance from the kink, in (0, 1).
+    """
+    known, weights = _two_series(gap, _SEEN_AT_CUSP, exponent, np.zeros(1))
+    return known, weights[0]
+
+
+def slopes_towards_ends(
+    X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How displacement gradients next to free ends follow from those a little farther away.
+
+    Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
+
+    Args:
+        X: positions that are wanted, over a, (n,).
+        gaps: distances of the left and the right end from the nearest kink, over a.
+        exponents: a, at the left and at the right end.
+
+    Returns:
+        Positions (m,) at which gradients are to be known, and what multiplies these, (n, m).
+    """
+    places, rows = [X], [np.eye(len(X))]
+    for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
+        for side in (-1.0, 1.0):
+            d = side * (X - end)
+            near = (d > 0.0) & (d < _SEEN[0] * min(gap, 1.0))
+            if near.any():
+                known, weights = _two_series(gap, _SEEN, a, d[near])
+                rows[0][near] = 0.0
+                more = np.zeros((len(X), _SEEN_AT))
+                more[near] = weights
+                places.append(end + side * known)
+                rows.append(more)
+    return np.concatenate(places), np.concatenate(rows, axis=1)

@@ -122,7 +122,7 @@ class MeshKind:
     def refinement(self, wanted: Wanted) -> Refinement:
         """Refinement that reaches what is wanted with :meth:`degree`."""
         ratio, sectors = self.ratio, self.sectors
-        if wanted.nearest is not None and (wanted.around or self._of_cells(wanted) < self.gentle):
+        if self._gentler(wanted):
             # An even number puts a vertex into the corners of walls.
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
         finer = self._finer(wanted)
@@ -141,6 +141,11 @@ class MeshKind:
         parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > 0.5)
         pieces = 1 + parts + self._cuts_middle(wanted)
         return Refinement(levels, ratio, sectors, columns, pieces, _CROWDING if finer else 0.0)
+
+    def _gentler(self, wanted: Wanted) -> bool:
+        """Do stresses ask for gentler rings, and more cells in angle?"""
+        tight = wanted.around or self._of_cells(wanted) < self.gentle
+        return wanted.nearest is not None and tight
 
     def _cuts_middle(self, wanted: Wanted) -> bool:
         """Is the outermost ring cut, which meets in the middle of the contact?
@@ -184,8 +189,10 @@ class MeshKind:
         """
         digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
-        stresses = wanted.nearest is not None
-        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
+        more = 0.0
+        if wanted.nearest is not None:
+            more = 1.0 if self._gentler(wanted) else 0.6 + 0.15 * digits
+        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits + more)
         degree -= 0 < self._finer(wanted) <= _SPARING or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 

@@ -26,9 +26,8 @@ from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Body, Surface
 
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and,
-#: without stresses, nothing more is added for friction. The most keeps results on any number of ranks
-#: equal to 1e-9.
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
+#: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
 NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
 
 
@@ -64,14 +63,18 @@ class PunchLevel:
         task: the speed.
         space: of the degree.
         g: all values of σ_XY/σ_YY that will be asked for.
+
+    Attributes:
+        shows_rest: do stresses show what friction leaves of the contact forces?
     """
+
+    shows_rest = False
 
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         plan, self.task, self.space = work.plan, task, space
         self._tests = plan.tests
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        # Next to a tip stresses show what is left of a pressure that vanishes there.
-        left = 0.0 if work.stresses else negligible
+        left = 0.0 if self.shows_rest and work.stresses else negligible
         self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights(), left)
         more = 2 * (space.degree - plan.degrees[task.number])
         self.recovery = contact_recovery(

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,7 +128,8 @@ def plan_fem(
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
-        kind, name = on_layers((scene.solid.depths / scene.body.half_width).tolist()), "layered"
+        depths = scene.solid.depths / scene.body.half_width
+        kind, name = on_layers(depths.tolist(), min(map(_drawn_together, responses))), "layered"
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
@@ -155,8 +157,21 @@ def plan_fem(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, drawn=drawn,
-        tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
+        tests=_tests(scene, kind, wanted),
     )  # fmt: skip
+
+
+def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
+    """What a pressure over layers is read off by."""
+    if not isinstance(kind, OnLayers) or not isinstance(scene.solid, Layered):
+        return None
+    graded = scene.solid.layers[0].bottom is not None
+    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
+
+
+def _drawn_together(response: Any) -> float:
+    """Smallest Im p of the solid at a layered surface."""
+    return float(min(p.imag for p in response.surface.roots.each))
 
 
 def _mode(scene: Scene) -> str:

@@ -99,8 +99,6 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 def _of_layers(scene: Scene, solid: Layered, quantity: Quantity | None) -> str:
     """Why finite elements do not give a quantity of layers, "" where they do."""
-    if any(layer.bottom for layer in solid.layers):
-        return "a layer is graded; the integral equation takes such layers"
     if solid.nearly_incompressible:
         return "a solid is nearly incompressible; the integral equation takes such layers"
     if SIE not in scene.solve.methods:

@@ -115,8 +115,9 @@ class MeasuredError:
 
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
+        own = {gauge.word: gauge.left for gauge in found[-1]}
         return {
-            word: self._left(word, changes) + unseen[word] + ROUNDING * self._rounding[word]
+            word: self._left(word, changes) + unseen[word] + own[word] + ROUNDING * self._rounding[word]
             for word, changes in _changes(found).items()
         }
 

@@ -36,11 +36,13 @@ class Gauge:
         word: the word.
         values: (states, n).
         scale: what they are relative to, (states, n).
+        left: relative error that a level knows of itself, (states,) or 0.
     """
 
     word: str
     values: NDArray[np.float64]
     scale: NDArray[np.float64]
+    left: Any = 0.0
 
     def change(self, coarse: "Gauge") -> NDArray[np.float64]:
         """Largest relative difference of each state from the same gauge of another level, (states,)."""
@@ -55,6 +57,7 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray) -> Gauge:
         INTENSITIES,
         values,
         np.concatenate([scale.of_factor(factor), 2.0 + 0.0 * moments[:, 1:6]], axis=1),
+        pressure.unresolved,
     )
 
 

@@ -143,7 +143,7 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: chebyshev(tests.stretch(r), tests.count + more)
+    return lambda r: tests.stretch.functions(r, tests.count + more)
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:

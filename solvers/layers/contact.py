@@ -86,10 +86,12 @@ class Found:
 
     Attributes:
         pressure: the pressure.
+        before: with fewer unknowns.
         change: of it and its intensities, relative.
     """
 
     pressure: Pressure
+    before: Pressure
     change: float
 
 
@@ -111,7 +113,7 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
         if before is not None:
             change = _change(before, now)
             if change <= tolerance / 4.0 or change <= _ROUNDING:
-                return Found(now, change)
+                return Found(now, before, change)
         before = now
     raise SolveError(
         f"with the most unknowns the pressure still changes by {change:.2g}, expected {tolerance:g}: "

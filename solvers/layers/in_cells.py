@@ -15,11 +15,13 @@ from galinx.solvers.layers.medium import Medium, inverse
 from galinx.solvers.panel import chebyshev_points, interpolation
 from galinx.solvers.solids.solid import Solid
 
-
 #: Columns of tables of constants: stiffness row by row, and the speed.
 _COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26", "c66", "c"))}
 #: Points at which a graded solid is tabulated at first and at most, and what may be left between them.
 _FEW, _MANY, _LEFT = 9, 257, 1e-13
+
+#: Share of a depth by which it is no longer that of an interface.
+_BESIDE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -59,8 +61,8 @@ class LayersInCells(LayeredResponse):
         """Depths of the upper faces of all solids, over a."""
         return np.append(0.0, self.solid.depths / self.a)
 
-    def solids(self, Y: NDArray) -> NDArray[np.int64]:
-        return np.maximum(np.searchsorted(self._faces, -Y) - 1, 0)
+    def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
+        return np.maximum(np.searchsorted(self._faces, -Y * (1.0 - side * _BESIDE)) - 1, 0)
 
     def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
         if solid == len(self.solid.layers):

@@ -78,7 +78,7 @@ class Response(Protocol):
 
 @runtime_checkable
 class ByCells(Protocol):
-    """A response whose constants in the weak form change with depth: several solids, one below another."""
+    """A response whose constants in the weak form change with depth: solids one below another."""
 
     def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
         """The weak form's constants in each solid from the top down, (n, names) each.
@@ -90,8 +90,13 @@ class ByCells(Protocol):
             names: what the form calls them.
         """
 
-    def solids(self, Y: NDArray) -> NDArray[np.int64]:
-        """Which of the solids is at some heights over a, of their shape; not for those of interfaces."""
+    def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
+        """Which of the solids is at some heights over a, of their shape.
+
+        Args:
+            Y: heights.
+            side: at an interface 1 for the solid above it, -1 for that below.
+        """
 
     def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
         """Share of the change that is done at heights over a in one of them, of their shape."""

@@ -13,6 +13,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.postprocess import scale
 from galinx.postprocess.pressure import JacobiPressure
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.space import Space
 
@@ -77,6 +78,13 @@ def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
     return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
 
 
+def of_interfaces(σ: NDArray) -> Gauge:
+    """Stresses along interfaces, (4, states, interfaces, n)."""
+    size = np.broadcast_to(scale.of_interfaces(σ), σ.shape)
+    values, of = (np.moveaxis(part, 1, 0).reshape(σ.shape[1], -1) for part in (σ, size))
+    return Gauge(AT_INTERFACES, values, of)
+
+
 class StressGauges:
     """Stresses that are asked for, of combinations of some fields; derivatives are taken at once.
 
@@ -102,6 +110,8 @@ class StressGauges:
             found.append(of_inside(self._displacement.inside(weights), places.points))
         if YIELD in self._words:
             found.append(of_inside(self._displacement.around(weights), places.around, YIELD))
+        if AT_INTERFACES in self._words:
+            found.append(of_interfaces(self._displacement.interfaces(weights)))
         return found
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:

@@ -18,11 +18,11 @@ from galinx.meshes.kind import DEGREES, MeshKind, Wanted
 from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
-_GROWTH = 2.5
-#: Size of a ring over that of the one outside it.
-_RATIO = 0.25
-#: Power of it where stresses are wanted, whose derivatives ask for more.
-_GENTLER = 0.6
+_GROWTH = 4.0
+#: The same where stresses are wanted, whose derivatives ask for more.
+_GENTLE_GROWTH = 2.5
+#: Size of a ring over that of the one outside it, and where stresses are wanted beside it.
+_RATIO, _NEAR_RATIO = 0.45, 0.5
 #: Moments of the pressure over the logarithm of the tolerance: of any, and of how thin the layer is.
 _MOMENTS = 0.27, 0.54
 #: Fewest, two degrees below the first.
@@ -33,7 +33,7 @@ _SQUARE, _SHARE = 0.5, 0.5
 _MOVED = 6.0
 #: Distance of the far boundary over the root of a length of the layers over the tolerance, at least
 #: (stiff layers and speeds near the limit need it), and at most: longer cells lose digits.
-_FAR, _NEAREST_FAR, _FARTHEST = 60.0, 300.0, 2e5
+_FAR, _NEAREST_FAR, _FARTHEST = 20.0, 300.0, 2e5
 
 
 @dataclass(frozen=True)
@@ -87,15 +87,16 @@ class OnLayers(MeshKind):
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
         b, R = min(_SHARE * self.depths[0], _SQUARE), self.radius(wanted)
-        legs = 2 if wanted.nearest is not None else 1
-        ratio = _RATIO**_GENTLER if wanted.nearest is not None else _RATIO
+        near = wanted.nearest is not None and wanted.nearest < b
+        legs, ratio = (2, _NEAR_RATIO) if near else (1, _RATIO)
+        growth = _GROWTH if wanted.nearest is None else _GENTLE_GROWTH
         in_square = b * np.arange(1, legs) / legs
-        near = np.concatenate([in_square, _outwards(b, R)])
-        inner = np.concatenate([in_square, _outwards(b, 1.0)])
-        right = np.concatenate([1.0 - inner, [1.0], 1.0 + near])
+        outer = np.concatenate([in_square, _outwards(b, R, growth)])
+        inner = np.concatenate([in_square, _outwards(b, 1.0, growth)])
+        right = np.concatenate([1.0 - inner, [1.0], 1.0 + outer])
         X = np.unique(np.concatenate([-right, right]))
         fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
-        below = np.concatenate([_between(low, high) for low, high in pairwise(fixed)])
+        below = np.concatenate([_between(low, high, growth) for low, high in pairwise(fixed)])
         rows = -np.concatenate([[0.0], in_square, below, [R]])
         cells = [
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -111,14 +112,14 @@ class OnLayers(MeshKind):
         return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
 
-def _outwards(first: float, last: float) -> NDArray[np.float64]:
+def _outwards(first: float, last: float, growth: float) -> NDArray[np.float64]:
     """Distances from an edge, from the first to the last, which grow by a factor."""
-    return np.append(_between(first, last), last)
+    return np.append(_between(first, last, growth), last)
 
 
-def _between(low: float, high: float) -> NDArray[np.float64]:
+def _between(low: float, high: float, growth: float) -> NDArray[np.float64]:
     """From low to below high."""
-    count = max(ceil(log(high / low) / log(_GROWTH) - 1e-9), 1) if high > low else 0
+    count = max(ceil(log(high / low) / log(growth) - 1e-9), 1) if high > low else 0
     return low * (high / low) ** (np.arange(count) / max(count, 1))
 
 

@@ -37,6 +37,9 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
 
+#: How far apart a surface's fields may live so that cells are drawn together for both.
+_APART = 0.8
+
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
 
@@ -129,7 +132,7 @@ def plan_fem(
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
         depths = scene.solid.depths / scene.body.half_width
-        kind, name = on_layers(depths.tolist(), min(map(_drawn_together, responses))), "layered"
+        kind, name = on_layers(depths.tolist(), **_seen_by_layers(responses)), "layered"
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
@@ -169,9 +172,16 @@ def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
     return Tests(Stretch(kind.length, graded), kind.moments(wanted))
 
 
-def _drawn_together(response: Any) -> float:
-    """Smallest Im p of the solid at a layered surface."""
-    return float(min(p.imag for p in response.surface.roots.each))
+def _seen_by_layers(responses: Sequence[Any]) -> dict[str, float]:
+    """What :class:`galinx.meshes.layered.OnLayers` asks of layered solids at some speeds."""
+    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Fields that live far apart have no middle.
+    apart = max(response.spread for response in responses) > _APART
+    return {
+        "drawn_together": float(np.min(roots)),
+        "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
+        "far_length": max(response.far_field.length for response in responses),
+    }
 
 
 def _mode(scene: Scene) -> str:

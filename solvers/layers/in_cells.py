@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
 from galinx.solvers.errors import SolveError
+from galinx.solvers.layers.far import FarField
 from galinx.solvers.layers.layered import LayeredResponse
-from galinx.solvers.layers.medium import Medium, inverse
 from galinx.solvers.panel import chebyshev_points, interpolation
 from galinx.solvers.solids.solid import Solid
 
@@ -20,6 +20,8 @@ _COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26",
 #: Points at which a graded solid is tabulated at first and at most, and what may be left between them.
 _FEW, _MANY, _LEFT = 9, 257, 1e-13
 
+#: Gauss's rule over a layer's thickness.
+_τ, _w = leggauss(24)
 #: Share of a depth by which it is no longer that of an interface.
 _BESIDE = 1e-12
 
@@ -84,8 +86,33 @@ class LayersInCells(LayeredResponse):
         return np.moveaxis(np.einsum("nij,...nj->...ni", C, strain, optimize=True), -1, 0)
 
     def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        medium = self.medium(self.solid.substrate)
-        return line_load(medium, X, Y) * np.array(-2.0)
+        return self.far_field(X, Y) * np.array(-2.0)
+
+    @cached_property
+    def far_field(self) -> FarField:
+        """Under line loads."""
+        return FarField(self.medium(self.solid.substrate), float(self._faces[-1]), self._through)
+
+    def _through(self, height: float) -> NDArray[np.float64]:
+        """∫ A, ∫ B and ∫ T⁻¹ of :mod:`galinx.solvers.layers.far` up to a height over a, (3, 2, 2)."""
+        found = np.zeros((3, 2, 2))
+        for i in range(len(self.solid.layers)):
+            bottom, top = -self._faces[i + 1], min(-self._faces[i], height)
+            if top <= bottom:
+                continue
+            Y = bottom + (top - bottom) * (_τ + 1.0) / 2.0
+            of_share = interpolation(self.share(i, Y), self._tables[i].shape[1])
+            c11, c12, c16, c22, c26, c66, c = self._tables[i] @ of_share.T
+            Q, R, T = (
+                np.moveaxis(np.array(M), 2, 0)
+                for M in ([[c11 - c**2, c16], [c16, c66 - c**2]], [[c16, c12], [c66, c26]],
+                          [[c66, c26], [c26, c22]])
+            )  # fmt: skip
+            T_inverse = np.linalg.inv(T)
+            B = R @ T_inverse
+            parts = np.array([Q - B @ R.swapaxes(1, 2), B, T_inverse])
+            found += (top - bottom) / 2.0 * np.einsum("q,nqij->nij", _w, parts)
+        return found
 
 
 def _tabulated(of: Callable[[float], NDArray], uniform: bool) -> NDArray[np.float64]:
@@ -111,22 +138,3 @@ def stiffness(solid: Solid) -> NDArray[np.float64]:
     response = solid.response(0.0)
     strains = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 0.0]]])
     return np.asarray(solid.μ * response.stresses(strains))
-
-
-def line_load(medium: Medium, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-    """Displacements under moving line loads at the origin, ∫σ_YY = 1 and ∫σ_XY = 1: (2, 2, n).
-
-    u = Im[log(X + Y G) 𝐘 t]/π, the logarithm of a matrix by that of its eigenvalues; up to a translation.
-    """
-    p, other = medium.response.roots.each
-    z = X + p * np.minimum(Y, 0.0) - 0.0j
-    z = np.where(Y < 0.0, z, X + np.where(X < 0.0, -1e-300j, 0.0))
-    step = (other - p) * Y / z
-    log, change = np.log(z), np.where(step == 0.0, Y / z, log1p(step) / np.where(step == 0, 1, other - p))
-    beyond = medium.G - p * np.eye(2)
-    Y_surface = inverse(medium.modulus * np.asarray(medium.response.L))
-    found = []
-    for t in ([0.0, 1.0], [1.0, 0.0]):
-        one, two = Y_surface @ t, beyond @ Y_surface @ t
-        found.append([(log * one[i] + change * two[i]).imag / np.pi for i in (0, 1)])
-    return np.array(found)

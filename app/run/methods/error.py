@@ -14,7 +14,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import before, of_degrees, remaining
+from galinx.postprocess.estimate import SLOWER, before, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
@@ -123,7 +123,9 @@ class MeasuredError:
 
     def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors that the levels show, (states,)."""
-        rate = of_degrees(2 if word == INTENSITIES else 1)
+        # What a thin layer adds converges unevenly: a small change says less there.
+        order = 2 if word == INTENSITIES else 1
+        rate = SLOWER if order == 2 and self._ladder.task.body.layered else of_degrees(order)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
         first, second = changes

@@ -15,7 +15,7 @@ from galinx.meshes.cells import check_cells
 from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.layers.in_cells import line_load
+from galinx.solvers.layers.far import line_load
 from galinx.solvers.layers.medium import Medium
 from galinx.solvers.solids.isotropic import Isotropic
 

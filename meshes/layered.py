@@ -21,8 +21,9 @@ from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
 _GROWTH = 4.0
 #: The same under the punch, where facets have to follow what the pressure is read off by.
 _UNDER = 1.8
-#: The same where stresses are wanted, whose derivatives ask for more.
-_GENTLE_GROWTH = 2.5
+#: The same where stresses are wanted, whose derivatives ask for more, and over an uppermost layer that is
+#: thinner than so many a.
+_GENTLE_GROWTH, _THIN = 2.5, 0.4
 #: Size of a ring over that of the one outside it, and where stresses are wanted beside it.
 _RATIO, _NEAR_RATIO = 0.45, 0.5
 #: Cells along a leg of an L by how far apart the planes are in which fields live.
@@ -35,9 +36,9 @@ _MOMENTS = 0.27, 0.54
 _FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
-#: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's own
-#: moment moves there, and over the cube of the layers' length over it; measured. The share of the tolerance
-#: that is left to each.
+#: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
+#: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
+#: tolerance that is left to each.
 _MOMENT, _CUBED, _OF_FAR = 0.5, 0.01, 0.1
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
@@ -100,11 +101,11 @@ class OnLayers(MeshKind):
         b, R = min(_SHARE * self.depths[0], _SQUARE / max(self.wide, 1.0)), self.radius(wanted)
         near = wanted.nearest is not None and wanted.nearest < b
         legs = (2 if near else 1) + ceil(_LEGS * wanted.spread - 0.5)
-        ratio = _NEAR_RATIO if near else _RATIO
-        growth = _GROWTH if wanted.nearest is None else _GENTLE_GROWTH
-        in_square = b * np.arange(1, legs) / legs
-        outer = np.concatenate([self.wide * in_square, _outwards(self.wide * b, R, growth)])
-        inner = np.concatenate([self.wide * in_square, _outwards(self.wide * b, 1.0, min(_UNDER, growth))])
+        gentle = wanted.nearest is not None or self.depths[0] < _THIN
+        growth = _GENTLE_GROWTH if gentle else _GROWTH
+        wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
+        beside, under = _outwards(wide, R, growth), _outwards(wide, 1.0, min(_UNDER, growth))
+        outer, inner = (np.concatenate([self.wide * in_square, lines]) for lines in (beside, under))
         right = np.concatenate([1.0 - inner, [1.0], 1.0 + outer])
         X = np.unique(np.concatenate([-right, right]))
         fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
@@ -114,10 +115,11 @@ class OnLayers(MeshKind):
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
             for x0, x1 in pairwise(X.tolist())
             for y1, y0 in pairwise(rows.tolist())
-            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > self.wide * b
+            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > wide
         ]
+        ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(wanted) / b
         squares = [
-            _rings(edge, (side * self.wide * b, b), legs, ratio, self.innermost_size(wanted) / b)
+            _rings(edge, (side * wide, b), legs, ratio, last)
             for edge in (-1.0, 1.0)
             for side in (-1.0, 1.0)
         ]
@@ -178,16 +180,13 @@ def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
     return QuadMesh(mesh.points, mesh.cells, edges)
 
 
-def on_layers(depths: Sequence[float], **known: float) -> OnLayers:
-    """The kind of mesh for layers with interfaces at these depths over a.
-
-    Args:
-        depths: from the top down.
-        known: what else :class:`OnLayers` asks of the solids.
-    """
-    wide = min(max(known.pop("wide", 1.0), 1.0 / _WIDEST), _WIDEST)
+def on_layers(
+    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0
+) -> OnLayers:
+    """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
-        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5, depths=tuple(depths), wide=wide,
-        **known,
+        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5, depths=tuple(depths),
+        drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
+        far_length=far_length,
     )  # fmt: skip

@@ -140,7 +140,8 @@ def _invariant(method: str, name: str, about: str, of: Callable[[Any, Any], NDAr
 
 def _von_mises(s: Any, body: Any) -> NDArray:
     """Over layers a solution knows which solid is where."""
-    return von_mises(*s.inside, s.σ_ZZ if body.layered else body.solid.σ_ZZ(*s.inside))
+    σ_XX, σ_YY, σ_XY = s.inside
+    return von_mises(σ_XX, σ_YY, σ_XY, s.σ_ZZ if body.layered else body.solid.σ_ZZ(σ_XX, σ_YY, σ_XY))
 
 
 def invariants(method: str) -> tuple[Quantity, ...]:

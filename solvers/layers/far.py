@@ -59,8 +59,10 @@ class FarField:
     @property
     def length(self) -> float:
         """Over which the layers are seen, over a: of the terms beside the line load's."""
-        size = np.linalg.norm(self._moved(0.0), 2) / np.linalg.norm(self._compliance, 2)
-        return float(max(self.D, size, np.linalg.norm(self._loaded, 2)))
+        moved, compliance, loaded = (
+            float(np.linalg.norm(one, 2)) for one in (self._moved(0.0), self._compliance, self._loaded)
+        )
+        return max(self.D, moved / compliance, loaded)
 
     @cached_property
     def _loaded(self) -> NDArray[np.complex128]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.far import FarField
-from galinx.solvers.layers.layered import LayeredResponse
+from galinx.solvers.layers.layered import Layer, LayeredResponse
 from galinx.solvers.panel import chebyshev_points, interpolation
 from galinx.solvers.solids.solid import Solid
 
@@ -47,11 +47,11 @@ class LayersInCells(LayeredResponse):
     @cached_property
     def _tables(self) -> list[NDArray[np.float64]]:
         """Of each solid the columns of ``_COLUMNS`` at points of its share of change, (7, n)."""
-        layers = [
-            _tabulated(lambda s, layer=layer: self._column(layer.at(s)), layer.bottom is None)
-            for layer in self.solid.layers
-        ]
-        return [*layers, _tabulated(lambda _: self._column(self.solid.substrate), True)]
+        layers = [*self.solid.layers, Layer(1.0, self.solid.substrate)]
+        return [self._table(layer) for layer in layers]
+
+    def _table(self, layer: Layer) -> NDArray[np.float64]:
+        return _tabulated(lambda share: self._column(layer.at(share)), layer.bottom is None)
 
     def _column(self, solid: Solid) -> NDArray[np.float64]:
         """Stiffness over the surface's μ, and the speed over the surface's wave speed by density."""

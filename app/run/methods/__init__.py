@@ -100,9 +100,6 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     """Why finite elements do not give a quantity of layers, "" where they do."""
     if body.solid.nearly_incompressible:
         return "a solid is nearly incompressible; the integral equation takes such layers"
-    if SIE not in scene.solve.methods:
-        # Their estimate was seen to be a tenth of the error where a stiff layer is near its limit.
-        return "over layers they are judged beside the integral equation, the method sie, alone"
     if scene.solve.degree or scene.solve.mesh != "confocal":
         return "layers have meshes of their own: no mesh, and no degree"
     if quantity is None:

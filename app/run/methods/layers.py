@@ -91,8 +91,12 @@ class AtSpeed:
         reach = 1.0 + float(np.abs(X).max())
         here = Level(self.speed.stack, depth, reach, self.speed.tolerance)
         g = iter(np.tile(self.nodes.g, 2).tolist())
-        found = self.nodes.both(lambda pressure: here.read(*pressure.points(depth), next(g), X))
-        return here, np.moveaxis(found, 2, 0)
+
+        def read(pressure: Any) -> NDArray[np.float64]:
+            t, σ = pressure.points(depth)
+            return here.read(t, σ, next(g), X)
+
+        return here, np.moveaxis(self.nodes.both(read), 2, 0)
 
     @cached_property
     def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -243,9 +247,12 @@ class Estimates:
     def _at_interfaces(self) -> NDArray[np.float64]:
         now, before = np.moveaxis(self.of.both_interfaces, 1, 0)
         size = np.broadcast_to(scale.of_interfaces(now), now.shape)
-        by_state = [np.moveaxis(part, 1, 0).reshape(len(self.of.g), -1) for part in (now, before, size)]
-        errors = np.broadcast_to(self.of.at.interfaces[1][:, None], now.shape).copy()
-        return self._changed(*by_state, np.moveaxis(errors, 1, 0).reshape(len(self.of.g), -1))
+        tables = np.broadcast_to(self.of.at.interfaces[1][:, None], now.shape)
+        parts = (
+            np.moveaxis(part, 1, 0).reshape(len(self.of.g), -1) for part in (now, before, size, tables)
+        )
+        now, before, size, tables = parts
+        return self._changed(now, before, size, tables)
 
     def _inside(self) -> NDArray[np.float64]:
         now, before = np.moveaxis(self.of.both_inside, 1, 0)

@@ -39,7 +39,7 @@ _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
 #: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
 #: tolerance that is left to each.
-_MOMENT, _CUBED, _OF_FAR = 0.5, 0.01, 0.1
+_MOMENT, _CUBED, _OF_FAR = 0.5, 0.1, 0.1
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
 
@@ -63,7 +63,9 @@ class OnLayers(MeshKind):
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
         left = _OF_FAR * wanted.tolerance
-        far = max((_MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
+        # What is far away is small beside what the boundary adds.
+        small = 2.0 * max(1.0, min(self.depths[-1], wanted.farthest)) if wanted.farthest else 1.0
+        far = max((small * _MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:

@@ -40,6 +40,8 @@ _SQUARE, _SHARE = 0.5, 0.5
 #: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
 #: tolerance that is left to each.
 _MOMENT, _CUBED, _OF_FAR = 0.5, 0.1, 0.1
+#: How much smaller that has to be for stresses.
+_SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
 
@@ -63,9 +65,10 @@ class OnLayers(MeshKind):
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
         left = _OF_FAR * wanted.tolerance
-        # What is far away is small beside what the boundary adds.
-        small = 2.0 * max(1.0, min(self.depths[-1], wanted.farthest)) if wanted.farthest else 1.0
-        far = max((small * _MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
+        if wanted.nearest is not None:
+            # Stresses far away are small beside what the boundary adds.
+            left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
+        far = max((_MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,9 @@ _FARTHER = 1e3
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
+
+#: How far apart a surface's fields may live so that cells are drawn together for both.
+_APART = 0.8
 
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
@@ -133,7 +137,8 @@ def plan_fem(
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
-        kind, name = on_layers((scene.solid.depths / scene.body.half_width).tolist()), "layered"
+        depths = scene.solid.depths / scene.body.half_width
+        kind, name = on_layers(depths.tolist(), **_seen_by_layers(responses)), "layered"
     _check_degree_and_solver(scene)
     mixed = scene.solid.nearly_incompressible
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
@@ -163,8 +168,28 @@ def plan_fem(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
-        tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
+        tests=_tests(scene, kind, wanted),
     )  # fmt: skip
+
+
+def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
+    """What a pressure over layers is read off by."""
+    if not isinstance(kind, OnLayers) or not isinstance(scene.solid, Layered):
+        return None
+    graded = scene.solid.layers[0].bottom is not None
+    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
+
+
+def _seen_by_layers(responses: Sequence[Any]) -> dict[str, float]:
+    """What :class:`galinx.meshes.layered.OnLayers` asks of layered solids at some speeds."""
+    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Fields that live far apart have no middle.
+    apart = max(response.spread for response in responses) > _APART
+    return {
+        "drawn_together": float(np.min(roots)),
+        "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
+        "far_length": max(response.far_field.length for response in responses),
+    }
 
 
 def _mode(scene: Scene) -> str:

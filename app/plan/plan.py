@@ -26,6 +26,7 @@ from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS, oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
+from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.yielding.strength import places as yield_places
 from galinx.solvers.layers.layered import Layered
@@ -89,6 +90,9 @@ def _asked(scene: Scene, places: Places) -> Places:
     """Those places whose stresses are asked for."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
     X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
+    if layers.AT_INTERFACES in scene.output.quantities and len(places.along):
+        X_along, depth = np.meshgrid(places.along, places.interfaces)
+        points = np.concatenate([points, np.column_stack([X_along.ravel(), -depth.ravel()])])
     return Places(X, points, places.around)
 
 

@@ -197,13 +197,35 @@ class SlidingPunch:
         rough = [self._reactions(field) for field in fields]
         # Under the flat punch all of the contact moves alike, and no other load acts.
         self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
+        flat = self._reactions(fields[0])
+        # Of the whole load, -2; what the far boundary's motion does to it is small.
+        load = float(2.0 * np.linalg.norm(flat) / abs(flat[1].sum()))
         spaces = []
-        for field, before, b in zip(fields, rough, forces):
-            after = self._reactions(field)
-            change = np.linalg.norm(after - before) / np.linalg.norm(before)
-            spaces.append(KrylovSpace(field, after, bool(change > negligible), self._left))
+        for i, (field, before, b) in enumerate(zip(fields, rough, forces)):
+            after, moved = self._reactions(field), i >= len(fields) - self._moved
+            change = np.linalg.norm(after - before) / (load if moved else np.linalg.norm(before))
+            if moved:
+                after = self._without_load(field, after, fields[0], flat)
+            refines = bool(change > negligible)
+            spaces.append(KrylovSpace(field, after, refines, self._left, load * moved))
             b.destroy()
         return spaces
+
+    def _without_load(
+        self, field: PETSc.Vec, forces: NDArray, flat: PETSc.Vec, of_flat: NDArray
+    ) -> NDArray[np.float64]:
+        """Shift what moves the far boundary, whose zero is free, until the contact carries no load.
+
+        Args:
+            field, forces: displacement, changed in place, and forces at the contact.
+            flat, of_flat: those of the flat punch at v = -1.
+
+        Returns:
+            The forces that are left.
+        """
+        shift = -forces[1].sum() / of_flat[1].sum()
+        field.maxpy((shift, shift), (flat, self._motions[1]))
+        return np.asarray(forces + shift * of_flat)
 
     def _contact_forces(
         self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]

@@ -14,7 +14,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import before, of_degrees, remaining
+from galinx.postprocess.estimate import SLOWER, before, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
@@ -125,14 +125,17 @@ class MeasuredError:
 
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
+        own = {gauge.word: gauge.left for gauge in found[-1]}
         return {
-            word: self._left(word, changes) + unseen[word] + ROUNDING * self._rounding[word]
+            word: self._left(word, changes) + unseen[word] + own[word] + ROUNDING * self._rounding[word]
             for word, changes in _changes(found).items()
         }
 
     def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors that the levels show, (states,)."""
-        rate = of_degrees(2 if word == INTENSITIES else 1)
+        # What a thin layer adds converges unevenly: a small change says less there.
+        order = 2 if word == INTENSITIES else 1
+        rate = SLOWER if order == 2 and self._ladder.task.body.layered else of_degrees(order)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
         first, second = changes

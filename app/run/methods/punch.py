@@ -24,7 +24,7 @@ from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.punch import ContactStates, SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Body, Places, Surface
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
 #: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
@@ -155,7 +155,7 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: chebyshev(tests.stretch(r), tests.count + more)
+    return lambda r: tests.stretch.functions(r, tests.count + more)
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
@@ -248,6 +248,21 @@ class Punches:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self.at.displacement.inside(self.contact.weights)
+
+    @property
+    def places(self) -> Places:
+        """Where stresses are."""
+        return self.at.task.places
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self.at.displacement.interfaces(self.contact.weights)
+
+    @property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, (states, m)."""
+        return self.body.σ_ZZ(self.inside, self.at.task.places.points[:, 1])
 
     @cached_property
     def strength(self) -> Strength:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from galinx.app import ranks
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
+from galinx.app.plan.sweep import Sweep, swept
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers, on_layers
@@ -32,6 +33,9 @@ _NEAR_FREE_END = 1e-2
 #: Profiles that are combinations of few shapes whatever the contact is; and what plans call the mode in
 #: which every state of another has a mesh of its own.
 LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
+
+#: Modes in which some speeds may tell the others.
+FITTED = ("contact", FOUND)
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -72,6 +76,7 @@ class FemPlan:
             all ranks share one mesh.
         drawn: the mesh where it follows interfaces.
         tests: by which the pressure is read off over layers.
+        sweep: the speeds where some of them are to tell the others; None where each is solved.
     """
 
     mesh: str
@@ -87,6 +92,7 @@ class FemPlan:
     shared_speeds: bool
     drawn: QuadMesh | None = None
     tests: Tests | None = None
+    sweep: Sweep | None = None
 
     @property
     def tolerance(self) -> float:
@@ -112,7 +118,7 @@ class FemPlan:
 
 
 def plan_fem(
-    scene: Scene, responses: Sequence[Response], places: Places, g: tuple[float, float]
+    scene: Scene, responses: Sequence[Response], places: Places, g: NDArray
 ) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
@@ -120,7 +126,7 @@ def plan_fem(
         scene: the scene.
         responses: of its solid, one a speed.
         places: where stresses are asked for.
-        g: smallest and largest σ_XY/σ_YY.
+        g: all values of σ_XY/σ_YY.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -129,8 +135,8 @@ def plan_fem(
     if isinstance(scene.solid, Layered):
         kind, name = on_layers((scene.solid.depths / scene.body.half_width).tolist()), "layered"
     _check_degree_and_solver(scene)
-    mixed = scene.solid.nearly_incompressible
-    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
+    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
     if scene.body.free:
@@ -156,6 +162,7 @@ def plan_fem(
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, drawn=drawn,
         tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
+        sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
     )  # fmt: skip
 
 

@@ -66,7 +66,7 @@ def make_plan(scene: Scene) -> Plan:
         check_pressure(scene, body)
         check_places(scene, places)
         g, responses = enumerate_states(scene).g, [body.response(c) for c in known.speeds]
-        fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
+        fem = plan_fem(scene, responses, _asked(scene, places), g)
         warnings += warnings_of(fem)
     quantities, refused = _quantities(scene, body, methods)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)

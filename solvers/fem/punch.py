@@ -45,7 +45,59 @@ class ContactStates:
     v0: NDArray[np.float64]
 
 
-class SlidingPunch:
+class Punch:
+    """All friction states of a punch at one speed, which are sums of its parts.
+
+    Attributes:
+        space: the finite element space.
+        response: of the half-plane.
+    """
+
+    space: Space
+    response: Response
+    #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
+    _moved = 0
+
+    @property
+    def moved(self) -> int:
+        """By how many parts, the last ones, the far boundary is moved."""
+        return self._moved
+
+    @property
+    def fields(self) -> Sequence[PETSc.Vec]:
+        """Displacements of the parts, those of one after those of the other."""
+        raise NotImplementedError
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
+        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
+
+        Args:
+            g: values of σ_XY/σ_YY, (states,).
+            shapes: that are wanted, all of them if not given.
+        """
+        raise NotImplementedError
+
+    def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
+        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
+
+        Args:
+            g: values of σ_XY/σ_YY.
+            flat: of a flat punch, whatever the profile is.
+            share: by what the profile's heights are multiplied, of each state: less over a larger load.
+        """
+        g = np.atleast_1d(np.asarray(g, dtype=float))
+        heights = np.asarray(share, dtype=float) * np.ones(len(g))
+        parts = self.parts(g, 0 if flat and not self._moved else None)
+        shapes = len(parts) - 1 - self._moved
+        # A flat punch has none of the profile; a line load's tangential force is g times the other.
+        amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
+        # ∫ σ_YY d(X/a) = -2 over N/(2a)
+        carried = sum(of * part.normal.sum(axis=1) for of, part in zip(amplitudes, parts[1:]))
+        v0 = (-2.0 - carried) / parts[0].normal.sum(axis=1)
+        return combined(g, parts, np.column_stack([v0, *amplitudes]))
+
+
+class SlidingPunch(Punch):
     """All friction states of the punch at one speed, from one factorisation.
 
     Args:
@@ -78,8 +130,6 @@ class SlidingPunch:
         self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
         shaped = [forces_of_profile(A, space, height) for height in shapes]
-        #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
-        self._moved = 0
         if isinstance(response, ByCells):
             moved = response.far(*space.coordinates[space.far_nodes].T)
             shaped += [forces_of_far(A, space, one) for one in moved]
@@ -98,32 +148,7 @@ class SlidingPunch:
         """Displacements of the basis: the punches without friction, each before its tangential loads."""
         return [field for space in self._spaces for field in space.fields]
 
-    def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
-        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
-
-        Args:
-            g: values of σ_XY/σ_YY.
-            flat: of a flat punch, whatever the profile is.
-            share: by what the profile's heights are multiplied, of each state: less over a larger load.
-        """
-        g = np.atleast_1d(np.asarray(g, dtype=float))
-        heights = np.asarray(share, dtype=float) * np.ones(len(g))
-        parts = self.parts(g, 0 if flat and not self._moved else None)
-        shapes = len(parts) - 1 - self._moved
-        # A flat punch has none of the profile; a line load's tangential force is g times the other.
-        amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
-        # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        carried = sum(of * part.normal.sum(axis=1) for of, part in zip(amplitudes, parts[1:]))
-        v0 = (-2.0 - carried) / parts[0].normal.sum(axis=1)
-        return combined(g, parts, np.column_stack([v0, *amplitudes]))
-
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list["Part"]:
-        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
-
-        Args:
-            g: values of σ_XY/σ_YY, (states,).
-            shapes: that are wanted, all of them if not given.
-        """
         wanted = self._spaces[: None if shapes is None else 1 + shapes]
         return [self._of(space, g, y) for space, y in zip(wanted, self._contact_forces(wanted, g))]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.fem.fitted import FittedSlopes
 from galinx.solvers.fem.interior import InteriorGradients, KeptValues
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
@@ -22,10 +23,14 @@ class Displacement:
         task: the speed, and the places.
         space: the finite element space.
         fields: displacements over N/(2μ).
+        slopes: theirs along X on the surface, where they are known.
     """
 
-    def __init__(self, task: Task, space: Space, fields: Sequence[Any]) -> None:
+    def __init__(
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
+    ) -> None:
         self._task, self._space, self._fields = task, space, fields
+        self._known = slopes
 
     def prepare(self, words: Collection[str]) -> None:
         """Take the derivatives that words of output.quantities ask for, before the fields are freed."""
@@ -36,8 +41,15 @@ class Displacement:
         if YIELD in words:
             self._around  # noqa: B018
 
+    @property
+    def slopes(self) -> SurfaceSlopes | FittedSlopes:
+        """Slopes of the fields along X at the places on the surface."""
+        return self._slopes
+
     @cached_property
-    def _slopes(self) -> SurfaceSlopes:
+    def _slopes(self) -> SurfaceSlopes | FittedSlopes:
+        if self._known is not None:
+            return self._known
         return SurfaceSlopes(self._space, self._fields, self._task.places.X)
 
     @cached_property

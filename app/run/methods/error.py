@@ -27,27 +27,30 @@ PROBES = 9
 
 @contextmanager
 def climbed(
-    work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
-) -> Iterator[tuple[Ladder, "MeasuredError"]]:
+    work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any],
+    degree: int | None = None, share: float = 1.0,
+) -> Iterator[tuple[Ladder, "MeasuredError"]]:  # fmt: skip
     """A ladder whose degree was raised until the measured error is within tolerance; it is freed at last.
 
     Args:
-        work, task, solved: of the :class:`Ladder`.
+        work, task, solved, degree: of the :class:`Ladder`.
         g: the speed's values of σ_XY/σ_YY, sorted.
+        share: of the tolerance that the error may take.
     """
-    ladder = Ladder(work, task, solved)
+    ladder = Ladder(work, task, solved, degree)
     try:
-        yield ladder, climb(ladder, g)
+        yield ladder, climb(ladder, g, share)
     finally:
         ladder.destroy()
 
 
-def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
+def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
     """Raise the degree until the measured error of sample states is within tolerance.
 
     Args:
         ladder: without a level.
         g: the speed's values of σ_XY/σ_YY, sorted.
+        share: of the tolerance that the error may take.
     """
     plan = ladder.work.plan
     for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
@@ -57,11 +60,11 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
     if not ladder.task.body.alike:
         ends = min(ladder.task.loads), max(ladder.task.loads)
         loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
-    error = MeasuredError(ladder, probes, loads)
+    error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
     while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
         ladder.add(g, ladder.degree + 1)
-        error = MeasuredError(ladder, probes, loads)
+        error = MeasuredError(ladder, probes, loads, share)
         changes |= error.changes
     error.changes = changes
     return error
@@ -74,13 +77,16 @@ class MeasuredError:
         ladder: with three levels of rising degree; or with a better one than the last, of a fixed degree.
         probes: values of σ_XY/σ_YY that stand for all of the speed.
         loads: of these probes [N/m]; that of the task if not given.
+        share: of the tolerance that the error may take.
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
         excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
     """
 
-    def __init__(self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None) -> None:
+    def __init__(
+        self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None, share: float = 1.0
+    ) -> None:
         self._ladder = ladder
         found = self._measured(probes, loads)
         self._sample = _changes(found)
@@ -95,7 +101,7 @@ class MeasuredError:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
                 pairs = (float(pair[i].max()) for pair in self._sample.values())
                 self.changes[degree] = max(pairs, default=0.0)
-        tolerance, unseen = ladder.work.plan.tolerance, self._unseen(found[-1], probes)
+        tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(found[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         self.excessive = any(
             bool((error > np.maximum(tolerance, 1.1 * unseen[name])).any())

@@ -269,6 +269,11 @@ class FoundPunches:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return self.found.contact.v0
 
+    @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        return np.full(len(self.g), float(self.at.fitted))
+
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
@@ -294,3 +299,7 @@ class FoundPunches:
             lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
             self.half_width,
         )  # fmt: skip
+
+
+#: See :mod:`.punch`.
+Level, AtSpeed = FoundLevel, FoundAtSpeed

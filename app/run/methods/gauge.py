@@ -14,6 +14,7 @@ from galinx.postprocess import scale
 from galinx.postprocess.pressure import JacobiPressure
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
+from galinx.solvers.fem.fitted import FittedSlopes
 from galinx.solvers.fem.space import Space
 
 #: Points inside on which the error is measured; of more, so many are picked.
@@ -82,12 +83,21 @@ class StressGauges:
         task: the speed, and the places.
         space: the finite element space.
         fields: displacements over N/(2μ), all of them.
+        slopes: theirs on the surface, where they are known.
     """
 
-    def __init__(self, work: Discretisation, task: Task, space: Space, fields: Sequence[Any]) -> None:
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, fields: Sequence[Any],
+        slopes: FittedSlopes | None = None,
+    ) -> None:  # fmt: skip
         self._words, self._task = work.stresses, gauged(task)
-        self._displacement = Displacement(self._task, space, fields)
+        self._displacement = Displacement(self._task, space, fields, slopes)
         self._displacement.prepare(self._words)
+
+    @property
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is asked for."""
+        return self._displacement.slopes if self._words else None
 
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""

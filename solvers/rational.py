@@ -2,11 +2,11 @@
 
 The barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j w_j/(z - z_j), passes through
 the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all functions:
-as of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM J. Sci. Comput. 40, 2018; Lietaert,
-Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022) they make r(z) D(z) - N(z) smallest at the
-samples that are no nodes.
+their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM J. Sci. Comput.
+40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,59 +47,70 @@ class Rational:
 
     Attributes:
         z: of the samples, (K,).
-        nodes: which samples it passes through; the others determined its weights.
-        weights: of the barycentric form, (nodes,).
+        weights: of the barycentric form, (K,).
     """
 
     z: NDArray[np.float64]
-    nodes: NDArray[np.int64]
     weights: NDArray[np.float64]
 
     def shares(self, z: NDArray) -> NDArray[np.float64]:
         """What of the samples makes the values at each z, (len(z), K)."""
-        shares = np.zeros((len(z), len(self.z)))
-        shares[:, self.nodes] = barycentric(self.z[self.nodes], self.weights, z)
-        return shares
+        return barycentric(self.z, self.weights, z)
 
 
-def fitted(z: NDArray, values: NDArray) -> Rational:
-    """The rational function whose nodes are all samples but one, the others' worst first.
+def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
+    """The rational function through samples whose denominator the AAA algorithm finds.
+
+    That takes the worst sample for its next node until it comes near all the others; had it to follow their
+    last digits, it would put poles anywhere. The numerator is the polynomial that is right at all samples.
 
     Args:
-        z: of the samples, all different, (K,), K >= 3.
+        z: of the samples, all different, (K,), K >= 2.
         values: of the functions there, (K, functions).
+        noise: root of the sum of squares of what is rounding in a sample.
     """
     count = len(z)
     # A rotation of the functions among themselves changes no norm, and leaves at most K of them.
     values = np.linalg.qr(values.T, mode="r").T
     found, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
-    weights = np.zeros(0)
+    weights, rest = np.zeros(0), np.arange(count)
     for _ in range(count - 1):
         error = np.linalg.norm(values - found, axis=1)
         error[nodes] = -1.0
+        if error.max() <= noise and len(nodes):
+            break
         nodes = np.append(nodes, error.argmax())
         rest = np.setdiff1d(np.arange(count), nodes)
         loewner = (values[rest][:, None] - values[nodes]) / (z[rest][:, None] - z[nodes])[..., None]
         rows = loewner.transpose(0, 2, 1).reshape(-1, len(nodes))
         weights = np.linalg.svd(rows)[2][-1]
         found = barycentric(z[nodes], weights, z) @ values[nodes]
-    return Rational(z, nodes, weights)
+    return Rational(z, _through_all(z, nodes, weights, rest))
 
 
-def leja(z: NDArray, first: int, count: int) -> list[int]:
-    """So many of some points, each where the polynomial with zeros at those before is largest.
+def _through_all(z: NDArray, nodes: NDArray, weights: NDArray, rest: NDArray) -> NDArray[np.float64]:
+    """Weights of the form with the same denominator and a node at every sample."""
+    size = np.ptp(z) / 4.0
+    found = np.zeros(len(z))
+    found[nodes] = weights / np.prod((z[nodes][:, None] - z[rest]) / size, axis=1)
+    denominator = (size / (z[rest][:, None] - z[nodes])) @ weights
+    others = (z[rest][:, None] - z[rest]) / size + np.eye(len(rest))
+    found[rest] = denominator / np.prod(others, axis=1)
+    return found
+
+
+#: Distance over that of the ends within which points count as equal.
+_EQUAL = 1e-10
+
+
+def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
+    """The point at which the polynomial with zeros at those chosen is largest; None where it vanishes.
 
     Args:
-        z: the points; those that are equal count once, (n,).
-        first: number of the first.
-        count: that are wanted; fewer where there are no more.
+        z: points; those that are equal to ten digits are one, (n,).
+        chosen: numbers of those that are chosen.
     """
-    order, logs = [first], np.zeros(len(z))
-    size = np.ptp(z) or 1.0
-    while len(order) < count:
-        with np.errstate(divide="ignore"):
-            logs = logs + np.log(np.abs(z - z[order[-1]]) / size)
-        if logs.max() == -np.inf:
-            break
-        order.append(int(logs.argmax()))
-    return order
+    steps = np.abs(z[:, None] - z[list(chosen)]) / (np.ptp(z) or 1.0)
+    with np.errstate(divide="ignore"):
+        logs = np.log(np.where(steps > _EQUAL, steps, 0.0)).sum(axis=1)
+    return int(logs.argmax()) if logs.max() > -np.inf else None

@@ -50,7 +50,10 @@ LADDERS, MOST = 4, 24
 DISCRETISATION, FIT = 0.88, 0.1
 
 #: Sum of shares in absolute value from which a fit is worth nothing: a pole is near.
-_LARGEST = 30.0
+_LARGEST = 1e4
+
+#: What may be rounding in the numbers of a sample, which are over their largest.
+_NOISE = 3e-9
 
 #: Numbers of frictions that are tried until what lies between is known to this share of the tolerance,
 #: and at most so well as rounding lets it.
@@ -120,10 +123,10 @@ class Fit:
     def _rational(self) -> Rational:
         """One without poles among the speeds, else the polynomial."""
         z = self.sweep.z[self.solved]
-        found = fitted(z, self.values)
+        found = fitted(z, self.values, _NOISE)
         if np.abs(found.shares(self.sweep.z)).sum(axis=1).max() < _LARGEST:
             return found
-        return Rational(z, np.arange(len(z)), polynomial_weights(z))
+        return Rational(z, polynomial_weights(z))
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -249,17 +252,26 @@ class _Training:
         """The fit, None where it does not become good enough."""
         tasks, z = self._tasks, self._sweep.z
         fastest = int(np.argmin([task.response.margin for task in tasks]))
-        order = leja(z, fastest, min(MOST, len(set(z.tolist())) // 2))
-        for count, number in enumerate(order):
-            task = tasks[number]
+        number: int | None = fastest
+        chosen: list[int] = []
+        for count in range(min(MOST, len(tasks) // 2)):
+            number = leja(z, chosen) if number is None else number
+            if number is None:
+                break  # there is no other speed
+            chosen.append(number)
+            task, number = tasks[number], None
             self._say(f"finite elements at c = {task.response.c:g}, speed {count + 1} of the fit")
             if count < LADDERS:
                 self._measured(task)
                 continue
-            error = self._checked(task)
-            if error is not None:
-                assert self._fit
-                return Trained(self._fit, self._estimates, error)
+            before, error = self._checked(task)
+            if self._good(error):
+                changes = {worst: self._change(before, worst) for worst in self._worst(before)}
+                error = {word: max(one[word] for one in (error, *changes.values())) for word in error}
+                if self._good(error):
+                    assert self._fit
+                    return Trained(self._fit, self._estimates, error)
+                number = max(changes, key=lambda worst: self._excess(changes[worst]))
         self._say("no fit through speeds is good enough: each is solved")
         return None
 
@@ -310,8 +322,8 @@ class _Training:
             self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery, moved
         )
 
-    def _checked(self, task: Task) -> dict[str, float] | None:
-        """Solve a speed and take it in; the error of the fit where that was good enough before."""
+    def _checked(self, task: Task) -> tuple[Rational, dict[str, float]]:
+        """Solve a speed and take it in; the fit before, and how far it was off there, by word."""
         work, fit = self._work, self._fit
         assert fit and fit.rational
         with fit.level(task) as told:
@@ -325,21 +337,16 @@ class _Training:
             fit.add(task, level, fit.record(task.number) | vars(done))
         finally:
             level.destroy()
-        error = largest_changes(found, expected)
-        if not self._good(error):
-            return None
-        for number in self._worst(before):
-            error = {
-                word: max(value, error[word]) for word, value in self._change(before, number).items()
-            }
-        return error if self._good(error) else None
+        return before, largest_changes(found, expected)
 
     def _good(self, error: dict[str, float]) -> bool:
         """Is an error of the fit, by word, small enough?"""
-        tolerance = self._work.plan.tolerance
-        return all(
-            value <= FIT * max(tolerance, self._estimates.least(word)) for word, value in error.items()
-        )
+        return self._excess(error) <= 1.0
+
+    def _excess(self, error: dict[str, float]) -> float:
+        """An error of the fit, by word, over what it may be, the largest."""
+        tolerance, least = self._work.plan.tolerance, self._estimates.least
+        return max(value / (FIT * max(tolerance, least(word))) for word, value in error.items())
 
     def _worst(self, before: Rational) -> list[int]:
         """Numbers of the speeds whose fit changed most, one in each gap between solved ones."""

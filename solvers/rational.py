@@ -1,9 +1,9 @@
 """Rational functions of one variable through values that are many functions' at once.
 
 The barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j w_j/(z - z_j), passes through
-the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all functions:
-their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM J. Sci. Comput.
-40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
+the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all
+functions: their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM J.
+Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
 """
 
 from collections.abc import Sequence
@@ -61,8 +61,9 @@ class Rational:
 def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
     """The rational function through samples whose denominator the AAA algorithm finds.
 
-    That takes the worst sample for its next node until it comes near all the others; had it to follow their
-    last digits, it would put poles anywhere. The numerator is the polynomial that is right at all samples.
+    That takes the worst sample for its next node until it comes near all the others; had it to follow
+    their last digits, it would put poles anywhere. The numerator is the polynomial that is right at all
+    samples.
 
     Args:
         z: of the samples, all different, (K,), K >= 2.
@@ -71,7 +72,7 @@ def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
     """
     count = len(z)
     # A rotation of the functions among themselves changes no norm, and leaves at most K of them.
-    values = np.linalg.qr(values.T, mode="r").T
+    values = rotated(values)
     found, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
     weights, rest = np.zeros(0), np.arange(count)
     for _ in range(count - 1):
@@ -86,6 +87,15 @@ def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
         weights = np.linalg.svd(rows)[2][-1]
         found = barycentric(z[nodes], weights, z) @ values[nodes]
     return Rational(z, _through_all(z, nodes, weights, rest))
+
+
+def rotated(values: NDArray) -> NDArray[np.float64]:
+    """Functions that are those of the values rotated among themselves, at most as many as samples.
+
+    Args:
+        values: (K, functions).
+    """
+    return np.asarray(np.linalg.qr(values.T, mode="r")).T
 
 
 def _through_all(z: NDArray, nodes: NDArray, weights: NDArray, rest: NDArray) -> NDArray[np.float64]:

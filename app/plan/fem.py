@@ -117,9 +117,7 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(
-    scene: Scene, responses: Sequence[Response], places: Places, g: NDArray
-) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDArray) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:

@@ -12,6 +12,10 @@ from galinx.solvers.solids.solid import Response
 #: a dozen, four of these with all that measures an error.
 LEAST = 16
 
+#: Speeds at which the discretisation's error is measured, how many are solved besides as a rule, and
+#: the most that are solved.
+LADDERS, BESIDES, MOST = 4, 7, 24
+
 #: Values of σ_XY/σ_YY up to which punches are sampled at these, and at no others.
 _FEW = 8
 

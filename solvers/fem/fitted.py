@@ -126,9 +126,7 @@ def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool =
         of_slopes, noise = [np.empty((2, count, 0))] * len(parts), [np.empty((count, 0))] * len(parts)
     if not with_fields:
         displacements = [np.empty((count, 0))] * len(parts)
-    return Sampled(
-        forces, np.array(of_slopes).swapaxes(0, 1), np.array(noise), np.array(displacements)
-    )
+    return Sampled(forces, np.array(of_slopes).swapaxes(0, 1), np.array(noise), np.array(displacements))
 
 
 class FittedPunch(Punch):

@@ -77,6 +77,14 @@ class Punch:
         """
         raise NotImplementedError
 
+    def release(self) -> None:
+        """Free factor and fields; states that were asked for before can be asked for again."""
+        raise NotImplementedError
+
+    def destroy(self) -> None:
+        """Free factor and fields."""
+        raise NotImplementedError
+
     def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
         """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
 
@@ -161,13 +169,11 @@ class SlidingPunch(Punch):
         return Part(weights, normal, tangential)
 
     def release(self) -> None:
-        """Free factor and fields; states that were asked for before can be asked for again."""
         for space in self._spaces:
             space.complete = True
         self.destroy()
 
     def destroy(self) -> None:
-        """Free factor and fields."""
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
 

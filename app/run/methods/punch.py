@@ -14,9 +14,8 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climbed
+from galinx.app.run.methods.error import climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
-from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.pressure import (
     ContactRecovery,

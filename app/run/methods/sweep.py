@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.sweep import Sweep
+from galinx.app.plan.sweep import LADDERS, MOST, Sweep
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.error import PROBES, climbed
@@ -39,11 +39,9 @@ from galinx.solvers.rational import (
     fitted,
     leja,
     polynomial_weights,
+    rotated,
 )
 from galinx.solvers.sie.closed_form import FlatPunch
-
-#: Speeds at which the discretisation's error is measured, and the most that are solved for a fit.
-LADDERS, MOST = 4, 24
 
 #: Share of the tolerance that the discretisation may take, and that of the larger of both which the fit
 #: may: together they stay below.
@@ -242,7 +240,7 @@ class _Training:
         self._say, self._degree = say, degree
         body = tasks[0].body
         ends = {min(tasks[0].loads), max(tasks[0].loads)}
-        probes = sweep.g if sweep.few else np.linspace(*sweep.g, PROBES)
+        probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
         self._loads = None if body.alike else np.repeat(sorted(ends), len(probes))
         self._probes = probes if body.alike else np.tile(probes, len(ends))
         self._estimates = Estimates(np.unique(probes))
@@ -278,7 +276,7 @@ class _Training:
     def _frictions(self, count: int) -> Frictions:
         if self._sweep.few:
             return Frictions(self._sweep.g, polynomial_weights(self._sweep.g))
-        return Frictions(*chebyshev_nodes(count, *self._sweep.g))
+        return Frictions(*chebyshev_nodes(count, self._sweep.g[0], self._sweep.g[-1]))
 
     @property
     def _all(self) -> NDArray[np.float64]:
@@ -286,7 +284,9 @@ class _Training:
         if self._sweep.few:
             return self._sweep.g
         tried = [self._frictions(count).g for count in _FRICTIONS]
-        return np.unique(np.concatenate([np.linspace(*self._sweep.g, PROBES), *tried]))
+        return np.unique(
+            np.concatenate([np.linspace(self._sweep.g[0], self._sweep.g[-1], PROBES), *tried])
+        )
 
     def _measured(self, task: Task) -> None:
         """Solve a speed with all that measures its error."""
@@ -353,7 +353,7 @@ class _Training:
         fit = self._fit
         assert fit and fit.rational
         z, solved = self._sweep.z, np.sort(self._sweep.z[fit.solved])
-        values = np.linalg.qr(fit.values.T, mode="r").T
+        values = rotated(fit.values)
         shares = fit.rational.shares(z)
         shares[:, : len(before.z)] -= before.shares(z)
         change = np.linalg.norm(shares @ values, axis=1)

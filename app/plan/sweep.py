@@ -19,7 +19,7 @@ LADDERS, BESIDES, MOST = 4, 7, 24
 #: Values of σ_XY/σ_YY up to which punches are sampled at these, and at no others.
 _FEW = 8
 
-#: Change of an inverse contraction over that of c² below which it tells speeds no better apart than c² does.
+#: Change of an inverse contraction over that of c² below which it tells speeds no better apart.
 _FLAT = 1e-3
 
 
@@ -57,8 +57,8 @@ def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
     """In which variable results are smoothest: they are analytic in c², and so is it.
 
     What the fields are analytic in, and the mesh where it follows them, contracts with a root of the
-    distance to the slowest wave in the solid. So all is smooth in the contraction up to that speed, and in
-    c² not. Its inverse spreads speeds near the limit; where it does not tell them apart c² has to do.
+    distance to the slowest wave in the solid. So all is smooth in the contraction up to that speed, and
+    in c² not. Its inverse spreads speeds near the limit; where it does not tell them apart c² has to do.
     """
     square = np.array([response.c**2 for response in responses])
     inverse = np.array([1.0 / response.contraction.imag for response in responses])

@@ -1,8 +1,8 @@
 """Many speeds for the price of a dozen: some are solved, a rational fit tells the others.
 
-What is fitted are the parts of a punch at a few frictions: nodal forces, slopes, displacements, from which
-its states of all frictions and loads follow. One rational function serves all of these numbers. Speeds are
-solved where the fit through those before has been farthest from one, and each is first told by the fit:
+What is fitted are the parts of a punch at a few frictions: nodal forces, slopes, displacements, from
+which its states of all frictions and loads follow. One rational function serves all of these numbers.
+Speeds are solved far from those before, or where the fit changed most, and each is first told by the fit:
 how far that was off, and how much the fit then changes all over the sweep, is its error.
 """
 
@@ -180,13 +180,13 @@ class Trained:
     def at(self, task: Task, g: NDArray) -> Iterator[Any]:
         """Punches at a speed, of the fit's mode; None where they have to be solved.
 
-        That is where estimates of speeds beside it are beyond the tolerance: its own may not be.
+        That is where what is estimated there is beyond the tolerance: alone it may do better.
         """
         number, fit = task.number, self.fit
         told = number not in fit.solved
         error = FitError(self.estimates, fit.sweep.z[number], self.error if told else {})
         worst = max((values.max() for values in error.of(g).values()), default=0.0)
-        if worst > fit.work.plan.tolerance and number not in self.estimates.numbers:
+        if worst > fit.work.plan.tolerance:
             yield None
             return
         with fit.level(task) as level:
@@ -284,9 +284,7 @@ class _Training:
         if self._sweep.few:
             return self._sweep.g
         tried = [self._frictions(count).g for count in _FRICTIONS]
-        return np.unique(
-            np.concatenate([np.linspace(self._sweep.g[0], self._sweep.g[-1], PROBES), *tried])
-        )
+        return np.unique(np.concatenate([self._probes, *tried]))
 
     def _measured(self, task: Task) -> None:
         """Solve a speed with all that measures its error."""

@@ -2,8 +2,8 @@
 
 The barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j w_j/(z - z_j), passes through
 the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all
-functions: their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM J.
-Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
+functions: their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM
+J. Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
 """
 
 from collections.abc import Sequence

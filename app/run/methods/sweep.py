@@ -55,7 +55,7 @@ _NOISE = 3e-9
 
 #: Numbers of frictions that are tried until what lies between is known to this share of the tolerance,
 #: and at most so well as rounding lets it.
-_FRICTIONS, _BETWEEN, _ROUNDING = (8, 12, 16, 20, 26, 34, 44, 60), 1e-4, 1e-11
+_FRICTIONS, _BETWEEN, _ROUNDING = (8, 12, 16, 20, 26, 34, 44, 60), 1e-6, 1e-12
 
 
 class HigherDegree(Exception):

@@ -62,8 +62,8 @@ def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
     """The rational function through samples whose denominator the AAA algorithm finds.
 
     That takes the worst sample for its next node until it comes near all the others; had it to follow
-    their last digits, it would put poles anywhere. The numerator is the polynomial that is right at all
-    samples.
+    their last digits, or no more than one other, it would put poles anywhere. The numerator is the
+    polynomial that is right at all samples.
 
     Args:
         z: of the samples, all different, (K,), K >= 2.
@@ -75,7 +75,7 @@ def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
     values = rotated(values)
     found, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
     weights, rest = np.zeros(0), np.arange(count)
-    for _ in range(count - 1):
+    for _ in range(max(count - _OTHERS, 1)):
         error = np.linalg.norm(values - found, axis=1)
         error[nodes] = -1.0
         if error.max() <= noise and len(nodes):
@@ -108,6 +108,9 @@ def _through_all(z: NDArray, nodes: NDArray, weights: NDArray, rest: NDArray) ->
     found[rest] = denominator / np.prod(others, axis=1)
     return found
 
+
+#: Samples that are no nodes of the AAA algorithm, at least: they determine the denominator.
+_OTHERS = 2
 
 #: Distance over that of the ends within which points count as equal.
 _EQUAL = 1e-10

@@ -46,6 +46,10 @@ class Estimates:
         """The smallest of all."""
         return float(np.min(self._errors[word]))
 
+    def beyond(self, tolerance: float) -> bool:
+        """Are all of a word beyond it? Then no speed can be told to the tolerance."""
+        return any(self.least(word) > tolerance for word in self._errors)
+
     def around(self, z: float, g: NDArray) -> dict[str, NDArray[np.float64]]:
         """The largest of those around a speed and frictions, (len(g),), by word.
 

@@ -149,6 +149,8 @@ class _Training:
             if count < LADDERS:
                 self._measured(task)
                 continue
+            if self._estimates.beyond(self._work.plan.tolerance):
+                break
             before, error = self._checked(task)
             if self._good(error):
                 changes = {worst: self._change(before, worst) for worst in self._worst(before)}

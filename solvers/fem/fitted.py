@@ -55,7 +55,7 @@ class Sampled:
     """Parts of a punch at a speed, or at several, at some frictions.
 
     Attributes:
-        forces: in X and Y at the contact nodes, (..., 2, parts, frictions, nodes).
+        forces: in Y at the contact nodes, (..., parts, frictions, nodes); those in X are g times these.
         slopes: of both displacements along X at places on the surface, none if nobody asks for them,
             (..., 2, parts, frictions, places).
         rounding: what the last digits can do to slopes of u, (..., parts, frictions, places).
@@ -107,7 +107,7 @@ def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool =
         with_fields: keep the displacements.
     """
     parts, first, count = punch.parts(at.g), 0, len(at.g)
-    forces = np.array([[part.tangential, part.normal] for part in parts]).swapaxes(0, 1)
+    forces = np.array([part.normal for part in parts])
     fields = punch.fields
     of_slopes: list[Any] = []
     noise: list[NDArray] = []
@@ -159,8 +159,9 @@ class FittedPunch(Punch):
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         shares = self._at.shares(g)
-        tangential, normal = self._known.forces[:, : None if shapes is None else 1 + shapes]
-        return [Part(shares, shares @ of_Y, shares @ of_X) for of_X, of_Y in zip(tangential, normal)]
+        known = self._known.forces[: None if shapes is None else 1 + shapes]
+        # No equations are assembled here from which tangential forces could be read.
+        return [Part(shares, shares @ normal, g[:, None] * (shares @ normal)) for normal in known]
 
     def release(self) -> None:
         """Free the fields."""

@@ -40,9 +40,9 @@ from galinx.solvers.rational import (
 #: may: together they stay below.
 DISCRETISATION, FIT = 0.88, 0.1
 
-#: Numbers of frictions that are tried until what lies between is known to this share of the tolerance,
-#: and at most so well as rounding lets it.
-_FRICTIONS, _BETWEEN, _ROUNDING = (8, 12, 16, 20, 26, 34, 44, 60), 1e-6, 1e-12
+#: Numbers of frictions that are tried until what lies between is known so well, relative: forces have to
+#: balance to 1e-9, and what cancels at free ends is as much larger than what is left.
+_FRICTIONS, _BETWEEN = (8, 12, 16, 20, 26, 34, 44, 60), 3e-12
 
 
 class HigherDegree(Exception):
@@ -196,14 +196,13 @@ class _Training:
         """A fit without samples: at as many frictions as tell those between."""
         moved, at = level.punch.moved, self._frictions(_FRICTIONS[-1])
         if not self._sweep.few:
-            wanted = max(_BETWEEN * self._work.plan.tolerance, _ROUNDING)
             true = [part.normal for part in level.punch.parts(self._probes)]
             for count in _FRICTIONS:
                 at = self._frictions(count)
                 shares = at.shares(self._probes)
                 told = [shares @ part.normal for part in level.punch.parts(at.g)]
                 off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(told, true))
-                if off <= wanted:
+                if off <= _BETWEEN:
                     break
         return Fit(
             self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery, moved

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.app import ranks
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
+from galinx.app.plan.sweep import Sweep, swept
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers, on_layers
@@ -37,6 +38,8 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 #: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
 #: without it grows towards these.
 _FARTHER = 1e3
+#: Modes in which some speeds may tell the others.
+FITTED = ("contact", FOUND)
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -81,6 +84,7 @@ class FemPlan:
         sharp: exponent of the strongest pressure next to a sharp edge.
         drawn: the mesh where it follows interfaces.
         tests: by which the pressure is read off over layers.
+        sweep: the speeds where some of them are to tell the others; None where each is solved.
     """
 
     mesh: str
@@ -97,6 +101,7 @@ class FemPlan:
     sharp: float = -0.5
     drawn: QuadMesh | None = None
     tests: Tests | None = None
+    sweep: Sweep | None = None
 
     @property
     def tolerance(self) -> float:
@@ -121,16 +126,14 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(
-    scene: Scene, responses: Sequence[Response], places: Places, g: tuple[float, float]
-) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDArray) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
         places: where stresses are asked for.
-        g: smallest and largest σ_XY/σ_YY.
+        g: all values of σ_XY/σ_YY.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
@@ -140,8 +143,8 @@ def plan_fem(
         depths = scene.solid.depths / scene.body.half_width
         kind, name = on_layers(depths.tolist(), **_seen_by_layers(responses)), "layered"
     _check_degree_and_solver(scene)
-    mixed = scene.solid.nearly_incompressible
-    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
+    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
     if scene.body.free:
@@ -169,6 +172,7 @@ def plan_fem(
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=_tests(scene, kind, wanted),
+        sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.fem.fitted import FittedSlopes
 from galinx.solvers.fem.interior import InteriorGradients, KeptValues
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
@@ -24,10 +25,14 @@ class Displacement:
         task: the speed, and the places.
         space: the finite element space.
         fields: displacements over N/(2μ).
+        slopes: theirs along X on the surface, where they are known.
     """
 
-    def __init__(self, task: Task, space: Space, fields: Sequence[Any]) -> None:
+    def __init__(
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
+    ) -> None:
         self._task, self._space, self._fields = task, space, fields
+        self._known = slopes
 
     def prepare(self, words: Collection[str]) -> None:
         """Take the derivatives that words of output.quantities ask for, before the fields are freed."""
@@ -40,8 +45,15 @@ class Displacement:
         if AT_INTERFACES in words:
             self._interfaces  # noqa: B018
 
+    @property
+    def slopes(self) -> SurfaceSlopes | FittedSlopes:
+        """Slopes of the fields along X at the places on the surface."""
+        return self._slopes
+
     @cached_property
-    def _slopes(self) -> Any:
+    def _slopes(self) -> SurfaceSlopes | FittedSlopes:
+        if self._known is not None:
+            return self._known
         return SurfaceSlopes(self._space, self._fields, self._task.places.X)
 
     @cached_property

@@ -105,6 +105,11 @@ class StressGauges:
         """Are there any?"""
         return bool(self._words)
 
+    @property
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is asked for."""
+        return self._displacement.slopes if self._words else None
+
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""
         found, places = [], self._task.places

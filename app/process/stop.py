@@ -104,7 +104,7 @@ def complain(message: str) -> None:
 
 
 def _dropped(exception: "sys.UnraisableHookArgs") -> None:
-    """A destructor, or a library at work, drops an exception: nothing is said of one that ends the process."""
+    """A library at work drops an exception: nothing is said of one that ends the process."""
     if not isinstance(exception.exc_value, Asked):
         sys.__unraisablehook__(exception)
 

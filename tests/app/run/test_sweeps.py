@@ -1,5 +1,6 @@
 """Many speeds of which few are solved: against speeds that are solved by themselves, and exact ones."""
 
+import json
 import os
 
 import numpy as np
@@ -25,7 +26,7 @@ def scene(solid, c, tolerance, quantities=("sif", "surface"), punch="", solve=""
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
     constants = (
         "\n".join(
-            f"{key} = {value!r}"
+            f"{key} = {json.dumps(value)}"
             for key, value in values(solid).items()
             if np.size(value) and value is not None
         )

@@ -24,14 +24,10 @@ FRICTION = "mu_c = [0.3, 0.8]\nsigma0_over_load = 2e4"
 
 def scene(solid, c, tolerance, quantities=("sif", "surface"), punch="", solve="", friction=FRICTION):
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
-    constants = (
-        "\n".join(
-            f"{key} = {json.dumps(value)}"
-            for key, value in values(solid).items()
-            if np.size(value) and value is not None
-        )
-        .replace("(", "[")
-        .replace(")", "]")
+    constants = "\n".join(
+        f"{key} = {json.dumps(value)}"
+        for key, value in values(solid).items()
+        if np.size(value) and value is not None
     )
     return parse(
         f'[solid]\nkind = "{kind}"\n{constants}\n[punch]\n{punch}\n[friction]\n{friction}\n[motion]\n'

@@ -101,9 +101,6 @@ class FoundStates:
 class FoundLevel(PunchLevel):
     """Punches at one degree; see :class:`PunchLevel`."""
 
-    #: The pressure vanishes at a tip, and next to it they would be all there is.
-    shows_rest = True
-
     def heights(self) -> NDArray[np.float64]:
         s = self.space.chart.surface_position(self.space.contact.s)
         return s[None] if isinstance(self.task.body.profile, Flat) else np.stack([s, s**2])

@@ -13,7 +13,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.kinked_displacement import KinkedDisplacement
 from galinx.app.run.methods.kinked_ends import Ends
-from galinx.app.run.methods.punch import NEGLIGIBLE, NEGLIGIBLE_MOST
+from galinx.app.run.methods.punch import negligible
 from galinx.meshes.kinks import with_kinks
 from galinx.postprocess.kinked_pressure import KinkedPressure, gaps_of
 from galinx.postprocess.pressure import chebyshev
@@ -116,10 +116,10 @@ class KinkedLevel:
     ) -> None:
         self.space, self._g = space, np.array([g])
         r = space.chart.surface_position(space.contact.s)
-        body, plan = task.body, work.plan
+        body = task.body
         height = body.profile.height(ends.centre + ends.half_width * r) / body.displacement
-        negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        punch = SlidingPunch(space, task.response, plan.solver, negligible, height)
+        least = negligible(work)
+        punch = SlidingPunch(space, task.response, work.plan.solver, least, height)
         try:
             self.factor, self.contact = punch.factor, punch.states(self._g)
             self.field = punch.fields[0].duplicate()

@@ -35,7 +35,16 @@ from galinx.solvers.solution import Body, Places, Surface
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
 #: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
-NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
+_NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
+
+#: Share of it where stresses are wanted: next to an edge a force counts by the little load there is.
+_BESIDE_EDGES = 0.1
+
+
+def negligible(work: Discretisation) -> float:
+    """Relative change of the contact forces that no result shows."""
+    least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
+    return _BESIDE_EDGES * least if work.stresses else least
 
 
 @contextmanager
@@ -72,12 +81,7 @@ class PunchLevel:
         g: all values of σ_XY/σ_YY that will be asked for.
         fitted: a punch that other speeds tell of; it is solved if not given.
         recovery: the maps, where they are known for the space.
-
-    Attributes:
-        shows_rest: do stresses show what friction leaves of the contact forces?
     """
-
-    shows_rest = False
 
     def __init__(
         self, work: Discretisation, task: Task, space: Space, g: NDArray,
@@ -89,9 +93,10 @@ class PunchLevel:
             self.punch: Punch = fitted
             self.recovery = recovery
             return
-        negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        left = 0.0 if self.shows_rest and work.stresses else negligible
-        solved = SlidingPunch(space, task.response, plan.solver, negligible, self.heights(), left)
+        least = negligible(work)
+        # What friction leaves is alike from degree to degree: in stresses no estimate sees it.
+        left = 0.0 if work.stresses else least
+        solved = SlidingPunch(space, task.response, plan.solver, least, self.heights(), left)
         self.punch, self.factor = solved, solved.factor
         more = 2 * (space.degree - plan.degrees[task.number])
         self.recovery = contact_recovery(

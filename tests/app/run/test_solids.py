@@ -84,7 +84,7 @@ def test_stresses_reach_the_tolerance(solid, share, tolerance):
 
 
 def test_stresses_next_to_an_edge_show_nothing_of_how_friction_was_found():
-    """What friction leaves in the contact forces does not change with the degree: no estimate would see it."""
+    """What friction leaves in the contact forces does not change with the degree: no estimate sees it."""
     solid, share = ALL[7].values
     data = galinx.compute(scene(solid, share, 1e-6, ("sif", "surface"), solve="degree = 12")).data
     assert np.all(in_plane_error(data) <= data["states/fem/estimate_sigma_XX"])

@@ -23,12 +23,13 @@ FAST = (
 )  # fmt: skip
 #: Fixtures that compute; what asks for one is not fast wherever it is.
 SLOW = {"tables_run", "map_run", "inside_run", "archives"}
-#: Tests that start programs, nothing in which depends on the version of dolfinx: what they look at is
-#: files, streams, processes, pages.
-NO_FEM = (
-    "docs/", "app/commands/test_damaged_archives.py", "app/commands/test_outputs.py", "app/console/",
-    "app/extremes/", "app/pictures/", "app/process/", "app/run/test_interruptions.py",
-    "app/run/test_random_scenes.py", "test_install.py", "test_run_sh.py",
+#: Tests of what dolfinx and PETSc do, each way to use them once: meshes, spaces, factors, and every kind
+#: of scene on one rank and on two. What a result is made of then does not depend on their version.
+FEM = (
+    "app/commands/test_compute.py", "app/results/test_paraview.py", "app/run/test_fixed_degree.py",
+    "app/run/test_found_ends.py", "app/run/test_inside.py", "app/run/test_layers_fem.py",
+    "app/run/test_over_time.py", "app/run/test_own_pressure.py", "app/run/test_sweeps.py", "meshes/",
+    "mpi/", "solvers/fem/",
 )  # fmt: skip
 
 
@@ -37,7 +38,7 @@ def pytest_collection_modifyitems(items):
         place = item.path.relative_to(Path(__file__).parent).as_posix()
         if place.startswith(FAST) and not SLOW & set(item.fixturenames):
             item.add_marker("fast")
-        elif not place.startswith(NO_FEM):
+        elif place.startswith(FEM):
             item.add_marker("fem")
 
 

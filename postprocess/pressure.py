@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solveh_banded
-from scipy.special import gammaln
+from scipy.special import gammaln, roots_legendre
 
 from galinx.solvers.contact import under_punch
 
@@ -204,7 +204,7 @@ def contact_recovery(
     raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
     raw[:, inside] /= chart.surface_stretch(at)
 
-    t = (np.polynomial.legendre.leggauss(degree)[0] + 1.0) / 2.0
+    t = (roots_legendre(degree)[0] + 1.0) / 2.0
     d_left, d_right, stretch = chart.under_punch(
         start[:, None] - s[0] + length[:, None] * t,
         s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
@@ -232,7 +232,7 @@ def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[n
         forces: at the nodes, (n, ...).
     """
     degree = facets.shape[1] - 1
-    t, w = np.polynomial.legendre.leggauss(degree + 1)
+    t, w = roots_legendre(degree + 1)
     nodes = reference_nodes(s, facets)
     basis = lagrange(nodes, (t + 1.0) / 2.0)
     unit_mass = basis.T * (w / 2.0) @ basis

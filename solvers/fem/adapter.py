@@ -27,7 +27,9 @@ def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1
     # FFCx names this variant in the element when it compiles, not when it finds the form in its cache;
     # named here, the form has one key in both cases.
     element = ufl.VectorElement("Lagrange", ufl.quadrilateral, degree, variant="equispaced")
-    return dolfinx.mesh.create_mesh(comm, cells, points, ufl.Mesh(element))
+    # An array would be refused first, with a message that prints all of it.
+    table = dolfinx.cpp.graph.AdjacencyList_int64(np.asarray(cells, dtype=np.int64))
+    return dolfinx.mesh.create_mesh(comm, table, points, ufl.Mesh(element))
 
 
 def tag_facets(mesh: Any, edges: NDArray, tags: NDArray) -> Any:

@@ -8,8 +8,9 @@ dense matrices: at degree 10 about seven times faster than a loop over points an
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
+from scipy.special import roots_legendre
 
 from galinx.solvers.fem import cells
 from galinx.solvers.fem.chart import Contracted
@@ -38,7 +39,7 @@ class Element:
         grid, nodes = cells.tensor_order(reference)
         # The integrand is not polynomial in a conformal chart; so many points, exact to two degrees above
         # the product of gradients, integrate it as well as the space can tell.
-        points, weights = leggauss(len(nodes) + 1)
+        points, weights = roots_legendre(len(nodes) + 1)
         self._points, weights = (points + 1.0) / 2.0, weights / 2.0
         self._weights = np.outer(weights, weights)
         value, slope = lagrange(nodes, self._points)

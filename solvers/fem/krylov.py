@@ -11,6 +11,9 @@ from galinx.solvers.errors import SolveError
 LEAST = 1e-13
 LIMIT = 120
 
+#: Numbers of frictions up to which each is solved for itself; beyond, all share a triangular form.
+_FEW = 40
+
 
 class KrylovSpace:
     """The space of (T, R₀), by Arnoldi's method.
@@ -83,6 +86,11 @@ class KrylovSpace:
     def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
         """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
         m = len(self.fields) - 1
+        if len(g) <= _FEW:
+            first = np.zeros((len(g), m, 1))
+            first[:, 0] = self._size
+            y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], first)[..., 0]
+            return y, self._residuals(g, y)
         T, Q = self._triangle
         if len(T) != m:  # once for all g: Schur's form keeps the digits that eigenvectors may lose
             T, Q = self._triangle = schur(self._H[:m, :m], output="complex")
@@ -91,5 +99,10 @@ class KrylovSpace:
             solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])
             solved[i] /= 1.0 - g * T[i, i]
         y = (Q @ solved).real.T
+        return y, self._residuals(g, y)
+
+    def _residuals(self, g: NDArray, y: NDArray) -> NDArray[np.float64]:
+        """Of coefficients (states, m), relative, (states,)."""
+        m = y.shape[1]
         size = np.maximum(np.linalg.norm(y, axis=1), self._beside)
-        return y, np.abs(g * self._H[m, m - 1] * y[:, -1]) / size
+        return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / size)

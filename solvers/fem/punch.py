@@ -14,6 +14,7 @@ Of a contact whose ends are found P is a combination of some shapes, each with a
 from collections.abc import Sequence
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -234,8 +235,9 @@ class SlidingPunch(Punch):
     def _contact_motion(self, u: PETSc.Vec) -> tuple[float, float]:
         """Mean displacement of the contact nodes."""
         nodes, comm = self.space.contact, self.space.comm
-        mine = np.array([u.getValues(nodes.dofs(i)).sum() for i in (0, 1)])
-        return tuple((comm.allreduce(mine) / len(nodes.s)).tolist())
+        total = np.array([u.getValues(nodes.dofs(i)).sum() for i in (0, 1)])
+        comm.Allreduce(MPI.IN_PLACE, total)
+        return tuple((total / len(nodes.s)).tolist())
 
     def _without(self, u: PETSc.Vec, t: tuple[float, float]) -> PETSc.Vec:
         """u less the motion t of the whole body."""
@@ -246,12 +248,13 @@ class SlidingPunch(Punch):
     def _reactions(self, u: PETSc.Vec) -> NDArray[np.float64]:
         """Consistent forces in X and Y at the contact nodes, (2, n), the same on every rank."""
         nodes, comm = self.space.contact, self.space.comm
-        mine = np.zeros((2, len(nodes.s)))
+        found = np.zeros((2, len(nodes.s)))
         w = self._without(u, self._contact_motion(u))
         for i, rows in enumerate(self._rows):
             force = rows.createVecLeft()
             rows.mult(w, force)
-            mine[i, nodes.owned] = force.array_r
+            found[i, nodes.owned] = force.array_r
             force.destroy()
         w.destroy()
-        return comm.allreduce(mine)
+        comm.Allreduce(MPI.IN_PLACE, found)
+        return found

@@ -264,6 +264,10 @@ class Space:
             H = self.form.density(response)
         return part(H, self.contracted(response), corners)
 
+    def nodes_on(self, part: str) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
+        return self._owned_blocks(part)
+
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])
         return blocks[blocks < self.V.dofmap.index_map.size_local]

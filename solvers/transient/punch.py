@@ -90,7 +90,10 @@ class StartingPunch:
         a, v0 = found[:, :-1], found[:, -1]
         t = self._end / self._steps * np.arange(1, self._steps + 1)
         normal = a @ basis.moments
-        left, right = -(a @ basis.ends.T).T / 2.0
+        # Inertia adds r log r to what the polynomials tell at a distance r from an end, so that their
+        # sum there converges with the square of their number; half of them say how.
+        whole, half = (a[:, :n] @ basis.ends[:, :n].T for n in (self._terms, self._terms // 2))
+        left, right = -(whole + (whole - half) / 3.0).T / 2.0
         return Course(t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right)
 
     def _matrices(self, basis: "_Basis", g: float) -> NDArray[np.complex128]:

@@ -18,12 +18,14 @@ from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
 from galinx.app.run.methods import METHODS
 from galinx.app.run.sinks import Nowhere, Sink
+from galinx.app.run.over_time import follow
 from galinx.app.run.slider import slide
 from galinx.app.run.solve import Work
 from galinx.app.run.told import of_scene
 from galinx.app.run.versions import libraries, machine
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
+from galinx.postprocess.compare import comparisons
 from galinx.postprocess.journal import Journal, Part
 from galinx.postprocess.quantities import column, runs, stresses
 
@@ -67,6 +69,14 @@ def compute(
             for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
                 sink.put(path, values)
     judge = Judge(scene, plan.rules)
+    if plan.starts and ranks.is_root():
+        progress.say("starts from rest")
+        found = follow(
+            plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts from rest")
+        )
+        for path, values in found.items():
+            sink.put(path, values)
+        judge.see(comparisons(found, scene.punch.load, plan.rules))
     if plan.methods:
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         collector = Collector(sink, judge, progress, journal, plan, clock)

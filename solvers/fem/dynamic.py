@@ -58,6 +58,11 @@ class Motion:
         nodes = self._on("contact")
         return nodes[np.argsort(self.space.coordinates[nodes, 0])]
 
+    @property
+    def X(self) -> NDArray[np.float64]:
+        """Where these are, over a."""
+        return np.asarray(self.space.coordinates[self.contact, 0])
+
     @cached_property
     def far(self) -> NDArray[np.int64]:
         """Nodes of the far boundary."""

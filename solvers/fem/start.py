@@ -42,14 +42,16 @@ class Steps:
         t: times over a/c_s, (steps,).
         v0: indentation over N/(2μ).
         forces: consistent nodal forces of σ_YY at the contact nodes from left to right, (steps, nodes).
-        work: that punch and friction did on the solid until then, over N²/(4μ).
-        energy: kinetic and strain energy of the solid with what the moving frame carries in through
-            its ends, over N²/(4μ): equal to the work.
+        work: of the contact's forces by velocities seen from the punch, over N²/(4μ).
+        energy: of the motion seen from the punch, (u̇M u̇ + u K u)/2 over N²/(4μ), which is that work: what
+            is carried along is skew, and K has ρ(V u,X)²/2 taken away.
     """
 
     t: NDArray[np.float64]
     v0: NDArray[np.float64]
     forces: NDArray[np.float64]
+    work: NDArray[np.float64]
+    energy: NDArray[np.float64]
 
 
 class StartFromRest:
@@ -100,9 +102,10 @@ class StartFromRest:
         h, size, c = self._h, self._motion.size, self._motion.response.c
         u, w, a = (np.zeros(size) for _ in range(3))
         forces = np.zeros((steps, len(self._Y)))
-        v0 = np.zeros(steps)
+        v0, done, energy = (np.zeros(steps) for _ in range(3))
+        power = 0.0
         for n in range(steps):
-            velocities, accelerations = [w], [a]
+            velocities, accelerations, powers = [w], [a], [power]
             for weights, time in zip(_A, _TIMES):
                 before = u + h * sum(of * one for of, one in zip(weights, velocities))
                 given = w + h * sum(of * one for of, one in zip(weights, accelerations))
@@ -110,10 +113,13 @@ class StartFromRest:
                 now, r = self._stage(before, given, g(at), load(at))
                 velocities.append(now)
                 accelerations.append((now - given) / (_γ * h))
+                powers.append(float(r @ (now[self._Y] + g(at) * now[self._Y - 1])))
             u = before + _γ * h * now
             w, a, forces[n] = now, accelerations[-1], r
-            v0[n] = -u[self._Y[0]]
-        return Steps(h * np.arange(1, steps + 1), v0, forces)
+            v0[n], power = -u[self._Y[0]], powers[-1]
+            done[n] = h * np.dot([*_A[-1], _γ], powers)
+            energy[n] = (w @ (self._M @ w) + u @ (self._K @ u)) / 2.0
+        return Steps(h * np.arange(1, steps + 1), v0, forces, np.cumsum(done), energy)
 
     def _stage(
         self, before: NDArray, given: NDArray, g: float, load: float

@@ -1,0 +1,125 @@
+"""Starts from rest of a scene: both methods, one speed after the other."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from galinx.app.errors import finite_elements_installed
+from galinx.app.plan.over_time import Level, Starts
+from galinx.clock import Clock
+from galinx.meshes.charts import Physical
+from galinx.meshes.rings import TAGS
+from galinx.postprocess.over_time import told
+from galinx.postprocess.quantities import over_time as rows
+from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.punch import StartingPunch, smooth
+
+#: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
+_STEP, _TERMS = 0.2, 24
+
+#: Centre of the pressure over a that is as good as none.
+_LEAN = 1e-2
+#: What both methods tell.
+_TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
+
+_Found = dict[str, NDArray[np.float64]]
+
+
+def follow(
+    starts: Starts, solid: Isotropic, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
+) -> _Found:
+    """What happens over time in each start: datasets by path.
+
+    Raises:
+        SolveError: finite elements could not be solved.
+    """
+    t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
+    found: list[_Found] = []
+    for c, of_speed in starts.g.items():
+        by_sie = _integral_equation(starts, solid, c, clock) if SIE in starts.methods else None
+        by_fem = _finite_elements(starts, solid, c, clock) if FEM in starts.methods else None
+        for i, g in enumerate(of_speed):
+            steady = FlatPunch(solid.response(c), g)
+            one = {
+                rows.SPEED.path: np.array(c), rows.RATIO.path: np.array(g),
+                rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
+                rows.STEADY_K_I.path: np.array(steady.K_I),
+            }  # fmt: skip
+            for method in (by_sie, by_fem):
+                one |= method[i] if method else {}
+            found.append(one)
+            done(len(found), starts.count)
+    joined = {path: np.array([one[path] for one in found]) for path in found[0]}
+    return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+
+
+def _integral_equation(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+    half = starts.steps // 2
+    finer = int(np.ceil(starts.end / half / _STEP - 1e-9))
+    response = solid.response(c)
+    with clock("integral equation in time"):
+        punch = StartingPunch(response.k, solid.limit(), response, starts.end, half * finer, _TERMS)
+        found = []
+        for g in starts.g[c]:
+            course = punch.course(g, lambda t: smooth(t, starts.ramp))
+            values = course.v0, course.centre, course.K_left, course.K_right
+            found.append(_named(SIE, [value[finer - 1 :: finer] for value in values]))
+    return found
+
+
+def _named(method: str, values: Any) -> _Found:
+    return {row[method].path: value for row, value in zip(_TOLD, values)}
+
+
+def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+    coarse, fine = (
+        _at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c)
+    )
+    load = smooth(coarse[0][1], starts.ramp)
+    found = []
+    for (before, _, _), (values, _, energies) in zip(coarse, fine):
+        every_other = [value[1::2] for value in values]
+        changes = []
+        for row, one, other in zip(_TOLD, before, every_other):
+            share = load if row is rows.CENTRE else 1.0
+            size = max(float(np.abs(other * share).max()), _LEAN if row is rows.CENTRE else 0.0)
+            changes.append(float(np.abs((one - other) * share).max()) / size)
+        found.append(
+            _named(FEM, every_other)
+            | {
+                rows.ESTIMATE.path: np.array(max(changes)),
+                rows.WORK.path: energies[0][1::2], rows.ENERGY.path: energies[1][1::2],
+            }
+        )  # fmt: skip
+    return found
+
+
+def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
+    """Values, times, and work with energy of each friction at a speed."""
+    with clock("import of dolfinx"), finite_elements_installed():
+        from galinx.solvers.fem.distributed import distribute
+        from galinx.solvers.fem.dynamic import Motion
+        from galinx.solvers.fem.space import Space
+        from galinx.solvers.fem.start import StartFromRest
+    response = solid.response(c)
+    with clock("mesh"):
+        mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
+    motion = Motion(Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock), response)
+    solver = StartFromRest(motion, starts.end / level.steps, clock)
+    found = []
+    with clock("steps in time"):
+        for g in starts.g[c]:
+            run = solver.run(
+                level.steps, lambda t, g=g: g, lambda t: float(smooth(t, starts.ramp))  # type: ignore[misc]
+            )
+            steady = FlatPunch(response, g)
+            read = told(motion.X, run.forces, steady.α, steady.β)
+            values = run.v0, read.centre, read.K_left, read.K_right
+            found.append((values, run.t, (run.work, run.energy)))
+    solver.destroy()
+    return found

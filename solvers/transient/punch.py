@@ -8,7 +8,7 @@ stages (Lubich), of order five, so that Laplace's transform of the response is a
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import exp, lgamma, log, pi
+from math import ceil, exp, lgamma, log, pi
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -26,7 +26,9 @@ _EVEN = 0.125
 #: Steps of the double exponential rule along what two shifted contacts have in common, and its half-length.
 _STEPS, _LENGTH = 121, 3.4
 #: Rounding that the scaling of steps back in time may enlarge.
-_SCALED = 1e-12
+_SCALED = 1e-15
+#: Length of the quadrature over what is told of it: near its end rounding is enlarged most.
+_LONGER = 1.5
 
 
 def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
@@ -86,7 +88,7 @@ class StartingPunch:
         whole[:, :-1, -1] = basis.tested
         whole[:, -1, 0] = basis.force
         answers = np.linalg.solve(whole, forcing[..., None])[..., 0]
-        found = self._scheme.convolved(answers, load)
+        found = self._scheme.convolved(answers, load)[: self._steps]
         a, v0 = found[:, :-1], found[:, -1]
         t = self._end / self._steps * np.arange(1, self._steps + 1)
         normal = a @ basis.moments
@@ -107,7 +109,8 @@ class StartingPunch:
 
     @cached_property
     def _scheme(self) -> "Radau":
-        return Radau(self._end, self._steps)
+        longer = ceil(_LONGER * self._steps)
+        return Radau(self._end / self._steps * longer, longer)
 
     @cached_property
     def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

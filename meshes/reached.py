@@ -5,6 +5,7 @@ be held there and nothing has to absorb them.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, log
 
 import numpy as np
@@ -38,14 +39,14 @@ class Reached:
         levels = max(ceil(log(self.innermost) / log(_RATIO)), 1)
         beside, _ = corner(_SQUARE, Refinement(levels, _RATIO, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
-        squares = [part + [edge, 0.0] for edge in (-1.0, 1.0) for part in (beside, mirrored)]
+        squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
         outwards = np.concatenate([[0.0, 1.0], _even(2.0, self.half_width, self.size)])
         X = np.concatenate([-outwards[:0:-1], outwards])
         Y = -np.concatenate([[0.0], _even(1.0, self.depth, self.size)])
         boxes = np.array([
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-            for x0, x1 in zip(X[:-1], X[1:])
-            for y1, y0 in zip(Y[:-1], Y[1:])
+            for x0, x1 in pairwise(X)
+            for y1, y0 in pairwise(Y)
             if y0 < -1.0 or abs(x0 + x1) > 4.0
         ])  # fmt: skip
         return _tagged(np.concatenate([boxes, *squares]), float(X[-1]))

@@ -38,7 +38,9 @@ def told(X: NDArray, forces: NDArray, α: float, β: float) -> Told:
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
     """
     a = forces @ _tests(X, α, β, MOMENTS)
-    with np.errstate(invalid="ignore"):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
+    with np.errstate(
+        invalid="ignore", divide="ignore"
+    ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
         r, w = roots_jacobi(_POINTS, α, β)
     known = np.column_stack([np.eye(MOMENTS, POLYNOMIALS), _tests(r, α, β, MOMENTS).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(known, a.T, rcond=None)[0]
@@ -56,7 +58,7 @@ def _tests(X: NDArray, α: float, β: float, count: int) -> NDArray[np.float64]:
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:
-    """r log r of the distances from both ends, (2, points): what inertia adds to the smooth factor there."""
+    """r log r of the distances from both ends, (2, points): what inertia adds there."""
     return np.array([xlogy(r, r) for r in (1.0 + X, 1.0 - X)])
 
 

@@ -90,9 +90,9 @@ class Starts:
             for c in self.g:
                 _, level = self.levels(solid, c)
                 lines.append(
-                    f"finite elements in time at c = {c:g} (over c_s): {what}, {level.steps} steps, degree "
-                    f"{level.degree}, about {level.unknowns} unknowns; one of a degree less and twice the step "
-                    "measures the error"
+                    f"finite elements in time at c = {c:g} (over c_s): {what}, {level.steps} steps, "
+                    f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
+                    "twice the step measures the error"
                 )
         return lines
 
@@ -143,7 +143,9 @@ def starts(scene: Scene) -> Starts | None:
         )
     limit = scene.solid.limit()
     if fast := [f"{c:g}" for c, _ in pairs if c >= limit]:
-        raise BadInput(f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)")
+        raise BadInput(
+            f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)"
+        )
     g: dict[float, tuple[float, ...]] = {}
     for c, ratio in pairs.tolist():
         g[c] = (*g.get(c, ()), ratio)
@@ -158,9 +160,9 @@ def starts(scene: Scene) -> Starts | None:
             _, level = found.levels(scene.solid, c)
             if level.unknowns > LARGEST:
                 raise BadInput(
-                    f"time.end = {scene.time.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far as "
-                    f"waves come that are back by then, expected at most {LARGEST}: take an earlier end, a "
-                    "larger solve.tolerance, or a smaller Poisson's ratio"
+                    f"time.end = {scene.time.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
+                    f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
+                    "end, a larger solve.tolerance, or a smaller Poisson's ratio"
                 )
     return found
 

@@ -69,9 +69,10 @@ def expense(plan: Plan) -> str:
     positions = sum(len(values) for values in plan.positions.values())
     archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers + positions))}"
     if not plan.fem:
-        seconds = _in_time(plan) + cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
+        seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
         )  # fmt: skip
+        seconds += _in_time(plan)
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
@@ -82,7 +83,13 @@ def expense(plan: Plan) -> str:
     most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
     numbers = max(CHUNK_NUMBERS, together)
     memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
-    parts = {"start": cost.START, "starts from rest": _in_time(plan), "finite elements": speeds, "states": states, "stresses inside": inside}
+    parts = {
+        "start": cost.START,
+        "starts from rest": _in_time(plan),
+        "finite elements": speeds,
+        "states": states,
+        "stresses inside": inside,
+    }
     told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
     total = sum(parts.values())
     return f"about {total:.2g} s ({told}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"

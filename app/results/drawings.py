@@ -5,7 +5,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures import angles, film, friction, inside, numerics, over_time, slider, surface, sweep
+from galinx.app.pictures import (
+    angles,
+    film,
+    friction,
+    inside,
+    numerics,
+    over_time,
+    slider,
+    surface,
+    sweep,
+)
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
 from galinx.app.pictures.files import FILM, Files, Written

@@ -17,8 +17,8 @@ from galinx.app.plan.words import lines
 from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
 from galinx.app.run.methods import METHODS
-from galinx.app.run.sinks import Nowhere, Sink
 from galinx.app.run.over_time import follow
+from galinx.app.run.sinks import Nowhere, Sink
 from galinx.app.run.slider import slide
 from galinx.app.run.solve import Work
 from galinx.app.run.told import of_scene

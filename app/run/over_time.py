@@ -1,6 +1,7 @@
 """Starts from rest of a scene: both methods, one speed after the other."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
 #: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
@@ -31,13 +33,14 @@ _Found = dict[str, NDArray[np.float64]]
 
 
 def follow(
-    starts: Starts, solid: Isotropic, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
+    starts: Starts, solid: Solid, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
 ) -> _Found:
     """What happens over time in each start: datasets by path.
 
     Raises:
         SolveError: finite elements could not be solved.
     """
+    assert isinstance(solid, Isotropic)  # what the plan has made sure of
     t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
     found: list[_Found] = []
     for c, of_speed in starts.g.items():
@@ -77,9 +80,7 @@ def _named(method: str, values: Any) -> _Found:
 
 
 def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
-    coarse, fine = (
-        _at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c)
-    )
+    coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = smooth(coarse[0][1], starts.ramp)
     found = []
     for (before, _, _), (values, _, energies) in zip(coarse, fine):
@@ -99,6 +100,14 @@ def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -
     return found
 
 
+def _constant(g: float, _: float) -> float:
+    return g
+
+
+def _share(ramp: float, t: float) -> float:
+    return float(smooth(np.array(t), ramp))
+
+
 def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
     """Values, times, and work with energy of each friction at a speed."""
     with clock("import of dolfinx"), finite_elements_installed():
@@ -114,9 +123,7 @@ def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: C
     found = []
     with clock("steps in time"):
         for g in starts.g[c]:
-            run = solver.run(
-                level.steps, lambda t, g=g: g, lambda t: float(smooth(t, starts.ramp))  # type: ignore[misc]
-            )
+            run = solver.run(level.steps, partial(_constant, g), partial(_share, starts.ramp))
             steady = FlatPunch(response, g)
             read = told(motion.X, run.forces, steady.α, steady.β)
             values = run.v0, read.centre, read.K_left, read.K_right

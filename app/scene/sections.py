@@ -170,7 +170,8 @@ _TIME_KEYS = {
         "auto", '`"auto"`: by solve.tolerance and load_ramp',
     ),
     "load_ramp": Key(
-        Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s", 3.0,
+        Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
+        3.0,
         "N times 10s³ - 15s⁴ + 6s⁵, s = t/load_ramp",
     ),
 }  # fmt: skip

@@ -6,8 +6,8 @@ import numpy as np
 
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.over_time import TIME
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.slider import SLIDER
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.solvers.parameters import parameters, values

@@ -55,7 +55,12 @@ def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -
             axis.plot(t, start.curves[n], color=look.colour, linestyle=look.line)
             if start.beside:
                 axis.plot(
-                    t[::every], start.beside[n][::every], "o", color=look.colour, markersize=2.5, mfc="none"
+                    t[::every],
+                    start.beside[n][::every],
+                    "o",
+                    color=look.colour,
+                    markersize=2.5,
+                    mfc="none",
                 )
             if n == 0:
                 axis.axhline(start.steady, color=look.colour, linewidth=0.4, linestyle=":", zorder=0)

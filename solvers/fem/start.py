@@ -1,10 +1,10 @@
 """A flat punch that is pressed on and slides from rest: finite elements in time.
 
-In the frame of the punch M ü - 2c B u̇ + K u are the forces of the contact. Velocities w = u̇ are stepped by
-a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order (ESDIRK4(3)6L[2]SA
-of Kennedy and Carpenter), stiffly accurate and L-stable: with the matrix S = M - 2cγh B + (γh)² K each stage
-is S w = b + γh·forces. Under the punch w = -v̇₀ along Y and the tangential forces are g times the normal
-ones, r, so that with the normal reactions P of unit tangential forces ::
+In the frame of the punch M ü - 2c B u̇ + K u are the forces of the contact. Velocities w = u̇ are
+stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order
+(ESDIRK4(3)6L[2]SA of Kennedy and Carpenter), stiffly accurate and L-stable: with the matrix
+S = M - 2cγh B + (γh)² K each stage is S w = b + γh·forces.
+Under the punch w = -v̇₀ along Y and the tangential forces are g times the normal ones, r, so that with the normal reactions P of unit tangential forces ::
 
     (I - g P) γh r = ρ + v̇₀ ρ_v,      Σ r = -2 (share of the load)
 
@@ -89,9 +89,7 @@ class StartFromRest:
         self._fields[self._Y, -1] = -1.0
         self._reactions = self._rows @ self._fields
 
-    def run(
-        self, steps: int, g: Callable[[float], float], load: Callable[[float], float]
-    ) -> Steps:
+    def run(self, steps: int, g: Callable[[float], float], load: Callable[[float], float]) -> Steps:
         """March from rest.
 
         Args:
@@ -99,7 +97,7 @@ class StartFromRest:
             g: σ_XY/σ_YY under the punch at a time.
             load: share of N at a time, with load(0) = 0 and no slope there.
         """
-        h, size, c = self._h, self._motion.size, self._motion.response.c
+        h, size = self._h, self._motion.size
         u, w, a = (np.zeros(size) for _ in range(3))
         forces = np.zeros((steps, len(self._Y)))
         v0, done, energy = (np.zeros(steps) for _ in range(3))
@@ -119,7 +117,7 @@ class StartFromRest:
             v0[n], power = -u[self._Y[0]], powers[-1]
             done[n] = h * np.dot([*_A[-1], _γ], powers)
             energy[n] = (w @ (self._M @ w) + u @ (self._K @ u)) / 2.0
-        return Steps(h * np.arange(1, steps + 1), v0, forces, np.cumsum(done), energy)
+        return Steps(np.arange(1.0, steps + 1.0) * h, v0, forces, np.cumsum(done), energy)
 
     def _stage(
         self, before: NDArray, given: NDArray, g: float, load: float

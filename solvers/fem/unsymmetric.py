@@ -63,7 +63,7 @@ class UnsymmetricFactor:
             else:
                 found = np.column_stack([self.solve(column) for column in b.T])
         if not self._checked or b.ndim == 2:
-            left = np.linalg.norm(self._A @ found - b) / max(np.linalg.norm(b), 1e-300)
+            left = float(np.linalg.norm(self._A @ found - b)) / max(float(np.linalg.norm(b)), 1e-300)
             if np.any(b) and not left <= _RESIDUAL:
                 raise SolveError(f"a linear solve left |b - Ax|/|b| = {left:.3g}, expected {_RESIDUAL:g}")
             self._checked = True

@@ -5,9 +5,9 @@ speed C = c + is/k (lengths over a, speeds over c_s, times over a/c_s)::
 
     v̂ = [n(C)/|k|] σ̂_YY + [i q(C)/k] σ̂_XY
 
-The transform back to X is taken along the two branch cuts of the symbols, which begin at k_d = is/(c_d - c)
-and k_s = is/(1 - c) and are turned so that the integrand decays, with the residue of the Rayleigh wave, and
-that of a wave which leaks into the solid where the cuts have it between them.
+The transform back to X is taken along the two branch cuts of the symbols, which begin at
+k_d = is/(c_d - c) and k_s = is/(1 - c) and are turned so that the integrand decays, with the residue of
+the Rayleigh wave, and that of a wave which leaks into the solid where the cuts have it between them.
 """
 
 from dataclasses import dataclass
@@ -75,7 +75,7 @@ class Kernel:
     def _jump(
         self, start: complex, along: complex, v: NDArray, s: complex, of_shear: bool
     ) -> NDArray[np.complex128]:
-        """What both symbols lose across a cut, from right to left, at distances v from where it begins."""
+        """What both symbols lose across a cut, right to left, at distances v from its end."""
         k = start + along * v
         C = self.c + 1j * s / k
         bs = self._root(k, s, along, 1.0, v if of_shear else None) / k
@@ -93,7 +93,7 @@ class Kernel:
     def _root(
         self, k: NDArray, s: complex, along: complex, slow: float, v: NDArray | None
     ) -> NDArray[np.complex128]:
-        """√(k² - slow (kC)²) with cuts along ``along`` above and straight down below; right of its own."""
+        """√(k² - slow (kC)²) with cuts along ``along`` above and straight down below."""
         if slow == 0.0:
             return np.asarray(k, dtype=complex)
         fast = 1.0 / sqrt(slow)

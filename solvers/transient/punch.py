@@ -1,8 +1,8 @@
 """A flat punch that is pressed on and slides from rest at constant speed: integral equation in time.
 
-The pressure is (1 - X)^α (1 + X)^β Σ a_j(t) P_j(X), its exponents those of steady motion, tested with the same
-of the mirror image. What depends on time is solved as a convolution: quadrature by Radau IIA of three
-stages (Lubich), of order five, so that Laplace's transform of the response is all that is needed.
+The pressure is (1 - X)^α (1 + X)^β Σ a_j(t) P_j(X), its exponents those of steady motion, tested with
+the same of the mirror image. What depends on time is solved as a convolution: quadrature by Radau IIA of
+three stages (Lubich), of order five, so that Laplace's transform of the response is all that is needed.
 """
 
 from collections.abc import Callable
@@ -23,7 +23,7 @@ from galinx.solvers.transient.kernel import Kernel
 _NEAR, _FAR, _POINTS = 24, 5, 8
 #: Largest width of a panel.
 _EVEN = 0.125
-#: Steps of the double exponential rule along what two shifted contacts have in common, and its half-length.
+#: Steps and half-length of the double exponential rule along what two shifted contacts have in common.
 _STEPS, _LENGTH = 121, 3.4
 #: Rounding that the scaling of steps back in time may enlarge.
 _SCALED = 1e-15
@@ -90,7 +90,7 @@ class StartingPunch:
         answers = np.linalg.solve(whole, forcing[..., None])[..., 0]
         found = self._scheme.convolved(answers, load)[: self._steps]
         a, v0 = found[:, :-1], found[:, -1]
-        t = self._end / self._steps * np.arange(1, self._steps + 1)
+        t = np.arange(1.0, self._steps + 1.0) * (self._end / self._steps)
         normal = a @ basis.moments
         # Inertia adds r log r to what the polynomials tell at a distance r from an end, so that their
         # sum there converges with the square of their number; half of them say how.
@@ -185,7 +185,9 @@ class _Basis:
 
 
 def _gauss_jacobi(terms: int, α: float, β: float) -> tuple[NDArray, NDArray]:
-    with np.errstate(invalid="ignore"):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
+    with np.errstate(
+        invalid="ignore", divide="ignore"
+    ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
         X, w = roots_jacobi(terms, α, β)
     return X, w
 

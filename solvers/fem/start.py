@@ -4,7 +4,8 @@ In the frame of the punch M ü - 2c B u̇ + K u are the forces of the contact. V
 stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order
 (ESDIRK4(3)6L[2]SA of Kennedy and Carpenter), stiffly accurate and L-stable: with the matrix
 S = M - 2cγh B + (γh)² K each stage is S w = b + γh·forces.
-Under the punch w = -v̇₀ along Y and the tangential forces are g times the normal ones, r, so that with the normal reactions P of unit tangential forces ::
+Under the punch w = -v̇₀ along Y and the tangential forces are g times the normal ones, r, so that with the
+normal reactions P of unit tangential forces ::
 
     (I - g P) γh r = ρ + v̇₀ ρ_v,      Σ r = -2 (share of the load)
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 #: Gauss's points of a panel along a cut, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8
 #: Decay after which nothing is left of an integrand, and how near to a cut's end it begins.
-_GONE, _NEAR = 32.0, 1e-6
+_GONE, _NEAR = 32.0, 1e-8
 #: Directions of the cuts that are tried, over the least and the largest useful angle.
 _DIRECTIONS = np.linspace(0.3, 1.3, 21)
 

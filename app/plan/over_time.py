@@ -23,8 +23,9 @@ _STEP, _OF_RAMP = 0.2, 12
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Steps by which the end is later for waves.
 _EARLIER = 16
-#: Largest side of a cell over a.
-_SIZE = 2.0
+#: Largest side of a cell over a; and how much slower than the Rayleigh wave a punch has to be for that:
+#: the wave ahead of a faster one is shorter.
+_SIZE, _SLOW = 2.0, 0.25
 
 
 #: Rules by which starts are judged: of both methods, and of finite elements.
@@ -119,7 +120,8 @@ class Starts:
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
         depth = sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
         innermost = 10.0 ** -(1.2 * digits + 1.0)
-        mesh = Reached(max(ahead, 3.0), max(depth, 2.0), _SIZE, innermost)
+        size = _SIZE * min(1.0, (solid.limit() - c) / _SLOW) ** 0.5
+        mesh = Reached(max(ahead, 3.0), max(depth, 2.0), size, innermost)
         return Level(mesh, degree - 1, self.steps // 2), Level(mesh, degree, self.steps)
 
 

@@ -1,4 +1,4 @@
-"""Starts from rest: integral equation and finite elements in time against what is known, and each other."""
+"""Starts from rest by both methods against what is known, and against each other."""
 
 import os
 
@@ -32,7 +32,7 @@ def integral_equation(ν, c, g, end, steps, ramp=3.0, terms=16):
 class Started:
     """Finite elements of one speed."""
 
-    def __init__(self, ν, c, end, steps, degree=6, innermost=1e-4):
+    def __init__(self, ν, c, end, steps, degree=7, innermost=1e-5):
         self.response, self.end, self.steps = solid(ν).response(c), end, steps
         fast, T = self.response.k**-0.5, end * (1.0 + 16.0 / steps)
         mesh = Reached(1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0, 2.0, innermost).drawn()
@@ -60,14 +60,14 @@ def off(found, expected, share=1.0):
 
 
 def test_early_pressure_is_that_of_a_plane_wave():
-    """p = ρ c_d v̇₀ under all of the punch but its ends, whose waves take the load: ∫p = 2 p + O(t)."""
-    found = integral_equation(0.25, 0.0, 0.0, 0.02, 20, ramp=0.02, terms=32)
-    slow = solid().response(0.0).k
-    rate = np.gradient(found.v0, found.t, edge_order=2)
-    # In N/(2a) over a, with v₀ over N/(2μ): p = v̇₀ c_d/c_s, and all of the load is 2.
-    share = rate[4:-1] / slow**0.5 * 2.0 / (2.0 * found.load[4:-1])
-    assert np.all(share < 1.0)
-    assert np.all(share > 1.0 - 3.0 * found.t[4:-1])
+    """p = ρ c_d v̇₀ where no wave from the ends has come, so that v₀ = (c_s/c_d) ∫ load dt + O(t²)."""
+    slow, ratios = solid().response(0.0).k, []
+    for end in (0.02, 0.04):
+        found = integral_equation(0.25, 0.0, 0.0, end, 20, ramp=end, terms=24)
+        # Half of the end is ∫ load dt over the ramp.
+        ratios.append(found.v0[-1] / (slow**0.5 * end / 2.0))
+    assert abs(2.0 * ratios[0] - ratios[1] - 1.0) < 1e-3
+    assert abs(ratios[1] - 1.0) < 0.02
 
 
 def test_frictionless_start_at_rest_is_symmetric(at_speed):
@@ -117,21 +117,22 @@ def test_energy_is_the_work(at_speed):
     assert off(run.energy, run.work) < 1e-5
 
 
-def test_scheme_has_its_order():
-    """Of order four: the same mesh, steps of a half."""
-    runs = [Started(0.25, 0.6, 2.0, n, degree=4, innermost=1e-2) for n in (5, 10, 40)]
-    # The mesh reaches as far for all of them, so that only the steps differ.
-    for one in runs[1:]:
-        one.motion = runs[0].motion
-        one.solver = StartFromRest(runs[0].motion, 2.0 / one.steps)
-    coarse, fine, best = (one.run(-0.4, ramp=2.0).v0 for one in runs)
-    errors = [np.abs(v0 - best[k - 1 :: k]).max() for v0, k in ((coarse, 8), (fine, 4))]
-    assert errors[0] / errors[1] > 2.0**3
+def test_scheme_converges():
+    """The same mesh, steps of a half and a quarter: of order four where the load is smooth enough.
+
+    The ramp's third derivative jumps, so that somewhat less is seen of two halvings.
+    """
+    started, v0 = Started(0.25, 0.6, 2.0, 20, degree=6, innermost=1e-2), {}
+    for steps in (5, 20, 80):
+        started.solver = StartFromRest(started.motion, 2.0 / steps)
+        v0[steps] = started.run(-0.4, 2.0, steps).v0
+    coarse, fine = (np.abs(v0[n] - v0[80][80 // n - 1 :: 80 // n]).max() for n in (5, 20))
+    assert coarse / fine > 2.0**5
 
 
 def test_start_becomes_steady():
     """K_I and centre come to the steady state's like 1/t."""
-    ends = (40.0, 80.0)
+    ends = (30.0, 60.0)
     steady = FlatPunch(solid().response(0.3), -0.3)
     left = []
     for end in ends:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
-from galinx.postprocess.quantities import over_time
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
@@ -190,21 +189,6 @@ def _largest_pressure(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
 
 
-def _over_time(data: dict[str, Any], _: float) -> float:
-    """Over the largest of each start; the centre by the load, which is where there is hardly any."""
-    load, off = data[over_time.LOAD.path], []
-    for rows in (over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT):
-        fem, sie = (data[rows[method].path] for method in (FEM, SIE))
-        if rows is over_time.CENTRE:
-            # Where nothing leans the half-width is what it is small beside.
-            fem, sie = fem * load, sie * load
-            size = np.maximum(np.abs(sie).max(axis=1, keepdims=True), _NO_LEAN)
-        else:
-            size = np.abs(sie).max(axis=1, keepdims=True)
-        off.append((np.abs(fem - sie) / size).max())
-    return float(max(off))
-
-
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -213,8 +197,6 @@ def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
     return lambda data, _: data[row.path].max()
 
 
-#: Centre of the pressure over a that is as good as none.
-_NO_LEAN = 1e-2
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
 
@@ -307,15 +289,6 @@ RULES: Registry[Rule] = Registry(
         "estimate of sigma_XX": Rule(
             "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,), _largest(at.ESTIMATE_IN_PLANE),
             tolerances=1.0, own_pressure=True,
-        ),
-        "over time": Rule(
-            "v₀, centre times load and K_I over time against the integral equation, over the largest",
-            (over_time.LOAD, *over_time.V0.values(), *over_time.CENTRE.values(),
-             *over_time.K_I_LEFT.values(), *over_time.K_I_RIGHT.values()), _over_time, tolerances=1.0,
-        ),
-        "estimate over time": Rule(
-            "estimated error over time, over the largest", (over_time.ESTIMATE,),
-            _largest(over_time.ESTIMATE), tolerances=1.0,
         ),
         "stresses inside": Rule(
             "stresses inside, over themselves or the largest",

@@ -9,6 +9,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
+from galinx.postprocess.compare_over_time import BOTH, OF_FEM
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.isotropic import Isotropic
@@ -21,6 +22,8 @@ _TIGHTEST, _COARSEST = 1e-5, 1e-2
 _STEP, _OF_RAMP = 0.2, 12
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
+#: Lowest degree, and largest innermost cell over a, that tell the moments from which K_I is read.
+_LOWEST, _INNERMOST = 7, 1e-4
 #: Steps by which the end is later for waves.
 _EARLIER = 16
 #: Largest side of a cell over a; and how much slower than the Rayleigh wave a punch has to be for that:
@@ -28,9 +31,8 @@ _EARLIER = 16
 _SIZE, _SLOW = 2.0, 0.25
 
 
-#: Rules by which starts are judged: of both methods, and of finite elements.
-_BOTH, _OF_FEM = "over time", "estimate over time"
-IN_TIME = frozenset({_BOTH, _OF_FEM})
+#: Rules by which starts are judged.
+IN_TIME = frozenset({BOTH, OF_FEM})
 
 
 @dataclass(frozen=True)
@@ -80,8 +82,8 @@ class Starts:
     @property
     def rules(self) -> frozenset[str]:
         """Names of the rules by which what is found is judged."""
-        of_fem = {_OF_FEM} if FEM in self.methods else set()
-        return frozenset(of_fem | ({_BOTH} if of_fem and SIE in self.methods else set()))
+        of_fem = {OF_FEM} if FEM in self.methods else set()
+        return frozenset(of_fem | ({BOTH} if of_fem and SIE in self.methods else set()))
 
     def words(self, solid: Isotropic) -> list[str]:
         """What is done, one line a method."""
@@ -112,14 +114,14 @@ class Starts:
     def levels(self, solid: Isotropic, c: float) -> tuple[Level, Level]:
         """A coarser level with half as many steps, which tells the error, and that which is archived."""
         digits = -log10(self.tolerance)
-        degree = ceil(2.5 + 1.75 * digits)
+        degree = max(ceil(2.5 + 1.75 * digits), _LOWEST)
         fast = 1.0 / sqrt(solid.response(c).k)
         # A wave that goes out to the far boundary comes back to a punch that has moved. Implicit steps
         # let it be felt a little earlier.
         T = self.end * (1.0 + _EARLIER / self.steps)
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
         depth = sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
-        innermost = 10.0 ** -(1.2 * digits + 1.0)
+        innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         size = _SIZE * min(1.0, (solid.limit() - c) / _SLOW) ** 0.5
         mesh = Reached(max(ahead, 3.0), max(depth, 2.0), size, innermost)
         return Level(mesh, degree - 1, self.steps // 2), Level(mesh, degree, self.steps)

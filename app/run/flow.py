@@ -70,13 +70,7 @@ def compute(
                 sink.put(path, values)
     judge = Judge(scene, plan.rules)
     if plan.starts and ranks.is_root():
-        progress.say("starts from rest")
-        found = follow(
-            plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts from rest")
-        )
-        for path, values in found.items():
-            sink.put(path, values)
-        judge.see(comparisons(found, scene.punch.load, plan.rules))
+        _put_starts(sink, plan, judge, progress, clock)
     if plan.methods:
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         collector = Collector(sink, judge, progress, journal, plan, clock)
@@ -95,6 +89,16 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:
         sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
+
+
+def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
+    """Starts from rest; one rank does them all."""
+    assert plan.starts
+    progress.say("starts from rest")
+    found = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
+    for path, values in found.items():
+        sink.put(path, values)
+    judge.see(comparisons(found, plan.body.load, plan.rules))
 
 
 def _parts(

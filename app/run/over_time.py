@@ -13,6 +13,7 @@ from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
+from galinx.postprocess.compare_over_time import TOLD, largest_change
 from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
@@ -23,11 +24,6 @@ from galinx.solvers.transient.punch import StartingPunch, smooth
 
 #: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
 _STEP, _TERMS = 0.2, 24
-
-#: Centre of the pressure over a that is as good as none.
-_LEAN = 1e-2
-#: What both methods tell.
-_TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
 _Found = dict[str, NDArray[np.float64]]
 
@@ -76,7 +72,7 @@ def _integral_equation(starts: Starts, solid: Isotropic, c: float, clock: Clock)
 
 
 def _named(method: str, values: Any) -> _Found:
-    return {row[method].path: value for row, value in zip(_TOLD, values)}
+    return {row[method].path: value for row, value in zip(TOLD, values)}
 
 
 def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
@@ -85,15 +81,10 @@ def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -
     found = []
     for (before, _, _), (values, _, energies) in zip(coarse, fine):
         every_other = [value[1::2] for value in values]
-        changes = []
-        for row, one, other in zip(_TOLD, before, every_other):
-            share = load if row is rows.CENTRE else 1.0
-            size = max(float(np.abs(other * share).max()), _LEAN if row is rows.CENTRE else 0.0)
-            changes.append(float(np.abs((one - other) * share).max()) / size)
         found.append(
             _named(FEM, every_other)
             | {
-                rows.ESTIMATE.path: np.array(max(changes)),
+                rows.ESTIMATE.path: np.array(largest_change(before, every_other, load)),
                 rows.WORK.path: energies[0][1::2], rows.ENERGY.path: energies[1][1::2],
             }
         )  # fmt: skip

@@ -22,8 +22,9 @@ _TIGHTEST, _COARSEST = 1e-5, 1e-2
 _STEP, _OF_RAMP = 0.2, 12
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
-#: Lowest degree, and largest innermost cell over a, that tell the moments from which K_I is read.
-_LOWEST, _INNERMOST = 7, 1e-4
+#: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
+#: over a.
+_LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
 #: Steps by which the end is later for waves.
 _EARLIER = 16
 #: Largest side of a cell over a; and how much slower than the Rayleigh wave a punch has to be for that:
@@ -114,7 +115,7 @@ class Starts:
     def levels(self, solid: Isotropic, c: float) -> tuple[Level, Level]:
         """A coarser level with half as many steps, which tells the error, and that which is archived."""
         digits = -log10(self.tolerance)
-        degree = max(ceil(2.5 + 1.75 * digits), _LOWEST)
+        degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         fast = 1.0 / sqrt(solid.response(c).k)
         # A wave that goes out to the far boundary comes back to a punch that has moved. Implicit steps
         # let it be felt a little earlier.

@@ -104,7 +104,7 @@ class Motion:
 
     def _sum(self, matrices: NDArray) -> csr_matrix:
         nodes = adapter.cell_nodes(self.space.V)
-        dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(len(nodes), -1)
+        dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(len(nodes), -1)
         rows = np.broadcast_to(dofs[:, :, None], matrices.shape)
         columns = np.broadcast_to(dofs[:, None, :], matrices.shape)
         entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))

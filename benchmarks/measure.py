@@ -62,7 +62,8 @@ def positions(count: int) -> dict[str, list[float]]:
 
 FEM_ALONE = {"solve.methods": ["fem"]}
 ONE_STATE = {"motion.c": 0.6, "motion.X_over_L": 0.8, "motion.strokes": ["forward"]}
-SIXTEEN = {"motion.c": [n / 20 for n in range(16)]} | positions(334) | FEM_ALONE
+SIXTEEN = {"motion.c": [n / 20 for n in range(16)], "solve.sweep": "every"} | positions(334) | FEM_ALONE
+SPEEDS = {"motion.c": {"from": 0, "to": 0.9, "number": 256}} | positions(34)
 FINE = {"solve.tolerance": 1e-9}
 
 CASES = [
@@ -79,6 +80,8 @@ CASES = [
     Case("the same, 2 ranks", "tables4_5", SIXTEEN, ranks=2),
     Case("16 speeds x 1 002 states, 1e-9", "tables4_5", SIXTEEN | FINE),
     Case("the same, 1e-9, 2 ranks", "tables4_5", SIXTEEN | FINE, ranks=2),
+    Case("1 speed x 102 states", "tables4_5", SPEEDS | {"motion.c": 0.6}),
+    Case("256 speeds x 102 states", "tables4_5", SPEEDS),
     Case("2 speeds x 50 001 states", "tables4_5", positions(16667)),
     Case("friction alone", "fig6"),
     Case("closed form alone", "tables4_5", {"solve.methods": ["closed_form"]}),

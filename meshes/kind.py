@@ -30,6 +30,9 @@ _APART, _FROM, _STEP = 1.2, 0.9, 0.8
 #: Sectors up to which, being more than isotropic solids need, they spare a degree.
 _SPARING = 3
 
+#: How much narrower far columns are for each sector more.
+_NARROWER = 0.4
+
 #: How far sectors crowd where they are more: planes apart turn fields along the axes, where legs end.
 _CROWDING = 0.3
 
@@ -76,7 +79,8 @@ class MeshKind:
         ratio: size of a ring over that of the ring outside it. Straight cells in the physical plane need
             gentler rings than confocal ones: a ratio t there is t² in distance.
         column: largest width in ξ of a column outside the rings.
-        alone: the same where K_I and the pressure's moments are wanted alone; see ``column`` if None.
+        alone: the same where K_I and the pressure's moments are wanted alone, for isotropic solids; see
+            ``column`` if None.
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
@@ -122,7 +126,7 @@ class MeshKind:
     def refinement(self, wanted: Wanted) -> Refinement:
         """Refinement that reaches what is wanted with :meth:`degree`."""
         ratio, sectors = self.ratio, self.sectors
-        if wanted.nearest is not None and (wanted.around or self._of_cells(wanted) < self.gentle):
+        if self._gentler(wanted):
             # An even number puts a vertex into the corners of walls.
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
         finer = self._finer(wanted)
@@ -132,7 +136,9 @@ class MeshKind:
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
         reach = self._outer_ξ(wanted) - pi / 2.0
         # The column next to the rings is narrow: the field still turns there.
-        widest = self.column if wanted.nearest is not None else self.alone or self.column
+        widest = self.column
+        if self.alone and wanted.nearest is None:
+            widest = max(self.alone - _NARROWER * finer, widest)
         first = min(widest, 1.0)
         count = ceil((reach - first) / widest)
         columns = (first, *((reach - first) / count,) * count)
@@ -140,7 +146,13 @@ class MeshKind:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
         parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > 0.5)
         pieces = 1 + parts + self._cuts_middle(wanted)
-        return Refinement(levels, ratio, sectors, columns, pieces, _CROWDING if finer else 0.0)
+        crowding = _CROWDING if finer and wanted.nearest is None else 0.0
+        return Refinement(levels, ratio, sectors, columns, pieces, crowding)
+
+    def _gentler(self, wanted: Wanted) -> bool:
+        """Do stresses ask for gentler rings, and more cells in angle?"""
+        tight = wanted.around or self._of_cells(wanted) < self.gentle
+        return wanted.nearest is not None and tight
 
     def _cuts_middle(self, wanted: Wanted) -> bool:
         """Is the outermost ring cut, which meets in the middle of the contact?
@@ -184,8 +196,10 @@ class MeshKind:
         """
         digits = -log10(self._of_cells(wanted))
         lost = -log10(margin)
-        stresses = wanted.nearest is not None
-        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits) + stresses
+        more = 0.0
+        if wanted.nearest is not None:
+            more = 1.0 if self._gentler(wanted) else 0.6 + 0.15 * digits
+        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits + more)
         degree -= 0 < self._finer(wanted) <= _SPARING or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 

@@ -8,7 +8,7 @@ rings go on towards it: their lines do not run through the whole mesh.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, log
+from math import asinh, ceil, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,22 +18,32 @@ from galinx.meshes.kind import DEGREES, MeshKind, Wanted
 from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
-_GROWTH = 2.5
-#: Size of a ring over that of the one outside it.
-_RATIO = 0.25
-#: Power of it where stresses are wanted, whose derivatives ask for more.
-_GENTLER = 0.6
-#: Moments of the pressure by the logarithm of the tolerance.
-_MOMENTS = 1.1
+_GROWTH = 4.0
+#: The same under the punch, where facets have to follow what the pressure is read off by.
+_UNDER = 1.8
+#: The same where stresses are wanted, whose derivatives ask for more, and over an uppermost layer that is
+#: thinner than so many a.
+_GENTLE_GROWTH, _THIN = 2.5, 0.4
+#: Size of a ring over that of the one outside it, and where stresses are wanted beside it.
+_RATIO, _NEAR_RATIO = 0.45, 0.5
+#: Cells along a leg of an L by how far apart the planes are in which fields live.
+_LEGS = 0.5
+#: How far from squares what is round an edge may be.
+_WIDEST = 4.0
+#: Moments of the pressure over the logarithm of the tolerance: of any, and of how thin the layer is.
+_MOMENTS = 0.27, 0.54
 #: Fewest, two degrees below the first.
 _FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
-#: Relative error of K_I by that boundary over such a length over its squared distance, measured.
-_MOVED = 6.0
-#: Distance of the far boundary over the root of a length of the layers over the tolerance, at least
-#: (stiff layers and speeds near the limit need it), and at most: longer cells lose digits.
-_FAR, _NEAREST_FAR, _FARTHEST = 60.0, 300.0, 2e5
+#: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
+#: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
+#: tolerance that is left to each.
+_MOMENT, _CUBED, _OF_FAR = 0.5, 0.1, 0.1
+#: How much smaller that has to be for stresses.
+_SMALLER = 5.0
+#: Distance of the far boundary over a at most: longer cells lose digits.
+_FARTHEST = 2e5
 
 
 @dataclass(frozen=True)
@@ -42,36 +52,43 @@ class OnLayers(MeshKind):
 
     Attributes:
         depths: of the interfaces over a.
+        drawn_together: smallest Im p of the uppermost solid: its fields see depths so much smaller.
+        wide: Im p midway between both: width over height of what its fields take for a square.
+        far_length: over which the layers are seen from far, over a.
     """
 
     depths: tuple[float, ...] = ()
+    drawn_together: float = 1.0
+    wide: float = 1.0
+    far_length: float = 1.0
 
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
-        length = max(1.0, self.depths[-1])
-        far = min(_FAR * (length / wanted.tolerance) ** 0.5, _FARTHEST)
-        return max(far, _NEAREST_FAR, 30.0 * length, 10.0 * wanted.farthest)
+        left = _OF_FAR * wanted.tolerance
+        if wanted.nearest is not None:
+            # Stresses far away are small beside what the boundary adds.
+            left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
+        far = max((_MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
+        return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:
         return self.radius(wanted)
 
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Relative error of K_I by the far boundary, which moves as under a line load: second order."""
-        length = max(1.0, self.depths[-1])
-        return _MOVED * length / self.radius(wanted) ** 2 / margin ** (1.0 / 3.0)
+        """Relative error of K_I by the far boundary, which moves as far below line loads."""
+        R = self.radius(wanted)
+        return _MOMENT / R**2 + _CUBED * (self.far_length / R) ** 3
 
     @property
     def length(self) -> float:
         """Over which the pressure changes next to the edges: their mirror image in the interface."""
-        return 2.0 * self.depths[0]
+        return 2.0 * self.depths[0] * self.drawn_together
 
     def moments(self, wanted: Wanted) -> int:
-        """Of the pressure, that tell it to the tolerance; measured."""
-        digits = log(3.0 / wanted.tolerance)
-        # Over a thick layer the stretched variable is the position, and the image is farther away.
-        far = 0.7 * self.length
-        count = ceil(min(_MOMENTS, 1.0 / log(far + (1.0 + far**2) ** 0.5)) * digits) + 1
-        return max(count, _FEWEST)
+        """Of the pressure, that tell it to a tenth of the tolerance; measured on thirty stacks."""
+        share, of_length = _MOMENTS
+        count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / wanted.tolerance)
+        return max(ceil(count), _FEWEST)
 
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
@@ -86,55 +103,59 @@ class OnLayers(MeshKind):
 
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
-        b, R = min(_SHARE * self.depths[0], _SQUARE), self.radius(wanted)
-        legs = 2 if wanted.nearest is not None else 1
-        ratio = _RATIO**_GENTLER if wanted.nearest is not None else _RATIO
-        in_square = b * np.arange(1, legs) / legs
-        near = np.concatenate([in_square, _outwards(b, R)])
-        inner = np.concatenate([in_square, _outwards(b, 1.0)])
-        right = np.concatenate([1.0 - inner, [1.0], 1.0 + near])
+        b, R = min(_SHARE * self.depths[0], _SQUARE / max(self.wide, 1.0)), self.radius(wanted)
+        near = wanted.nearest is not None and wanted.nearest < b
+        legs = (2 if near else 1) + ceil(_LEGS * wanted.spread - 0.5)
+        gentle = wanted.nearest is not None or self.depths[0] < _THIN
+        growth = _GENTLE_GROWTH if gentle else _GROWTH
+        wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
+        beside, under = _outwards(wide, R, growth), _outwards(wide, 1.0, min(_UNDER, growth))
+        outer, inner = (np.concatenate([self.wide * in_square, lines]) for lines in (beside, under))
+        right = np.concatenate([1.0 - inner, [1.0], 1.0 + outer])
         X = np.unique(np.concatenate([-right, right]))
         fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
-        below = np.concatenate([_between(low, high) for low, high in pairwise(fixed)])
+        below = np.concatenate([_between(low, high, growth) for low, high in pairwise(fixed)])
         rows = -np.concatenate([[0.0], in_square, below, [R]])
         cells = [
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
             for x0, x1 in pairwise(X.tolist())
             for y1, y0 in pairwise(rows.tolist())
-            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > b
+            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > wide
         ]
+        ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(wanted) / b
         squares = [
-            _rings(edge, side * b, legs, ratio, self.innermost_size(wanted))
+            _rings(edge, (side * wide, b), legs, ratio, last)
             for edge in (-1.0, 1.0)
             for side in (-1.0, 1.0)
         ]
         return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
 
-def _outwards(first: float, last: float) -> NDArray[np.float64]:
+def _outwards(first: float, last: float, growth: float) -> NDArray[np.float64]:
     """Distances from an edge, from the first to the last, which grow by a factor."""
-    return np.append(_between(first, last), last)
+    return np.append(_between(first, last, growth), last)
 
 
-def _between(low: float, high: float) -> NDArray[np.float64]:
+def _between(low: float, high: float, growth: float) -> NDArray[np.float64]:
     """From low to below high."""
-    count = max(ceil(log(high / low) / log(_GROWTH) - 1e-9), 1) if high > low else 0
+    count = max(ceil(log(high / low) / log(growth) - 1e-9), 1) if high > low else 0
     return low * (high / low) ** (np.arange(count) / max(count, 1))
 
 
-def _rings(edge: float, towards: float, legs: int, ratio: float, innermost: float) -> NDArray[np.float64]:
-    """L-shaped rings in a square beside an edge, and what fills the square that is left, (cells, 4, 2).
+def _rings(
+    edge: float, size: tuple[float, float], legs: int, ratio: float, innermost: float
+) -> NDArray[np.float64]:
+    """L-shaped rings in a rectangle beside an edge, and what fills what is left, (cells, 4, 2).
 
     Args:
         edge: X of the edge.
-        towards: ±b, on which side, with b the size of the square.
+        size: of the rectangle: width, negative to the left of the edge, and depth.
         legs: cells along each leg of an L.
         ratio: of the sizes of rings.
-        innermost: size of the last square.
+        innermost: size of the last rectangle over that of the first.
     """
-    b = abs(towards)
-    count = max(ceil(log(b / innermost) / -log(ratio)), 1)
-    sizes = b * ratio ** np.arange(count + 1)
+    count = max(ceil(log(1.0 / innermost) / -log(ratio)), 1)
+    sizes = ratio ** np.arange(count + 1)
     t = np.arange(legs + 1) / legs
     # Along the L from the surface down, and back to below the edge.
     leg = np.concatenate([np.column_stack([np.ones(legs + 1), -t]),
@@ -148,8 +169,8 @@ def _rings(edge: float, towards: float, legs: int, ratio: float, innermost: floa
     for x0, x1 in pairwise(last * t):
         cells += [[(x0, -y0), (x1, -y0), (x1, -y1), (x0, -y1)] for y0, y1 in pairwise(last * t)]
     # Clockwise as they are.
-    found = np.array(cells) * [np.sign(towards), 1.0] + [edge, 0.0]
-    return found[:, ::-1] if towards > 0.0 else found
+    found = np.array(cells) * size + [edge, 0.0]
+    return found[:, ::-1] if size[0] > 0.0 else found
 
 
 def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
@@ -164,9 +185,13 @@ def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
     return QuadMesh(mesh.points, mesh.cells, edges)
 
 
-def on_layers(depths: Sequence[float]) -> OnLayers:
-    """The kind of mesh for layers with interfaces at these depths over a."""
+def on_layers(
+    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0
+) -> OnLayers:
+    """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5, depths=tuple(depths),
+        drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
+        far_length=far_length,
     )  # fmt: skip

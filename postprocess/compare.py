@@ -1,7 +1,6 @@
 """How far finite elements and closed form agree, and whether the forces balance."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -10,50 +9,14 @@ from numpy.typing import NDArray
 from galinx.postprocess import scale
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
+from galinx.postprocess.rule import Comparison, Rule, largest_of
+from galinx.postprocess.rules_of_layers import ON_LAYERS
 from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One figure of disagreement: its short ``name``, what it says, and the ``value`` (1)."""
-
-    name: str
-    text: str
-    value: float
-
-
-@dataclass(frozen=True)
-class Rule:
-    """How quantities are compared, and what decides the verdict.
-
-    Attributes:
-        text: what the figure says.
-        needs: the quantities that are compared.
-        measure: the figure (1) from datasets by path and the load N per depth [N/m], that of each state
-            where they differ in it; None where there is nothing to say.
-        limit: largest value of a PASS; None where it is no fixed one.
-        tolerances: the same in units of the scene's tolerance.
-        mode: in which it is judged, as of a quantity; "" for each.
-        own_pressure: judged also where the pressure is the user's own.
-    """
-
-    text: str
-    needs: tuple[Quantity, ...]
-    measure: Callable[[dict[str, Any], Any], float | None]
-    limit: float | None = None
-    tolerances: float | None = None
-    mode: str = ""
-    own_pressure: bool = False
-
-    def allowed(self, tolerance: float) -> float | None:
-        """Largest value of a PASS; None where the figure is only told."""
-        return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
 def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
@@ -92,13 +55,6 @@ def _intensities(data: dict[str, Any], _: float) -> float | None:
     return float(of.K_I_error(data).max()) if some else None
 
 
-def _intensities_of_layers(data: dict[str, Any], _: float) -> float:
-    sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
-    fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
-    size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
-    return float((np.abs(fem - sie) / size).max())
-
-
 def _exponents(data: dict[str, Any], _: float) -> float | None:
     pairs = (of.FITTED_ALPHA, of.ALPHA), (of.FITTED_BETA, of.BETA)
     off = np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs])
@@ -111,25 +67,13 @@ def _tension(data: dict[str, Any], _: float) -> float | None:
     return largest if largest > 0.0 else None
 
 
-def _both(
-    data: dict[str, Any], rows: dict[str, Quantity], where: NDArray, other: str = CLOSED_FORM
-) -> tuple[NDArray, NDArray]:
-    return data[rows[FEM].path][:, where], data[rows[other].path][:, where]
+def _both(data: dict[str, Any], rows: dict[str, Quantity], where: NDArray) -> tuple[NDArray, NDArray]:
+    return data[rows[FEM].path][:, where], data[rows[CLOSED_FORM].path][:, where]
 
 
 def _pressure(data: dict[str, Any], _: float) -> float:
     fem, exact = _both(data, at.PRESSURE, under_punch(data[at.SURFACE_X.path]))
     return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING)).max()
-
-
-def _pressure_of_layers(data: dict[str, Any], _: float) -> float:
-    fem, sie = _both(data, at.PRESSURE | on_layers.PRESSURE, under_punch(data[at.SURFACE_X.path]), SIE)
-    return (np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max()
-
-
-def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
-    fem, sie = (data[row.path] for row in (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE]))
-    return (np.abs(fem - sie) / scale.of_in_plane(sie, data[at.SURFACE_X.path])).max()
 
 
 def _found_pressure(data: dict[str, Any], _: float) -> float:
@@ -193,10 +137,6 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
 
-def _largest(row: Quantity) -> Callable[[dict[str, Any], float], float]:
-    return lambda data, _: data[row.path].max()
-
-
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
 
@@ -233,28 +173,9 @@ RULES: Registry[Rule] = Registry(
         ),
         "estimate": Rule(
             "estimated error of K_I and moments, relative",
-            (of.ESTIMATE,), _largest(of.ESTIMATE), tolerances=1.0,
+            (of.ESTIMATE,), largest_of(of.ESTIMATE), tolerances=1.0,
         ),
-        "K_I of layers": Rule(
-            "K_I at both ends against the integral equation, relative",
-            (*(side[FEM] for side in (of.K_I_LEFT, of.K_I_RIGHT)),
-             *(side[SIE] for side in (on_layers.K_I_LEFT, on_layers.K_I_RIGHT))),
-            _intensities_of_layers, tolerances=1.0,
-        ),
-        "sigma_YY of layers": Rule(
-            "σ_YY against the integral equation, over itself or a tenth of the mean",
-            (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
-            tolerances=1.0,
-        ),
-        "sigma_XX of layers": Rule(
-            "σ_XX against the integral equation, over itself or the largest",
-            (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
-            tolerances=1.0,
-        ),
-        "estimate of the integral equation": Rule(
-            "estimated error of the integral equation over layers, relative",
-            (on_layers.ESTIMATE,), _largest(on_layers.ESTIMATE), tolerances=1.0,
-        ),
+        **ON_LAYERS,
         "ends": Rule(
             "ends of the contact, over its half-width",
             (*of.HALF_WIDTH.values(), *of.CENTRE.values()), _ends, tolerances=1.0,
@@ -287,8 +208,8 @@ RULES: Registry[Rule] = Registry(
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
         ),
         "estimate of sigma_XX": Rule(
-            "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,), _largest(at.ESTIMATE_IN_PLANE),
-            tolerances=1.0, own_pressure=True,
+            "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,),
+            largest_of(at.ESTIMATE_IN_PLANE), tolerances=1.0, own_pressure=True,
         ),
         "stresses inside": Rule(
             "stresses inside, over themselves or the largest",
@@ -297,7 +218,7 @@ RULES: Registry[Rule] = Registry(
         ),
         "estimate inside": Rule(
             "estimated error of stresses inside, relative", (at.ESTIMATE_INSIDE,),
-            _largest(at.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
+            largest_of(at.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
         ),
         "largest stresses": Rule(
             "largest von Mises and shear stress, relative",
@@ -315,13 +236,13 @@ RULES: Registry[Rule] = Registry(
         ),
         "estimate of yield": Rule(
             "estimated error of stresses in which yield is looked for, relative", (to.ESTIMATE_YIELD,),
-            _largest(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
+            largest_of(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
         ),
         # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
         # and so has about half the digits of the moments that the tolerance speaks of.
         "slope under the punch": Rule(
             "v,X under the punch over that beside it",
-            (of.SLOPE,), _largest(of.SLOPE), tolerances=10.0, mode="traction",
+            (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",
         ),
     },
 )  # fmt: skip

@@ -51,6 +51,10 @@ def of_degrees(order: int) -> Rate:
     return Rate(0.16, 0.16) if order == 2 else Rate(0.5, 0.5, _ERRATIC)
 
 
+#: The same of moments where convergence was seen to be uneven.
+SLOWER = Rate(0.3, 0.3)
+
+
 def remaining(
     first: NDArray,
     second: NDArray,

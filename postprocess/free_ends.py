@@ -20,7 +20,7 @@ from scipy.special import roots_jacobi
 
 from galinx.postprocess.pressure import jacobi_in_chebyshev, jacobi_norms
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import kinks
+from galinx.solvers.profiles import check_reach, kinks
 
 #: Shapes: of two the factors would be known, the third says how good they are.
 SHAPES = 3
@@ -111,7 +111,8 @@ class FreeEnds:
                 f"conditions are left at {np.abs(value).max():.3g}, wanted {_ROUNDING:g}"
             )
         h = float(np.exp(point[1]))
-        _check_reach(profile, (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h)
+        left, right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
+        check_reach(profile, left, right, "finite elements found a contact")
         return float(point[0]) * h, h
 
     def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
@@ -170,20 +171,6 @@ class FreeEnds:
                 low, high = (middle, high) if below_it else (low, middle)
             edges.append((low + high) / 2.0)
         return float(np.mean(edges))
-
-
-def _check_reach(profile: Any, left: float, right: float) -> None:
-    """Does a table say what is needed?
-
-    Raises:
-        SolveError: the contact is wider.
-    """
-    first, last = getattr(profile, "reach", (-np.inf, np.inf))
-    if left < first or right > last:
-        raise SolveError(
-            f"finite elements found a contact from X = {left:g} m to {right:g} m, but the punch "
-            f"is known from {first:g} m to {last:g} m only; give more of its shape, or a smaller load"
-        )
 
 
 @lru_cache(maxsize=64)

@@ -57,6 +57,20 @@ def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float
     return _at_least_far(largest(σ), np.hypot(from_edge(X), Y) >= NEAR)
 
 
+def of_interfaces(σ: NDArray) -> NDArray[np.float64]:
+    """The largest along each interface of tractions, and of these or the in-plane stress on each side.
+
+    Args:
+        σ: σ_YY, σ_XY, σ_XX above and below, (4, states, interfaces, n).
+
+    Returns:
+        (4, states, interfaces, 1).
+    """
+    size = np.abs(σ).max(axis=3, keepdims=True)
+    tractions = np.maximum(size[0], size[1])
+    return np.maximum(size, tractions)
+
+
 def largest(components: Iterable[NDArray]) -> NDArray[np.float64]:
     """Largest absolute value of some arrays of one shape, element by element."""
     return reduce(np.maximum, map(np.abs, components))

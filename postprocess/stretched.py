@@ -5,7 +5,9 @@ end farther away. In
 
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
-it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is.
+it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
+graded from the surface on it has terms d log d, d² log d and d² log² d of the distance d from an end
+besides, which no polynomial follows; they stand beside these.
 """
 
 from dataclasses import dataclass
@@ -18,35 +20,68 @@ from galinx.solvers.layers.panelled import Panels
 
 #: Longest panel of the rule for products of polynomials, over 1 and over h.
 _FINE = 0.3
+#: Polynomials that tell how well a pressure is resolved.
+_LAST = 2
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """ζ of a length h over a."""
+    """Functions that follow a pressure without its weight.
+
+    Attributes:
+        h: length over a.
+        graded: is the solid graded from the surface on?
+    """
 
     h: float
+    graded: bool = False
 
     def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
+        """ζ."""
         r = np.asarray(r, dtype=float)
         found = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
         return np.asarray(np.clip(found / np.arcsinh(2.0 / self.h), -1.0, 1.0))
 
+    def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """So many polynomials of ζ, then what belongs to the ends, (len(r), functions)."""
+        polynomials = chebyshev(self(r), count)
+        if not self.graded:
+            return polynomials
+        of_ends = []
+        for d in ((1.0 - r) / 2.0, (1.0 + r) / 2.0):
+            d = np.clip(d, 0.0, 1.0)
+            log = np.log(np.maximum(d, np.finfo(float).tiny))
+            of_ends += [d * log, d**2 * log, d**2 * log**2]
+        return np.column_stack([polynomials, *of_ends])
+
+    def polynomials(self, functions: int) -> int:
+        """How many of these functions are polynomials."""
+        return functions - 6 * self.graded
+
 
 @dataclass(frozen=True)
 class StretchedPressure(JacobiPressure):
-    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(ζ(r)) of several states."""
+    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r) of several states, f of :class:`Stretch`."""
 
     stretch: Stretch = Stretch(1.0)
 
     def factor(self, r: NDArray) -> NDArray[np.float64]:
-        return np.asarray(self.c @ chebyshev(self.stretch(r), self.c.shape[1]).T)
+        count = self.stretch.polynomials(self.c.shape[1])
+        return np.asarray(self.c @ self.stretch.functions(r, count).T)
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """The last polynomials' share, relative to the largest of the factor at the ends, (states,)."""
+        count = self.stretch.polynomials(self.c.shape[1])
+        last = np.abs(self.c[:, count - _LAST : count]).sum(axis=1)
+        return np.asarray(last / np.abs(self.factor(np.array([-1.0, 1.0]))).max(axis=1))
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch) -> StretchedPressure:
-    """Pressure that has the given moments ∫ σ_YY T_k(ζ) dr, (states, moments)."""
+    """Pressure that has the given moments ∫ σ_YY f_k dr, (states, moments)."""
     c = np.empty_like(moments)
     for i, one in enumerate(moments):
         rule = Panels(float(α[i]), float(β[i]), _FINE * min(1.0, stretch.h))
-        T = chebyshev(stretch(rule.t), len(one))
-        c[i] = np.linalg.solve((T * rule.weights[:, None]).T @ T, one)
+        f = stretch.functions(rule.t, stretch.polynomials(len(one)))
+        c[i] = np.linalg.solve((f * rule.weights[:, None]).T @ f, one)
     return StretchedPressure(α, β, c, stretch)

@@ -1,6 +1,6 @@
 """Tables as text."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -94,11 +94,22 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     notes.append(f"dimensionless where no unit stands{of_speed}")
     if "error" in shown:
         notes.append("K_I: closed form, at both edges; error and estimate: of finite elements, relative")
+    if told := solved_speeds(data):
+        notes.append(told)
     if "a (m)" in shown:
         notes.append("a, centre: half-width of the contact, and its middle from the punch's axis")
     if "α" in shown:
         notes.append("α, β: exponents of the pressure at X = a and X = -a")
     return Sheet(title or "States", ["state", *shown], rows, notes)
+
+
+def solved_speeds(data: Mapping[str, Any]) -> str:
+    """How many speeds finite elements solved, in words; "" where they solved each."""
+    if of.FITTED.path not in data:
+        return ""
+    c, fitted = data[of.SPEED.path], data[of.FITTED.path]
+    solved = len(np.unique(c[fitted == 0.0]))
+    return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, a fit tells the others"
 
 
 def _form(row: Quantity) -> str:

@@ -73,6 +73,16 @@ class Body:
             return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
         return self.solid.response(c)
 
+    def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane of σ_XX, σ_YY, σ_XY (3, ..., n) at heights Y over a, (n,)."""
+        if not isinstance(self.solid, Layered):
+            return self.solid.σ_ZZ(*σ)
+        found = np.empty(σ.shape[1:])
+        for height in np.unique(Y).tolist():
+            some = height == Y
+            found[..., some] = self.solid.at(-height * self.half_width).σ_ZZ(*σ[..., some])
+        return found
+
     @property
     def layered(self) -> bool:
         """Has the half-plane layers?"""

@@ -41,7 +41,8 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """How the numbers settle as the polynomial degree rises."""
     c, c_of, told = data[runs.RECORD["c"].path], data[states.SPEED.path], Told(data, scene)
-    shown = spread(list(range(len(c))), _SPEEDS)
+    measured = np.flatnonzero(data[runs.CHANGES.path].any(axis=1)).tolist()
+    shown = spread(measured, _SPEEDS)
 
     def largest(row: Quantity) -> NDArray:
         return np.array([data[row.path][c_of == speed].max() for speed in c[shown]])

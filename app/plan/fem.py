@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.app import ranks
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
+from galinx.app.plan.sweep import Sweep, swept
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers, on_layers
@@ -36,9 +38,14 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 #: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
 #: without it grows towards these.
 _FARTHER = 1e3
+#: Modes in which some speeds may tell the others.
+FITTED = ("contact", FOUND)
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
+
+#: How far apart a surface's fields may live so that cells are drawn together for both.
+_APART = 0.8
 
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
@@ -77,6 +84,7 @@ class FemPlan:
         sharp: exponent of the strongest pressure next to a sharp edge.
         drawn: the mesh where it follows interfaces.
         tests: by which the pressure is read off over layers.
+        sweep: the speeds where some of them are to tell the others; None where each is solved.
     """
 
     mesh: str
@@ -93,6 +101,7 @@ class FemPlan:
     sharp: float = -0.5
     drawn: QuadMesh | None = None
     tests: Tests | None = None
+    sweep: Sweep | None = None
 
     @property
     def tolerance(self) -> float:
@@ -117,26 +126,25 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(
-    scene: Scene, responses: Sequence[Response], places: Places, g: tuple[float, float]
-) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDArray) -> FemPlan:
     """Plan the finite elements at some speeds; builds no mesh.
 
     Args:
         scene: the scene.
         responses: of its solid, one a speed.
         places: where stresses are asked for.
-        g: smallest and largest σ_XY/σ_YY.
+        g: all values of σ_XY/σ_YY.
 
     Raises:
         BadInput: a degree or solver is asked for that the weak form does not allow.
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
-        kind, name = on_layers((scene.solid.depths / scene.body.half_width).tolist()), "layered"
+        depths = scene.solid.depths / scene.body.half_width
+        kind, name = on_layers(depths.tolist(), **_seen_by_layers(responses)), "layered"
     _check_degree_and_solver(scene)
-    mixed = scene.solid.nearly_incompressible
-    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in g)
+    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
     wanted = wanted_for(solve.tolerance, places, exponent, spread)
     if scene.body.free:
@@ -163,8 +171,29 @@ def plan_fem(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
-        tests=Tests(Stretch(kind.length), kind.moments(wanted)) if isinstance(kind, OnLayers) else None,
+        tests=_tests(scene, kind, wanted),
+        sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
     )  # fmt: skip
+
+
+def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
+    """What a pressure over layers is read off by."""
+    if not isinstance(kind, OnLayers) or not isinstance(scene.solid, Layered):
+        return None
+    graded = scene.solid.layers[0].bottom is not None
+    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
+
+
+def _seen_by_layers(responses: Sequence[Any]) -> dict[str, float]:
+    """What :class:`galinx.meshes.layered.OnLayers` asks of layered solids at some speeds."""
+    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Fields that live far apart have no middle.
+    apart = max(response.spread for response in responses) > _APART
+    return {
+        "drawn_together": float(np.min(roots)),
+        "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
+        "far_length": max(response.far_field.length for response in responses),
+    }
 
 
 def _mode(scene: Scene) -> str:

@@ -158,8 +158,8 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     if faults:
         raise BadInput(
             f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are punches with "
-            'two sharp edges, by methods = ["sie"], with the quantities friction, sif, surface, '
-            "interior and interfaces"
+            'two sharp edges, by methods = ["sie", "fem"] or one of them, with the quantities friction, '
+            "sif, surface, interior and interfaces"
         )
 
 

@@ -27,7 +27,8 @@ from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS, oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
-from galinx.postprocess.quantities.quantity import LOCAL
+from galinx.postprocess.quantities import strata as layers
+from galinx.postprocess.quantities.quantity import LOCAL, SWEPT
 from galinx.postprocess.yielding.strength import places as yield_places
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.linear import LinearPressure
@@ -67,9 +68,10 @@ def make_plan(scene: Scene) -> Plan:
         check_pressure(scene, body)
         check_places(scene, places)
         g, responses = enumerate_states(scene).g, [body.response(c) for c in known.speeds]
-        fem = plan_fem(scene, responses, _asked(scene, places), (float(g.min()), float(g.max())))
+        fem = plan_fem(scene, responses, _asked(scene, places), g)
         warnings += warnings_of(fem)
-    quantities, refused = _quantities(scene, body, methods)
+    modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep))
+    quantities, refused = _quantities(scene, body, methods, modes)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
@@ -90,6 +92,9 @@ def _asked(scene: Scene, places: Places) -> Places:
     """Those places whose stresses are asked for."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
     X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
+    if layers.AT_INTERFACES in scene.output.quantities and len(places.along):
+        X_along, depth = np.meshgrid(places.along, places.interfaces)
+        points = np.concatenate([points, np.column_stack([X_along.ravel(), -depth.ravel()])])
     return Places(X, points, places.around)
 
 
@@ -102,7 +107,7 @@ def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
 
 
 def _quantities(
-    scene: Scene, body: Body, methods: tuple[str, ...]
+    scene: Scene, body: Body, methods: tuple[str, ...], modes: tuple[str, ...]
 ) -> tuple[tuple[Quantity, ...], list[str]]:
     """What is read off the solutions, and what a method cannot give, with the reason."""
     asked: dict[str, Quantity] = {}
@@ -115,7 +120,7 @@ def _quantities(
             bool(methods)
             and quantity.solved
             and quantity.method in sources
-            and quantity.mode in scene.modes
+            and quantity.mode in modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in asked for need in quantity.needs)
         )

@@ -3,6 +3,7 @@
 from galinx.app import ranks
 from galinx.app.plan import cost
 from galinx.app.plan.fem import OWN_MESHES, FemPlan, levels, unknowns
+from galinx.app.plan.sweep import BESIDES, LADDERS
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
@@ -51,6 +52,15 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     speeds: dict[int, list[str]] = {}
     for task, degree in zip(plan.tasks, fem.degrees):
         speeds.setdefault(degree, []).append(f"{task.response.c:g}")
+    if fem.sweep:
+        c, degree = [task.response.c for task in plan.tasks], max(fem.degrees)
+        result.append(
+            f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
+            f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; so many are solved as "
+            f"a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these {solver} "
+            f"serves all states, at {LADDERS} {others} its error"
+        )
+        speeds = {}
     result += [
         f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
         f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; at each speed {solver} serves all "
@@ -112,7 +122,11 @@ def _inside(plan: Plan) -> float:
 
 
 def _levels(fem: FemPlan) -> list[tuple[int, int]]:
-    """Degrees and cuts that every speed is solved with."""
+    """Degrees and cuts that speeds are solved with, all that are."""
+    if fem.sweep:
+        degree = max(fem.degrees)
+        ladder = levels(degree, fem.cuts, fem.fixed)
+        return LADDERS * ladder + BESIDES * [(degree, fem.cuts)]
     return [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
 
 

@@ -35,6 +35,7 @@ def listen() -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # run.sh has them wait until here
     signal.signal(signal.SIGALRM, lambda *_: end(NOTHING))
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")  # a library of MPIs, which would take SIGHUP for itself
+    sys.unraisablehook = _dropped
 
 
 @contextmanager
@@ -100,6 +101,12 @@ def complain(message: str) -> None:
     """Say why the work ended."""
     with suppress(OSError):
         print(f"error: {message}", file=sys.stderr, flush=True)
+
+
+def _dropped(exception: "sys.UnraisableHookArgs") -> None:
+    """A library at work drops an exception: nothing is said of one that ends the process."""
+    if not isinstance(exception.exc_value, Asked):
+        sys.__unraisablehook__(exception)
 
 
 def _asked(*_: object) -> None:

@@ -14,6 +14,7 @@ from galinx.postprocess.quantities import runs, states, stresses, validity, yiel
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, Quantity
 from galinx.postprocess.scale import NEAR
+from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.contact import from_edge
 
 #: Of units, and where the one stands that means nothing.
@@ -182,4 +183,6 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
             f" Finite elements: {mesh} mesh, {cells} cells of degree up to {degree}, "
             f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
         )
+        if told := solved_speeds(data):
+            text += f" {told.capitalize()}."
     return text

@@ -108,6 +108,11 @@ class Alike:
         return self._once.v0[self._of]
 
     @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        return self._once.fitted[self._of]
+
+    @property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
         return {word: values[self._of] for word, values in self._once.estimates.items()}

@@ -138,6 +138,7 @@ class Solve:
     mode: str
     degree: int | None
     cuts: int
+    sweep: str
     solver: str
     pressure: Any
 

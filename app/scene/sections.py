@@ -139,6 +139,11 @@ _SOLVE_KEYS = {
         without="found by tolerance",
     ),
     "cuts": Key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1),
+    "sweep": Key(
+        Choice(("auto", "every")), "which of many speeds finite elements solve", "auto",
+        '`"auto"`: from 16 speeds on as many as a fit through them needs to tell the others, see '
+        '[Sweeps](howto_sweep.md); `"every"`: each',
+    ),
     "solver": Key(
         Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
     ),

@@ -36,6 +36,9 @@ OWN_PRESSURE, PUNCH = "own pressure", "punch"
 #: punch or a pressure of the user's own.
 FOUND, FINITE = "found ends", "finite stresses"
 
+#: So many speeds that some may tell the others.
+SWEPT = "fitted speeds"
+
 #: Words of a scene's output.quantities that ask for no dataset of their own.
 FRICTION_ALONE, INTENSITIES = "friction", "sif"
 
@@ -52,8 +55,8 @@ class Quantity:
         of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
             None where the run itself puts it in.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
-        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND`` or
-            ``FINITE`` where only that one gives it.
+        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND``, ``FINITE`` or
+            ``SWEPT`` where only that one gives it.
         asked_by: word of output.quantities; "" where every solution gives it.
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.

@@ -17,6 +17,7 @@ from galinx.postprocess.quantities.quantity import (
     OWN_PRESSURE,
     QUANTITIES,
     STATE,
+    SWEPT,
     Quantity,
 )
 from galinx.postprocess.stresses import flatness
@@ -111,6 +112,11 @@ ESTIMATE = Quantity(
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
     range=_NOT_NEGATIVE, accuracy=True,
+)  # fmt: skip
+FITTED = Quantity(
+    "states/fem/fitted", "1",
+    "1 where a fit through other speeds tells the state, 0 where its speed was solved",
+    (STATE,), lambda s, _: s.fitted, FEM, SWEPT, range=Range(at_least=0.0, at_most=1.0), accuracy=True,
 )  # fmt: skip
 
 

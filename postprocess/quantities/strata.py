@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities.quantity import (
     ALONG,
     BESIDE,
-    INSIDE,
+    FEM,
+    INTENSITIES,
     INTERFACE,
     POINT,
     QUANTITIES,
@@ -24,7 +25,7 @@ from galinx.postprocess.quantities.stresses import (
     invariants,
 )
 from galinx.postprocess.quantities.validity import tensions
-from galinx.postprocess.stresses import extreme, von_mises
+from galinx.postprocess.stresses import extreme
 from galinx.solvers.parameters import Range
 
 
@@ -42,7 +43,8 @@ K_I_RIGHT = {SIE: _intensity("right", "X = a", 1)}
 ESTIMATE = Quantity(
     "states/sie/estimate", "1",
     "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's error",
-    (STATE,), lambda s, _: s.estimates, SIE, compared=("estimate of the integral equation",),
+    (STATE,), lambda s, _: s.estimates[INTENSITIES], SIE,
+    compared=("estimate of the integral equation",),
     range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 
@@ -85,6 +87,7 @@ def _along(method: str, i: int, name: str, what: str) -> Quantity:
     return Quantity(
         f"interfaces/{method}/{name}", "N/(2a)", f"{what} each interface", (STATE, INTERFACE, ALONG),
         lambda s, _: s.interfaces[i], method, asked_by=AT_INTERFACES,
+        compared=("stresses at interfaces",) * (method == FEM),
     )  # fmt: skip
 
 
@@ -116,7 +119,7 @@ INTERFACES = {
     method: tuple(
         _along(method, i, name, _words(name, what)) for i, (name, what) in enumerate(_PARTS.items())
     )
-    for method in (SIE,)
+    for method in (SIE, FEM)
 }
 #: Their extremes.
 INTERFACE_EXTREMES = {
@@ -125,20 +128,39 @@ INTERFACE_EXTREMES = {
         for i, (name, what) in enumerate(_PARTS.items())
         for one in _extremes(method, i, name, _words(name, what))
     )
-    for method in (SIE,)
+    for method in (SIE, FEM)
 }
 
-STRESSES_INSIDE = {SIE: components(SIE, "from the transform")}
-INVARIANTS_INSIDE = {
-    SIE: (
-        *invariants(SIE)[:2],
-        Quantity(
-            "interior/sie/von_mises", "N/(2a)", "von Mises stress, sigma_ZZ included inside",
-            (STATE, INSIDE), lambda s, _: von_mises(s.inside[0], s.inside[1], s.inside[2], s.σ_ZZ), SIE,
-            asked_by=BELOW,
-        ),
+
+def _estimate(method: str, name: str, what: str, word: str, rule: str) -> Quantity:
+    return Quantity(
+        f"states/{method}/estimate_{name}", "1", f"estimated error of {what}", (STATE,),
+        lambda s, _: s.estimates[word], method, asked_by=word, compared=(rule,),
+        range=Range(at_least=0.0), accuracy=True,
+    )  # fmt: skip
+
+
+_ALONG = "stresses at interfaces over the largest along each, layered half-plane"
+#: Of stresses, by method.
+ESTIMATE_AT_INTERFACES = {
+    method: _estimate(method, "interfaces", _ALONG, AT_INTERFACES, f"estimate at interfaces, {method}")
+    for method in (SIE, FEM)
+}
+ESTIMATE_IN_PLANE = {
+    SIE: _estimate(
+        SIE, "sigma_XX", "sigma_XX on the surface over the larger of itself and its largest further than "
+        "0.01 a from the edges, layered half-plane", ON_SURFACE, "estimate of sigma_XX, sie",
     )
 }  # fmt: skip
+ESTIMATE_INSIDE = {
+    SIE: _estimate(
+        SIE, "inside", "stresses inside over the larger of the largest there and further than 0.01 a "
+        "from the edges, layered half-plane", BELOW, "estimate inside, sie",
+    )
+}  # fmt: skip
+
+STRESSES_INSIDE = {SIE: components(SIE, "from the transform")}
+INVARIANTS_INSIDE = {SIE: invariants(SIE)}
 
 HIGHEST, LOWEST = ({SIE: one} for one in extremes(SIE))
 TENSION = {SIE: tensions(SIE)}

@@ -105,7 +105,8 @@ MAP = Quantity(
 def _component(method: str, source: str, i: int, ij: str, what: str) -> Quantity:
     return Quantity(
         f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
-        lambda s, _: s.inside[i], method, asked_by=BELOW, compared=("stresses inside",) * (method == FEM),
+        lambda s, _: s.inside[i], method, asked_by=BELOW,
+        compared=("stresses inside", "stresses inside layers") * (method == FEM),
     )  # fmt: skip
 
 
@@ -130,26 +131,31 @@ STRESSES_INSIDE = {
 }
 
 
-def _invariant(method: str, name: str, about: str, of: Callable[[NDArray, Any], NDArray]) -> Quantity:
+def _invariant(method: str, name: str, about: str, of: Callable[[Any, Any], NDArray]) -> Quantity:
     return Quantity(
-        f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE),
-        lambda s, body: of(s.inside, body.solid), method, asked_by=BELOW,
+        f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE), of, method,
+        asked_by=BELOW,
     )  # fmt: skip
+
+
+def _von_mises(s: Any, body: Any) -> NDArray:
+    """Over layers a solution knows which solid is where."""
+    σ_XX, σ_YY, σ_XY = s.inside
+    return von_mises(σ_XX, σ_YY, σ_XY, s.σ_ZZ if body.layered else body.solid.σ_ZZ(σ_XX, σ_YY, σ_XY))
 
 
 def invariants(method: str) -> tuple[Quantity, ...]:
     """Principal stresses and von Mises inside by a method."""
     return (
         _invariant(
-            method, "sigma_1", "larger principal stress in the plane", lambda σ, _: principal(*σ)[0]
+            method, "sigma_1", "larger principal stress in the plane",
+            lambda s, _: principal(*s.inside)[0],
         ),
         _invariant(
-            method, "sigma_2", "smaller principal stress in the plane", lambda σ, _: principal(*σ)[1]
+            method, "sigma_2", "smaller principal stress in the plane",
+            lambda s, _: principal(*s.inside)[1],
         ),
-        _invariant(
-            method, "von_mises", "von Mises stress, sigma_ZZ included",
-            lambda σ, solid: von_mises(σ[0], σ[1], σ[2], solid.σ_ZZ(*σ)),
-        ),
+        _invariant(method, "von_mises", "von Mises stress, sigma_ZZ included", _von_mises),
     )  # fmt: skip
 
 

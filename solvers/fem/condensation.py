@@ -54,6 +54,10 @@ class CellMatrices:
         first = 2 * self.nodes + min(self._pressures, 2)
         return np.concatenate([_dofs(self.inner), np.arange(first, self._element.size)])
 
+    def heights(self, corners: NDArray) -> NDArray[np.float64]:
+        """Heights of the points of quadrature in the chart, (m, points, points)."""
+        return self._element.heights(corners)
+
     def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
         """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
 

@@ -60,7 +60,8 @@ class Element:
 
         Args:
             H: the form at unit gradients and pressure, symmetric, see :meth:`.forms.Form.density`; one
-                for all cells, or one for each, (m, 4, 4) or (m, 5, 5).
+                for all cells, (4, 4) or (5, 5); one for each, (m, 4, 4); or one for each of their points
+                of quadrature, (m, 4, 4, second, first).
             chart: of the mesh, at a speed.
             corners: vertices, (m, 4, 3).
             parts: rows and columns of each block that is wanted.
@@ -78,17 +79,31 @@ class Element:
                 np.take(products, index, axis=1, out=block[some], mode="clip")
         return found
 
+    def heights(self, corners: NDArray) -> NDArray[np.float64]:
+        """Second coordinates of the points of quadrature, (m, second, first).
+
+        Args:
+            corners: vertices, (m, 4, 3).
+        """
+        return cells.image(corners[:, None, :, :2], self._places_of_points())[..., 1]
+
+    def _places_of_points(self) -> NDArray[np.float64]:
+        """In the unit square, (second, first, 2)."""
+        return np.stack(np.meshgrid(self._points, self._points), axis=-1)
+
     def _products(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
         """All products of functions along the first direction with those along the second, (m, …)."""
         T, weights = self._gradients(chart, corners)
         m, Q = len(corners), len(self._points)
         two_gradients = np.einsum("maAyx,mbByx->mABabyx", T, T * weights[:, None, None])
-        rows = np.stack([H[..., :2, :2], H[..., :2, 2:4], H[..., 2:4, 2:4]], axis=-3)
-        densities = [rows.reshape(-1, 3, 4) @ two_gradients.reshape(m, 4, -1)]
+        # Of one cell and of each alike: points last, a single one where all are alike.
+        H = H.reshape(-1, *H.shape[-2:], 1, 1) if H.ndim < 5 else H
+        rows = np.stack([H[:, :2, :2], H[:, :2, 2:4], H[:, 2:4, 2:4]], axis=1)
+        densities = [_contracted(rows, 4, two_gradients.reshape(m, 4, -1, Q, Q))]
         if self._pressures:
             by_gradient = np.einsum("maAyx,myx->mAayx", T, weights)
-            densities.append(H[..., :4, 4].reshape(-1, 2, 2) @ by_gradient.reshape(m, 2, -1))
-            densities.append(H[..., 4, 4].reshape(-1, 1, 1) * weights.reshape(m, 1, -1))
+            densities.append(_contracted(H[:, :4, 4], 2, by_gradient))
+            densities.append(_contracted(H[:, 4:, 4:], 1, weights[:, None, None]))
         result = np.empty((m, sum(block.size for block in self._blocks)))
         start = 0
         for block, density in zip(self._blocks, densities):
@@ -104,8 +119,7 @@ class Element:
         Returns:
             Array [cell, direction, axis, second, first], array [cell, second, first].
         """
-        first, second = np.meshgrid(self._points, self._points)
-        t = np.stack([first, second], axis=-1)
+        t = self._places_of_points()
         J = cells.jacobian(corners[:, None, None], t)
         determinant = J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0]
         inverse = np.empty_like(J)
@@ -136,6 +150,23 @@ class Element:
         first, second = along[:, row] * rights + along[:, column]
         starts = np.cumsum([0] + [block.size for block in self._blocks])
         return starts[block] + (within * lefts * rights + first) * lefts * rights + second
+
+
+def _contracted(H: NDArray, entries: int, gradients: NDArray) -> NDArray[np.float64]:
+    """Sums over pairs of axes, [cell, components, derivatives, second, first].
+
+    Args:
+        H: the form of one cell or of each, (1 or m, ..., second, first); its points are one where all
+            of them are alike.
+        entries: of a component.
+        gradients: products of gradients, [cell, entries, derivatives, second, first].
+    """
+    m, _, *rest = gradients.shape
+    by_component = H.reshape(len(H), -1, entries, *H.shape[-2:])
+    if H.shape[-1] == 1:
+        found = by_component[..., 0, 0] @ gradients.reshape(m, entries, -1)
+        return np.asarray(found.reshape(m, -1, *rest))
+    return np.einsum("mceyx,medyx->mcdyx", by_component, gradients, optimize=True)
 
 
 class _Block:

@@ -14,7 +14,7 @@ from petsc4py import PETSc
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.cells import gradients_in_plane, pull_back, tensor_order
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
@@ -62,6 +62,7 @@ class InteriorGradients:
         fields: displacements over N/(2μ), condensed.
         points: positions over a with Y <= 0, (n, 2).
         values: of the fields in cells, as of :class:`KeptValues`; found anew if not given.
+        side: at an interface 1 for what is above it, -1 for what is below.
 
     Raises:
         MeshError: a point lies outside the mesh.
@@ -74,11 +75,12 @@ class InteriorGradients:
         fields: Sequence[PETSc.Vec],
         points: NDArray,
         values: Values | None = None,
+        side: int = 1,
     ) -> None:
         values = values or (lambda cells: space.cell_values(fields, response, cells))
         self._count, self._fields = len(points), len(fields)
         self._batches = [
-            _Batch(space, response, points[first : first + TOGETHER])
+            _Batch(space, response, points[first : first + TOGETHER], side)
             for first in range(0, max(len(points), 1), TOGETHER)
         ]
         cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
@@ -172,6 +174,7 @@ class _Batch:
         space: the finite element space.
         response: for which the mesh is contracted.
         points: positions over a with Y <= 0, (n, 2).
+        side: see :class:`InteriorGradients`.
 
     Attributes:
         cells: this rank's cells that hold a point, sorted.
@@ -180,10 +183,14 @@ class _Batch:
         MeshError: a point lies outside the mesh.
     """
 
-    def __init__(self, space: Space, response: Response, points: NDArray) -> None:
+    def __init__(self, space: Space, response: Response, points: NDArray, side: int = 1) -> None:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
         held = _locate(self._vertices, self._chart.from_physical(points))
+        if isinstance(response, ByCells):
+            of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
+            of_points = response.solids(points[:, 1], side)
+            held = held.some(of_cells[held.cell] == of_points[held.point])
         order = np.argsort(held.cell, kind="stable")
         self._point, self._t = held.point[order].astype(np.int32), held.t[order]
         self.cells, self._first = np.unique(held.cell[order], return_index=True)
@@ -221,12 +228,15 @@ class _Held:
     cell: NDArray[np.int64]
     t: NDArray[np.float64]
 
+    def some(self, which: NDArray) -> "_Held":
+        """Those of the pairs."""
+        return _Held(self.point[which], self.cell[which], self.t[which])
+
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
     cell, point = _near(vertices, x)
     t = pull_back(vertices[cell], x[point])
-    inside = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
-    return _Held(point[inside], cell[inside], t[inside])
+    return _Held(point, cell, t).some(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
 
 
 def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -12,11 +12,9 @@ Of a contact whose ends are found P is a combination of some shapes, each with a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.fem.direct import Factor
@@ -24,59 +22,14 @@ from galinx.solvers.fem.held import forces_of_far, forces_of_profile, hold, ones
 from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.states import Part, Punch
 from galinx.solvers.solids.solid import ByCells, Response
 
 #: Frictions for which a basis is completed at most.
 _SPREAD = 33
 
 
-@dataclass(frozen=True)
-class Part:
-    """Combinations of fields of a punch; lengths over a, stresses over N/(2a), so forces over N/2.
-
-    Attributes:
-        weights: of the fields, (states, fields).
-        forces: of each field, (fields, 2, nodes): consistent nodal forces of σ_XY and σ_YY at the contact
-            nodes, read off the assembled equations.
-    """
-
-    weights: NDArray[np.float64]
-    forces: NDArray[np.float64]
-
-    @cached_property
-    def normal(self) -> NDArray[np.float64]:
-        """Nodal forces of σ_YY, (states, nodes)."""
-        return self.weights @ self.forces[:, 1]
-
-    @cached_property
-    def tangential(self) -> NDArray[np.float64]:
-        """Nodal forces of σ_XY, (states, nodes)."""
-        return self.weights @ self.forces[:, 0]
-
-    def tested(self, tests: NDArray) -> NDArray[np.float64]:
-        """Nodal forces of σ_YY times some tests (nodes, n), (states, n); nodal forces are not formed."""
-        return self.weights @ (self.forces[:, 1] @ tests)
-
-    @property
-    def load(self) -> NDArray[np.float64]:
-        """∫σ_YY dX, (states,)."""
-        return self.weights @ self.forces[:, 1].sum(axis=1)
-
-
-@dataclass(frozen=True)
-class ContactStates(Part):
-    """Several friction states.
-
-    Attributes:
-        g: σ_XY/σ_YY under the punch, (states,).
-        v0: indentation relative to the far boundary over N/(2μ), (states,).
-    """
-
-    g: NDArray[np.float64]
-    v0: NDArray[np.float64]
-
-
-class SlidingPunch:
+class SlidingPunch(Punch):
     """All friction states of the punch at one speed, from one factorisation.
 
     Args:
@@ -111,8 +64,6 @@ class SlidingPunch:
         self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
         shaped = [forces_of_profile(A, space, height) for height in shapes]
-        #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
-        self._moved = 0
         if isinstance(response, ByCells):
             moved = response.far(*space.coordinates[space.far_nodes].T)
             shaped += [forces_of_far(A, space, one) for one in moved]
@@ -131,25 +82,6 @@ class SlidingPunch:
         """Displacements of the basis: the punches without friction, each before its tangential loads."""
         return [field for space in self._spaces for field in space.fields]
 
-    def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
-        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
-
-        Args:
-            g: values of σ_XY/σ_YY.
-            flat: of a flat punch, whatever the profile is.
-            share: by what the profile's heights are multiplied, of each state: less over a larger load.
-        """
-        g = np.atleast_1d(np.asarray(g, dtype=float))
-        heights = np.asarray(share, dtype=float) * np.ones(len(g))
-        parts = self.parts(g, 0 if flat and not self._moved else None)
-        shapes = len(parts) - 1 - self._moved
-        # A flat punch has none of the profile; a line load's tangential force is g times the other.
-        amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
-        # ∫ σ_YY d(X/a) = -2 over N/(2a)
-        carried = sum(of * part.load for of, part in zip(amplitudes, parts[1:]))
-        v0 = (-2.0 - carried) / parts[0].load
-        return combined(g, parts, np.column_stack([v0, *amplitudes]))
-
     def prepare(self, g: NDArray[np.float64]) -> None:
         """Complete the basis for these values of σ_XY/σ_YY, sorted.
 
@@ -159,12 +91,6 @@ class SlidingPunch:
         self._contact_forces(self._spaces, g[some])
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
-        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
-
-        Args:
-            g: values of σ_XY/σ_YY, (states,).
-            shapes: that are wanted, all of them if not given.
-        """
         wanted = self._spaces[: None if shapes is None else 1 + shapes]
         return [self._of(space, g, y) for space, y in zip(wanted, self._contact_forces(wanted, g))]
 
@@ -176,13 +102,11 @@ class SlidingPunch:
         return Part(weights, np.array(space.forces))
 
     def release(self) -> None:
-        """Free factor and fields; states that were asked for before can be asked for again."""
         for space in self._spaces:
             space.complete = True
         self.destroy()
 
     def destroy(self) -> None:
-        """Free factor and fields."""
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
 
@@ -197,13 +121,35 @@ class SlidingPunch:
         rough = [self._reactions(field) for field in fields]
         # Under the flat punch all of the contact moves alike, and no other load acts.
         self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
+        flat = self._reactions(fields[0])
+        # Of the whole load, -2; what the far boundary's motion does to it is small.
+        load = float(2.0 * np.linalg.norm(flat) / abs(flat[1].sum()))
         spaces = []
-        for field, before, b in zip(fields, rough, forces):
-            after = self._reactions(field)
-            change = np.linalg.norm(after - before) / np.linalg.norm(before)
-            spaces.append(KrylovSpace(field, after, bool(change > negligible), self._left))
+        for i, (field, before, b) in enumerate(zip(fields, rough, forces)):
+            after, moved = self._reactions(field), i >= len(fields) - self._moved
+            change = np.linalg.norm(after - before) / (load if moved else np.linalg.norm(before))
+            if moved:
+                after = self._without_load(field, after, fields[0], flat)
+            refines = bool(change > negligible)
+            spaces.append(KrylovSpace(field, after, refines, self._left, load * moved))
             b.destroy()
         return spaces
+
+    def _without_load(
+        self, field: PETSc.Vec, forces: NDArray, flat: PETSc.Vec, of_flat: NDArray
+    ) -> NDArray[np.float64]:
+        """Shift what moves the far boundary, whose zero is free, until the contact carries no load.
+
+        Args:
+            field, forces: displacement, changed in place, and forces at the contact.
+            flat, of_flat: those of the flat punch at v = -1.
+
+        Returns:
+            The forces that are left.
+        """
+        shift = -forces[1].sum() / of_flat[1].sum()
+        field.maxpy((shift, shift), (flat, self._motions[1]))
+        return np.asarray(forces + shift * of_flat)
 
     def _contact_forces(
         self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]
@@ -309,16 +255,3 @@ class SlidingPunch:
             force.destroy()
         w.destroy()
         return comm.allreduce(mine)
-
-
-def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactStates:
-    """States that are sums of a punch's parts, the first of which is the flat one.
-
-    Args:
-        g: values of σ_XY/σ_YY, (states,).
-        parts: of :meth:`SlidingPunch.parts`.
-        amplitudes: of each, (states, parts); the first is the indentation v₀.
-    """
-    weights = [amplitudes[:, [i]] * part.weights for i, part in enumerate(parts)]
-    forces = np.concatenate([part.forces for part in parts])
-    return ContactStates(np.concatenate(weights, axis=1), forces, g, amplitudes[:, 0])

@@ -20,6 +20,7 @@ from galinx.solvers.fem.condensation import CellMatrices
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
 from galinx.solvers.fem.nodes import SurfaceNodes
+from galinx.solvers.panel import interpolation
 from galinx.solvers.solids.solid import ByCells, Response
 
 
@@ -259,7 +260,7 @@ class Space:
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]
         if isinstance(response, ByCells):
-            H = self.form.densities(response.constants(corners[..., 1], self.form.constants))
+            H = self._densities(response, corners)
         else:
             H = self.form.density(response)
         return part(H, self.contracted(response), corners)
@@ -267,6 +268,21 @@ class Space:
     def nodes_on(self, part: str) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
         return self._owned_blocks(part)
+
+    def _densities(self, response: ByCells, corners: NDArray) -> NDArray[np.float64]:
+        """The form at the points of quadrature of cells, or in cells where all of them are uniform."""
+        solid = response.solids(corners[..., 1].mean(axis=1))
+        by_solid = [self.form.densities(rows) for rows in response.constants(self.form.constants)]
+        if all(len(by_solid[i]) == 1 for i in np.unique(solid)):
+            return np.array([by_solid[i][0] for i in solid])
+        heights = self.kernel.heights(corners)
+        H = np.empty((len(corners), *by_solid[0].shape[1:], *heights.shape[1:]))
+        for i in np.unique(solid).tolist():
+            here = solid == i
+            share = response.share(i, heights[here])
+            basis = interpolation(share, len(by_solid[i]))
+            H[here] = np.einsum("myxn,nij->mijyx", basis, by_solid[i], optimize=True)
+        return H
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])

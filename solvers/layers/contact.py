@@ -14,13 +14,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import eval_jacobi
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.panelled import solved as panelled
 from galinx.solvers.layers.pressure import Polynomial, Pressure, gauss
-from galinx.solvers.sie.collocation import Expansion
+from galinx.solvers.sie.collocation import Expansion, jacobi
 
 #: Polynomials at first, by how much more next time, and at most.
 FIRST, _MORE, MOST = 24, 1.5, 1400
@@ -71,7 +70,7 @@ class Equation:
         """The pressure with so many polynomials."""
         t, w = gauss(terms, self.α, self.β)
         r, _ = gauss(terms - 1, -self.α, -self.β)
-        P = eval_jacobi(np.arange(terms), self.α, self.β, t[:, None])
+        P = jacobi(terms, self.α, self.β, t)
         A = np.empty((terms, terms))
         A[:-1] = self.n / np.pi * (w / (t - r[:, None])) @ P
         by_kernel = self.kernel(r[:, None] - t)
@@ -86,10 +85,12 @@ class Found:
 
     Attributes:
         pressure: the pressure.
+        before: with fewer unknowns.
         change: of it and its intensities, relative.
     """
 
     pressure: Pressure
+    before: Pressure
     change: float
 
 
@@ -111,7 +112,7 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
         if before is not None:
             change = _change(before, now)
             if change <= tolerance / 4.0 or change <= _ROUNDING:
-                return Found(now, change)
+                return Found(now, before, change)
         before = now
     raise SolveError(
         f"with the most unknowns the pressure still changes by {change:.2g}, expected {tolerance:g}: "

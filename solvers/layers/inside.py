@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.layers.fourier import transform
+from galinx.solvers.layers.fourier import Transform, transform
 from galinx.solvers.layers.kernel import ROUNDING, wavenumbers
 from galinx.solvers.layers.medium import Medium, inverse
 from galinx.solvers.layers.stack import Stack
@@ -72,13 +72,24 @@ class Level:
             [*(1j * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
         )  # fmt: skip
 
+    @property
+    def _wanted(self) -> float:
+        return max(self.tolerance / 100.0, ROUNDING)
+
+    @cached_property
+    def _transform(self) -> Transform:
+        first = min(wavenumbers(self.stack), 1.0 / self.depth)
+        return transform(self._of, first, self._wanted)
+
     @cached_property
     def _table(self) -> Table:
-        wanted = max(self.tolerance / 100.0, ROUNDING)
-        first = min(wavenumbers(self.stack), 1.0 / self.depth)
-        found = transform(self._of, first, wanted)
-        allowed = max(wanted, ROUNDING) * found.size / np.pi
-        return tabulated(found, self.depth / 4.0, self.reach, allowed)
+        allowed = self._wanted * self._transform.size / np.pi
+        return tabulated(self._transform, self.depth / 4.0, self.reach, allowed)
+
+    @property
+    def error(self) -> float:
+        """Absolute, of u,X, σ_YY and σ_XY under a pressure whose resultant is that of a punch, 2."""
+        return 2.0 * (self._transform.error / np.pi + self._table.error)
 
     def read(self, t: NDArray, σ: NDArray, g: float, X: NDArray) -> NDArray[np.float64]:
         """u,X times μ, σ_YY and σ_XY at positions, (3, n).

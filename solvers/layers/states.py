@@ -89,6 +89,10 @@ class Frictions:
         """What is read off every pressure, (nodes, ...)."""
         return np.array([what(one.pressure) for one in self.each])
 
+    def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """The same, and with fewer unknowns, (2, nodes, ...)."""
+        return np.array([self.read(what), [what(one.before) for one in self.each]])
+
     @cached_property
     def unresolved(self) -> float:
         """Of the pressures as a function of g, by their last Chebyshev coefficients, relative."""

@@ -11,6 +11,7 @@ from galinx.solvers.profiles import (  # noqa: F401 - each adds its profile
 from galinx.solvers.profiles.profile import (
     PROFILES,
     Profile,
+    check_reach,
     cusp,
     ends_are_found,
     exponent,
@@ -19,4 +20,7 @@ from galinx.solvers.profiles.profile import (
     kinks,
 )
 
-__all__ = ["PROFILES", "Profile", "cusp", "ends_are_found", "exponent", "half_width", "jumps", "kinks"]
+__all__ = [
+    "PROFILES", "Profile", "check_reach", "cusp", "ends_are_found", "exponent", "half_width", "jumps",
+    "kinks",
+]  # fmt: skip

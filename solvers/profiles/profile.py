@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol
 
+import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+from galinx.solvers.errors import SolveError
 
 
 class Profile(Protocol):
@@ -70,6 +72,25 @@ def cusp(profile: Any) -> float:
     """
     k = exponent(profile) or 2.0
     return k - 1.0 if 1.0 < k < 2.0 and len(kinks(profile)) else 0.0
+
+
+def check_reach(profile: Any, left: float, right: float, found: str = "the contact would reach") -> None:
+    """Is the punch known over a contact? Both ways to find one ask.
+
+    Args:
+        profile: the punch.
+        left, right: ends of the contact [m].
+        found: how the message begins.
+
+    Raises:
+        SolveError: the contact is wider.
+    """
+    first, last = getattr(profile, "reach", (-np.inf, np.inf))
+    if left < first or right > last:
+        raise SolveError(
+            f"{found} from X = {left:g} m to {right:g} m, but the punch is known from "
+            f"{first:g} m to {last:g} m only; give more of its shape, or a smaller load"
+        )
 
 
 #: Profiles by the name that scenes use; every profile adds itself.

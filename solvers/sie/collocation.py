@@ -18,6 +18,21 @@ from galinx.solvers.contact import under_punch
 from galinx.solvers.solids.solid import Response
 
 
+def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
+    """P_0^(α,β), P_1^(α,β), … at r, by the three-term recurrence: (*r.shape, count)."""
+    r, s = np.asarray(r, dtype=float), α + β
+    P = np.empty((count, *r.shape))
+    P[0] = 1.0
+    if count > 1:
+        P[1] = α + 1.0 + (s + 2.0) * (r - 1.0) / 2.0
+    for n in range(1, count - 1):
+        m = 2.0 * n + s
+        now = (m + 1.0) * ((m + 2.0) * m * r + (α - β) * s) * P[n]
+        before = 2.0 * (n + α) * (n + β) * (m + 2.0) * P[n - 1]
+        P[n + 1] = (now - before) / (2.0 * (n + 1.0) * (n + s + 1.0) * m)
+    return np.moveaxis(P, 0, -1)
+
+
 @dataclass(frozen=True)
 class Expansion:
     """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_j P_j^(α,β)(r); ``c`` is dimensionless, (terms,)."""
@@ -29,7 +44,7 @@ class Expansion:
     def series(self, r: NDArray) -> NDArray[np.float64]:
         """Σ c_j P_j(r), the pressure without its weight."""
         r = np.asarray(r, dtype=float)
-        return eval_jacobi(np.arange(len(self.c)), self.α, self.β, r[..., None]) @ self.c
+        return jacobi(len(self.c), self.α, self.β, r) @ self.c
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r in (-1, 1)."""

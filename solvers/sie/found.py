@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import cusp, jumps, kinks
+from galinx.solvers.profiles import check_reach, cusp, jumps, kinks
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -279,7 +279,7 @@ def _by_quadrature(
         a, N = float(1.0 + flat.α[i]), float(load[i])
         balance = Balance(profile, a, N * float(n[i]) / np.sin(np.pi * a))
         m, h = start = free_ends(balance, start)
-        _check_reach(profile, m - h, m + h)
+        check_reach(profile, m - h, m + h)
         pressure, tips = pressure_of(balance, response, float(g[i]), m, h, N)
         for row in np.flatnonzero(inverse == k).tolist():
             group = Group(
@@ -304,17 +304,3 @@ def pressure_of(
     pressure = FreeEnds(panels, slope(panels.t), slope, response.n + g * response.n12, g * response.q)
     tips = tuple((x - m) / h for x in kinks(profile)) if jumps(profile) else ()
     return pressure, tips
-
-
-def _check_reach(profile: Any, left: float, right: float) -> None:
-    """Does a table say what is needed?
-
-    Raises:
-        SolveError: the contact is wider.
-    """
-    first, last = getattr(profile, "reach", (-np.inf, np.inf))
-    if left < first or right > last:
-        raise SolveError(
-            f"the contact would reach from X = {left:g} m to {right:g} m, but the punch is known from "
-            f"{first:g} m to {last:g} m only; give more of its shape, or a smaller load"
-        )

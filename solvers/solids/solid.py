@@ -78,14 +78,38 @@ class Response(Protocol):
 
 @runtime_checkable
 class ByCells(Protocol):
-    """A response whose constants in the weak form change with depth."""
+    """A response whose constants in the weak form change with depth: solids one below another."""
 
-    def constants(self, Y: NDArray, names: Sequence[str]) -> NDArray[np.float64]:
-        """The weak form's constants in cells, (cells, names).
+    def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
+        """The weak form's constants in each solid from the top down, (n, names) each.
+
+        They stand at :func:`galinx.solvers.panel.chebyshev_points` of the share of the change from the
+        solid's upper face to its lower one; at a single point where the solid is uniform.
 
         Args:
-            Y: heights of the cells' vertices in the mesh, (cells, 4).
             names: what the form calls them.
+        """
+
+    def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
+        """Which of the solids is at some heights over a, of their shape.
+
+        Args:
+            Y: heights.
+            side: at an interface 1 for the solid above it, -1 for that below.
+        """
+
+    def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
+        """Share of the change that is done at heights over a in one of them, of their shape."""
+
+    def stresses_at(self, solid: NDArray, Y: NDArray, G: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of displacement gradients in solids at heights.
+
+        Args:
+            solid, Y: which solids, and heights over a, (n,).
+            G: μ ∂u_i/∂X_j, (..., n, 2, 2).
+
+        Returns:
+            Array (3, ..., n).
         """
 
     def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:

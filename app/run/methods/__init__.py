@@ -11,9 +11,8 @@ from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, INTENSITIES, PUNCH, SIE
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import exponent
 from galinx.solvers.solution import Body
 
@@ -94,28 +93,22 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
         return FiniteElements(plan, progress, clock)
 
 
-def _of_layers(scene: Scene, solid: Layered, quantity: Quantity | None) -> str:
+def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     """Why finite elements do not give a quantity of layers, "" where they do."""
-    if any(layer.bottom for layer in solid.layers):
-        return "a layer is graded; the integral equation takes such layers"
-    if solid.nearly_incompressible:
+    if body.solid.nearly_incompressible:
         return "a solid is nearly incompressible; the integral equation takes such layers"
-    if SIE not in scene.solve.methods:
-        # Their estimate was seen to be a tenth of the error where a stiff layer is near its limit.
-        return "over layers they are judged beside the integral equation, the method sie, alone"
     if scene.solve.degree or scene.solve.mesh != "confocal":
         return "layers have meshes of their own: no mesh, and no degree"
     if quantity is None:
         return ""
     if quantity is states.INDENTATION:
         return "the far boundary moves with the load"
-    known = ("", INTENSITIES, stresses.ON_SURFACE)
-    return "" if quantity.asked_by in known else "of layers the integral equation gives it"
+    return _without_σ_ZZ(body, quantity)
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
-    if isinstance(body.solid, Layered):
-        return _of_layers(scene, body.solid, quantity)
+    if body.layered:
+        return _of_layers(scene, body, quantity)
     if body.found and not isinstance(body.profile, LINEAR):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'

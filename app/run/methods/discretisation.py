@@ -16,6 +16,7 @@ from galinx.meshes.cells import check_cells
 from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.meshes.store import obtain
 from galinx.postprocess.quantities.quantity import FEM
+from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
@@ -44,7 +45,8 @@ class Discretisation:
         assert plan.fem
         self._whole, self.plan = plan, plan.fem
         self.chunk, self.clock = plan.chunk, clock
-        self.stresses = frozenset(word for word in (ON_SURFACE, BELOW, YIELD) if plan.asks(word, FEM))
+        words = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
+        self.stresses = frozenset(word for word in words if plan.asks(word, FEM))
         self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
         self._progress = progress
         self._meshes: dict[int, tuple[Any, Any]] = {}

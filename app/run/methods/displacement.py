@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
+from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.fem.fitted import FittedSlopes
 from galinx.solvers.fem.interior import InteriorGradients, KeptValues
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
+from galinx.solvers.solids.solid import ByCells
 from galinx.solvers.solution import Surface
 
 
@@ -22,10 +25,14 @@ class Displacement:
         task: the speed, and the places.
         space: the finite element space.
         fields: displacements over N/(2μ).
+        slopes: theirs along X on the surface, where they are known.
     """
 
-    def __init__(self, task: Task, space: Space, fields: Sequence[Any]) -> None:
+    def __init__(
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
+    ) -> None:
         self._task, self._space, self._fields = task, space, fields
+        self._known = slopes
 
     def prepare(self, words: Collection[str]) -> None:
         """Take the derivatives that words of output.quantities ask for, before the fields are freed."""
@@ -35,9 +42,18 @@ class Displacement:
             self._gradients  # noqa: B018
         if YIELD in words:
             self._around  # noqa: B018
+        if AT_INTERFACES in words:
+            self._interfaces  # noqa: B018
+
+    @property
+    def slopes(self) -> SurfaceSlopes | FittedSlopes:
+        """Slopes of the fields along X at the places on the surface."""
+        return self._slopes
 
     @cached_property
-    def _slopes(self) -> Any:
+    def _slopes(self) -> SurfaceSlopes | FittedSlopes:
+        if self._known is not None:
+            return self._known
         return SurfaceSlopes(self._space, self._fields, self._task.places.X)
 
     @cached_property
@@ -52,8 +68,27 @@ class Displacement:
     def _values(self) -> KeptValues:
         return KeptValues(self._space, self._task.response, self._fields)
 
-    def _at(self, points: NDArray) -> InteriorGradients:
-        return InteriorGradients(self._space, self._task.response, self._fields, points, self._values)
+    @cached_property
+    def _interfaces(self) -> list[tuple[NDArray, InteriorGradients, InteriorGradients]]:
+        """Points of each interface, and gradients above and below it."""
+        places, found = self._task.places, []
+        for depth in places.interfaces.tolist():
+            points = np.column_stack([places.along, np.full_like(places.along, -depth)])
+            found.append((points, self._at(points), self._at(points, -1)))
+        return found
+
+    def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
+        """Gradients at points; at an interface above it (1) or below (-1)."""
+        response = self._task.response
+        return InteriorGradients(self._space, response, self._fields, points, self._values, side)
+
+    def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (n, 2) of gradients (states, n, 2, 2), as of ``_at``."""
+        response = self._task.response
+        if not isinstance(response, ByCells):
+            return response.stresses(gradients)
+        Y = points[:, 1]
+        return response.stresses_at(response.solids(Y, side), Y, gradients)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """The surface of states with these weights and contact stress, NaN beside the punch."""
@@ -64,13 +99,30 @@ class Displacement:
 
     def around(self, weights: NDArray) -> NDArray[np.float64]:
         """The same where stresses are looked at for yield, (3, states, k)."""
-        return self._task.response.stresses(self._around.of(weights))
+        return self._stresses(self._task.places.around, self._around.of(weights))
 
     def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
         """The same at points of all states, (1, n, 2), or of each, (states, n, 2): (3, states, n)."""
-        found = self._at(points.reshape(-1, 2))
-        together = len(points) == 1
-        return self._task.response.stresses((found.of if together else found.of_each)(weights))
+        flat = points.reshape(-1, 2)
+        found = self._at(flat)
+        if len(points) == 1:
+            return self._stresses(flat, found.of(weights))
+        each = found.of_each(weights)
+        whole = self._stresses(flat, each.reshape(1, -1, 2, 2))
+        return whole.reshape(3, *each.shape[:2])
+
+    def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).
+
+        Tractions, which both sides share, are the mean of theirs.
+        """
+        found = []
+        for points, above, below in self._interfaces:
+            one = self._stresses(points, above.of(weights))
+            other = self._stresses(points, below.of(weights), -1)
+            tractions = (one[1:] + other[1:]) / 2.0
+            found.append([*tractions, one[0], other[0]])
+        return np.moveaxis(np.array(found), 0, 2)
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
         """What the last digits of the fields can do to σ_XX on the surface, (states, n)."""
@@ -81,5 +133,5 @@ class Displacement:
         """σ_XX, σ_YY, σ_XY inside of states with these weights, (3, states, m)."""
         found = np.empty((3, len(weights), len(self._task.places.points)))
         for some, gradients in self._gradients.by_batches(weights):
-            found[:, :, some] = self._task.response.stresses(gradients)
+            found[:, :, some] = self._stresses(self._task.places.points[some], gradients)
         return found

@@ -14,7 +14,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import before, of_degrees, remaining
+from galinx.postprocess.estimate import SLOWER, before, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
 
@@ -27,27 +27,30 @@ PROBES = 9
 
 @contextmanager
 def climbed(
-    work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
-) -> Iterator[tuple[Ladder, "MeasuredError"]]:
+    work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any],
+    degree: int | None = None, share: float = 1.0,
+) -> Iterator[tuple[Ladder, "MeasuredError"]]:  # fmt: skip
     """A ladder whose degree was raised until the measured error is within tolerance; it is freed at last.
 
     Args:
-        work, task, solved: of the :class:`Ladder`.
+        work, task, solved, degree: of the :class:`Ladder`.
         g: the speed's values of σ_XY/σ_YY, sorted.
+        share: of the tolerance that the error may take.
     """
-    ladder = Ladder(work, task, solved)
+    ladder = Ladder(work, task, solved, degree)
     try:
-        yield ladder, climb(ladder, g)
+        yield ladder, climb(ladder, g, share)
     finally:
         ladder.destroy()
 
 
-def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
+def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
     """Raise the degree until the measured error of sample states is within tolerance.
 
     Args:
         ladder: without a level.
         g: the speed's values of σ_XY/σ_YY, sorted.
+        share: of the tolerance that the error may take.
     """
     plan = ladder.work.plan
     for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
@@ -57,11 +60,11 @@ def climb(ladder: Ladder, g: NDArray) -> "MeasuredError":
     if not ladder.task.body.alike:
         ends = min(ladder.task.loads), max(ladder.task.loads)
         loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
-    error = MeasuredError(ladder, probes, loads)
+    error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
     while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
         ladder.add(g, ladder.degree + 1)
-        error = MeasuredError(ladder, probes, loads)
+        error = MeasuredError(ladder, probes, loads, share)
         changes |= error.changes
     error.changes = changes
     return error
@@ -74,13 +77,16 @@ class MeasuredError:
         ladder: with three levels of rising degree; or with a better one than the last, of a fixed degree.
         probes: values of σ_XY/σ_YY that stand for all of the speed.
         loads: of these probes [N/m]; that of the task if not given.
+        share: of the tolerance that the error may take.
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
         excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
     """
 
-    def __init__(self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None) -> None:
+    def __init__(
+        self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None, share: float = 1.0
+    ) -> None:
         self._ladder = ladder
         found = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(found)
@@ -95,7 +101,7 @@ class MeasuredError:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
                 pairs = (float(pair[i].max()) for pair in self._sample.values())
                 self.changes[degree] = max(pairs, default=0.0)
-        tolerance, unseen = ladder.work.plan.tolerance, self._unseen(found[-1], probes)
+        tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(found[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         self.excessive = any(
             bool((error > np.maximum(tolerance, 1.1 * unseen[name])).any())
@@ -110,29 +116,32 @@ class MeasuredError:
         return {"change_by_degree": changes.tolist() if changes.any() else []}
 
     def of(
-        self, g: NDArray, load: Any = None, last: list[Gauge] | None = None
+        self, g: NDArray, load: Any = None, last: Callable[[], list[Gauge]] | None = None
     ) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors, (states,), by the word of output.quantities that asks for them.
 
         Args:
             g: σ_XY/σ_YY, (states,).
             load: of each state [N/m], (states,); that of the task if not given.
-            last: what was measured of these states on the last level, if it was.
+            last: gives what is measured of these states on the last level, from what is known of them.
         """
         *coarser, finest = self._ladder.levels
         found = [level.measured(g, load) for level in coarser]
-        return self._errors([*found, last or finest.measured(g, load)], g)
+        return self._errors([*found, last() if last else finest.measured(g, load)], g)
 
     def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
         unseen = self._unseen(found[-1], g)
+        own = {gauge.word: gauge.left for gauge in found[-1]}
         return {
-            word: self._left(word, changes) + unseen[word] + ROUNDING * self._rounding[word]
+            word: self._left(word, changes) + unseen[word] + own[word] + ROUNDING * self._rounding[word]
             for word, changes in _changes(found).items()
         }
 
     def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors that the levels show, (states,)."""
-        rate = of_degrees(2 if word == INTENSITIES else 1)
+        # What a thin layer adds converges unevenly: a small change says less there.
+        order = 2 if word == INTENSITIES else 1
+        rate = SLOWER if order == 2 and self._ladder.task.body.layered else of_degrees(order)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
         first, second = changes

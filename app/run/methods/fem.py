@@ -1,7 +1,8 @@
 """Finite elements as a method: the solvers of both modes."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
 from types import ModuleType
 from typing import Any
 
@@ -13,6 +14,7 @@ from galinx.app.plan.task import Plan, Task
 from galinx.app.run.methods import found_punch, given, kinked_punch, own_pressure, punch
 from galinx.app.run.methods.discretisation import Discretisation, quiet_compiler
 from galinx.app.run.methods.method import Pressure, Solver
+from galinx.app.run.methods.sweep import Trained, train
 from galinx.clock import Clock
 from galinx.postprocess.quantities.quantity import FOUND, OWN_PRESSURE
 from galinx.solvers.fem.space import Space
@@ -39,16 +41,24 @@ class FiniteElements:
     def __init__(self, plan: Plan, progress: Progress, clock: Clock) -> None:
         self.work = Discretisation(plan, progress, clock)
         self._mode = MODES[self.work.plan.mode]
-        self._progress, self._speeds = progress, len(plan.tasks)
+        self._progress, self._tasks = progress, plan.tasks
+
+    @cached_property
+    def _trained(self) -> Trained | None:
+        """What tells of speeds that are not solved: made at the first of them, of all of them."""
+        if self.work.plan.sweep is None:
+            return None
+        return train(self.work, list(self._tasks), self._mode, self._progress.say)
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         self.work.mesh(self.work.plan.cuts)
-        self._progress.say(
-            f"finite elements at c = {task.response.c:g} ({task.number + 1} of {self._speeds})"
-        )
-        with quiet_compiler(), self._mode.solver(self.work, task, g) as solver:
-            yield solver
+        with quiet_compiler(), ExitStack() as stack:
+            solver = stack.enter_context(self._trained.at(task, g)) if self._trained else None
+            self._progress.say(
+                f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
+            )
+            yield solver or stack.enter_context(self._mode.solver(self.work, task, g))
 
     @contextmanager
     def one_state(

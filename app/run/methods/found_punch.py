@@ -25,8 +25,8 @@ from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
 from galinx.postprocess.pressure import JacobiPressure, chebyshev, from_moments, without_zeros
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.punch import ContactStates, Part, combined
 from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.states import ContactStates, Part, combined
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -100,6 +100,9 @@ class FoundStates:
 
 class FoundLevel(PunchLevel):
     """Punches at one degree; see :class:`PunchLevel`."""
+
+    #: The pressure vanishes at a tip, and next to it they would be all there is.
+    shows_rest = True
 
     def heights(self) -> NDArray[np.float64]:
         s = self.space.chart.surface_position(self.space.contact.s)
@@ -264,6 +267,11 @@ class FoundPunches:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return self.found.contact.v0
 
+    @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        return np.full(len(self.g), float(self.at.fitted))
+
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
@@ -289,3 +297,7 @@ class FoundPunches:
             lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
             self.half_width,
         )  # fmt: skip
+
+
+#: See :mod:`.punch`.
+Level, AtSpeed = FoundLevel, FoundAtSpeed

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.postprocess import scale
 from galinx.postprocess.pressure import JacobiPressure
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 
 #: Points inside on which the error is measured; of more, so many are picked.
@@ -34,11 +36,13 @@ class Gauge:
         word: the word.
         values: (states, n).
         scale: what they are relative to, (states, n).
+        left: relative error that a level knows of itself, (states,) or 0.
     """
 
     word: str
     values: NDArray[np.float64]
     scale: NDArray[np.float64]
+    left: Any = 0.0
 
     def change(self, coarse: "Gauge") -> NDArray[np.float64]:
         """Largest relative difference of each state from the same gauge of another level, (states,)."""
@@ -53,6 +57,7 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray) -> Gauge:
         INTENSITIES,
         values,
         np.concatenate([scale.of_factor(factor), 2.0 + 0.0 * moments[:, 1:6]], axis=1),
+        pressure.unresolved,
     )
 
 
@@ -70,6 +75,13 @@ def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
     """Stresses inside, (3, states, m), and the word that asks for them."""
     size = scale.of_inside(σ, *points.T)
     return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
+
+
+def of_interfaces(σ: NDArray) -> Gauge:
+    """Stresses along interfaces, (4, states, interfaces, n)."""
+    size = np.broadcast_to(scale.of_interfaces(σ), σ.shape)
+    values, of = (np.moveaxis(part, 1, 0).reshape(σ.shape[1], -1) for part in (σ, size))
+    return Gauge(AT_INTERFACES, values, of)
 
 
 class StressGauges:
@@ -93,6 +105,11 @@ class StressGauges:
         """Are there any?"""
         return bool(self._words)
 
+    @property
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is asked for."""
+        return self._displacement.slopes if self._words else None
+
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""
         found, places = [], self._task.places
@@ -103,6 +120,8 @@ class StressGauges:
             found.append(of_inside(self._displacement.inside(weights), places.points))
         if YIELD in self._words:
             found.append(of_inside(self._displacement.around(weights), places.around, YIELD))
+        if AT_INTERFACES in self._words:
+            found.append(of_interfaces(self._displacement.interfaces(weights)))
         return found
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:

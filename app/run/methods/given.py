@@ -20,7 +20,7 @@ from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Body, Places, Surface
 
 
 @contextmanager
@@ -168,6 +168,16 @@ class GivenLoads:
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         return self.at.displacement.inside(self.at.level.weights(self.g))
+
+    @property
+    def places(self) -> Places:
+        """Where stresses are."""
+        return self.at.task.places
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self.at.displacement.interfaces(self.at.level.weights(self.g))
 
     @cached_property
     def strength(self) -> Strength:

@@ -62,14 +62,19 @@ class Ladder:
         work: gives spaces.
         task: the speed.
         solved: solves on a space for all values of g.
+        degree: to begin with; the plan's if not given.
 
     Attributes:
         degree: of the last level.
         levels: the last ones.
     """
 
-    def __init__(self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any]) -> None:
-        self.work, self.task, self.degree = work, task, work.plan.degrees[task.number]
+    def __init__(
+        self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any],
+        degree: int | None = None,
+    ) -> None:  # fmt: skip
+        self.work, self.task = work, task
+        self.degree = degree or work.plan.degrees[task.number]
         self.levels: list[Any] = []
         self._solved = solved
         self._work = WorkDone()

@@ -14,21 +14,27 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climbed
+from galinx.app.run.methods.error import climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
-from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
-from galinx.postprocess.pressure import JacobiPressure, chebyshev, contact_recovery, from_moments
+from galinx.postprocess.pressure import (
+    ContactRecovery,
+    JacobiPressure,
+    chebyshev,
+    contact_recovery,
+    from_moments,
+)
 from galinx.postprocess.stretched import from_moments as from_stretched
 from galinx.postprocess.yielding.strength import Strength
-from galinx.solvers.fem.punch import ContactStates, SlidingPunch
+from galinx.solvers.fem.fitted import FittedPunch
+from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.states import ContactStates, Punch
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Body, Places, Surface
 
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and,
-#: without stresses, nothing more is added for friction. The most keeps results on any number of ranks
-#: equal to 1e-9.
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
+#: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
 NEGLIGIBLE, NEGLIGIBLE_MOST = 1e-4, 1e-10
 
 
@@ -64,30 +70,54 @@ class PunchLevel:
         task: the speed.
         space: of the degree.
         g: all values of σ_XY/σ_YY that will be asked for.
+        fitted: a punch that other speeds tell of; it is solved if not given.
+        recovery: the maps, where they are known for the space.
+
+    Attributes:
+        shows_rest: do stresses show what friction leaves of the contact forces?
     """
 
-    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
-        plan, self.task, self.space = work.plan, task, space
-        self._tests = plan.tests
+    shows_rest = False
+
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray,
+        fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
+    ) -> None:  # fmt: skip
+        plan, self.task, self.space, self._work = work.plan, task, space, work
+        self._tests, self._fitted = plan.tests, fitted
+        if fitted is not None and recovery is not None:
+            self.punch: Punch = fitted
+            self.recovery = recovery
+            return
         negligible = min(NEGLIGIBLE * plan.tolerance, NEGLIGIBLE_MOST)
-        # Next to a tip stresses show what is left of a pressure that vanishes there.
-        left = 0.0 if work.stresses else negligible
-        self.punch = SlidingPunch(space, task.response, plan.solver, negligible, self.heights(), left)
+        left = 0.0 if self.shows_rest and work.stresses else negligible
+        solved = SlidingPunch(space, task.response, plan.solver, negligible, self.heights(), left)
+        self.punch, self.factor = solved, solved.factor
         more = 2 * (space.degree - plan.degrees[task.number])
         self.recovery = contact_recovery(
             space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)
         )
         # The basis is complete before traces are taken, and the same whatever states are still to do.
-        self.punch.prepare(g)
-        self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.punch.fields))
+        solved.prepare(g)
+        self._gauges  # noqa: B018 - cached
+
+    @cached_property
+    def _gauges(self) -> StressGauges:
+        return StressGauges(self._work, self.task, self.displacement)
+
+    @property
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is asked for."""
+        return self._gauges.slopes
+
+    def displacement(self, at: Task | None = None) -> Displacement:
+        """What is read off the fields, at the places of the task or of another."""
+        slopes = self._fitted.slopes if self._fitted else None
+        return Displacement(at or self.task, self.space, self.punch.fields, slopes)
 
     def heights(self) -> NDArray[np.float64] | None:
         """The punch's over N/(2μ) at the contact nodes, or of shapes; None for a flat punch."""
         return profile_on(self.space, self.task.body)
-
-    @property
-    def factor(self) -> Any:
-        return self.punch.factor
 
     @property
     def mirrored(self) -> bool:
@@ -152,7 +182,7 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: chebyshev(tests.stretch(r), tests.count + more)
+    return lambda r: tests.stretch.functions(r, tests.count + more)
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
@@ -166,11 +196,12 @@ class PunchesAtSpeed:
     Args:
         ladder: climbed.
         error: of its last level.
+        fitted: did other speeds tell of this one?
     """
 
-    def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
+    def __init__(self, ladder: Any, error: Any, fitted: bool = False) -> None:
         self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
-        self.displacement = Displacement(ladder.task, self.level.space, self.level.punch.fields)
+        self.displacement, self.fitted = self.level.displacement(), fitted
         self._ladder = ladder
 
     def states(self, g: NDArray, load: Any = None) -> "Punches":
@@ -230,11 +261,18 @@ class Punches:
         """Indentation over N/(2μ), (states,)."""
         return self.contact.v0
 
+    @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        return np.full(len(self.g), float(self.at.fitted))
+
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        seen = self.at.level.gauges(self.contact, self._pressure)
-        return self.at.error.of(self.g, self.body.load, seen)
+        level = self.at.level
+        return self.at.error.of(
+            self.g, self.body.load, lambda: level.gauges(self.contact, self._pressure)
+        )
 
     @cached_property
     def surface(self) -> Surface:
@@ -246,6 +284,21 @@ class Punches:
     def inside(self) -> NDArray[np.float64]:
         return self.at.displacement.inside(self.contact.weights)
 
+    @property
+    def places(self) -> Places:
+        """Where stresses are."""
+        return self.at.task.places
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self.at.displacement.interfaces(self.contact.weights)
+
+    @property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, (states, m)."""
+        return self.body.σ_ZZ(self.inside, self.at.task.places.points[:, 1])
+
     @cached_property
     def strength(self) -> Strength:
         """Yield."""
@@ -254,3 +307,7 @@ class Punches:
         return Strength(
             lambda points: field(points, weights), self.body, at.task.response, self.g, self.local
         )
+
+
+#: What a fit through speeds puts together: a level, and the punches that it tells of.
+Level, AtSpeed = PunchLevel, PunchesAtSpeed

@@ -202,6 +202,24 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
     assert done.stdout == "[False, False, True]\n", done.stderr
 
 
+def test_a_library_that_drops_the_request_says_nothing_of_it():
+    script = (
+        "from galinx.app.process import stop; stop.listen()\n"
+        "class Library:\n"
+        "    def __init__(self, error): self.error = error\n"
+        "    def __del__(self): raise self.error\n"
+        "Library(stop.Asked()); Library(ValueError('its own'))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert "Asked" not in done.stderr and "ValueError: its own" in done.stderr
+
+
 def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):
     scene, whole, _ = sweep
     target = tmp_path / "out.h5"

@@ -148,7 +148,6 @@ def test_layers_with_a_fault_are_told_once(layers, told):
     ("old", "new", "told"),
     [
         ('["sie"]', '["closed_form"]', 'solve.methods is ["closed_form"]'),
-        ('["sie"]', '["fem"]', 'solve.methods is ["fem"]'),
         ('methods = ["sie"]', 'mode = "traction"', 'solve.mode is "traction"'),
         ("[friction]", '[punch]\nprofile = "parabolic"\nradius = 1.0\n[friction]', "ends are found"),
     ],

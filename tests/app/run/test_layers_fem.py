@@ -15,14 +15,18 @@ from galinx.meshes.cells import check_cells
 from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.layers.in_cells import line_load
+from galinx.postprocess import scale
+from galinx.solvers.layers.far import line_load
+from galinx.solvers.layers.in_cells import LayersInCells
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.medium import Medium
 from galinx.solvers.solids.isotropic import Isotropic
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers import scene
+from test_layers import COAT, GRADED, scene
 from test_stack import random_stack
 
+PARTS = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 
@@ -64,13 +68,80 @@ def test_surface_stresses_within_the_estimate():
     assert error <= data["states/fem/estimate_sigma_XX"][0] <= 1e-4
 
 
-@pytest.mark.parametrize("seed", range(30) if THOROUGH else [6])
-def test_random_stacks(seed):
-    solid, c = random_stack(seed)
+def random_scene(seed, graded, quantities=("sif",)):
+    solid, c = random_stack(seed, graded)
     f = np.random.default_rng(1000 + seed).uniform(-1.0, 1.0)
-    data = galinx.compute(scene_of(solid, c, f)).data
+    return scene_of(solid, c, f, quantities)
+
+
+@pytest.mark.parametrize(
+    ("seed", "graded"),
+    [(seed, graded) for seed in range(30) for graded in (False, True)] if THOROUGH else [(6, False)],
+)
+def test_random_stacks(seed, graded):
+    data = galinx.compute(random_scene(seed, graded)).data
     assert off(data) <= data["states/fem/estimate"][0] + data["states/sie/estimate"][0]
     assert off(data) <= 1e-6
+
+
+def compared(one, other, scale):
+    return float((np.abs(one - other) / scale).max())
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, *(1e-6,) * THOROUGH])
+@pytest.mark.parametrize("layers", [COAT, GRADED])
+def test_stresses_at_interfaces_are_those_of_the_integral_equation(layers, tolerance):
+    wanted = dict(tolerance=tolerance, methods=("sie", "fem"), quantities=("sif", "interfaces"))
+    result = galinx.compute(scene(layers=layers, **wanted))
+    data = result.data
+    assert result.verdict == "PASS"
+    both = [
+        np.array([data[f"interfaces/{method}/{name}"] for name in PARTS]) for method in ("fem", "sie")
+    ]
+    error = compared(*both, scale.of_interfaces(both[1]))
+    estimates = [data[f"states/{method}/estimate_interfaces"][0] for method in ("fem", "sie")]
+    assert error <= sum(estimates) <= 2.0 * tolerance
+    above, below = both[0][2:]
+    if layers == GRADED:  # the solid does not jump there, nor does the stress
+        assert np.abs(above - below).max() <= tolerance * np.abs(above).max()
+    else:
+        assert np.abs(above).max() > 2.0 * np.abs(below).max()
+
+
+def test_alone_they_say_how_good_they_are():
+    result = galinx.compute(scene(methods=("fem",), quantities=("sif",)))
+    data = result.data
+    assert result.verdict == "PASS"
+    error = abs(data["states/fem/K_I_left"][0] / 0.46957498690109 - 1.0)
+    assert error <= data["states/fem/estimate"][0] <= 1e-6
+
+
+def test_a_graded_layer_whose_faces_are_alike_is_uniform():
+    same = COAT + 'to = { E = "7.5 GPa" }\n'
+    found = [
+        galinx.compute(scene(layers=layers, tolerance=1e-4, methods=("fem",), quantities=("sif",))).data
+        for layers in (COAT, same)
+    ]
+    for end in ("left", "right"):
+        one, other = (data[f"states/fem/K_I_{end}"][0] for data in found)
+        assert one == pytest.approx(other, rel=1e-5)
+
+
+@pytest.mark.parametrize("V", [0.0, 0.6])
+def test_layers_of_the_substrates_solid_move_as_it_does(V):
+    """What is left of the expansion falls with the distance's square."""
+    solid = Isotropic(2.5, 0.25, 1.0)
+    stack = Layered((Layer(0.7, solid), Layer(0.5, solid)), solid)
+    response = LayersInCells(stack, V / solid.c_s, 1.0)
+
+    def left(R):
+        X, Y = R * np.array([1.0, -1.0, 0.3, -0.7]), np.array([-0.4, -1.0, -R, -0.8 * R])
+        exact = -2.0 * line_load(response.medium(solid), X, Y)
+        return np.abs(response.far(X, Y) - exact).max()
+
+    near, far = left(50.0), left(100.0)
+    assert near < 1e-3
+    assert 3.5 < near / far < 4.5
 
 
 @pytest.mark.parametrize("depths", [(0.01,), (1.0,), (100.0,), (0.05, 0.1, 7.0)])

@@ -1,0 +1,61 @@
+"""Which speeds are fitted, and in which variable."""
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx import template
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.sweep import LEAST, swept, variable
+from galinx.app.plan.words import expense, lines
+from galinx.solvers.solids import Isotropic
+
+ISOTROPIC = Isotropic(E=1.0, ν=0.25, ρ=1.0)
+
+
+def responses(solid, count, most=0.95):
+    return [solid.response(c) for c in np.linspace(0.0, most * solid.limit(), count)]
+
+
+def test_few_speeds_are_solved_each_and_many_on_demand():
+    g = np.linspace(-0.5, 0.3, 40)
+    assert swept("auto", responses(ISOTROPIC, LEAST - 1), g) is None
+    assert swept("every", responses(ISOTROPIC, 100), g) is None
+    assert swept("auto", 100 * responses(ISOTROPIC, 2), g) is None  # the same over and over
+    sweep = swept("auto", responses(ISOTROPIC, LEAST), g)
+    assert len(sweep.z) == LEAST and sweep.g.tolist() == [-0.5, 0.3] and not sweep.few
+
+
+def test_few_frictions_are_sampled_themselves():
+    sweep = swept("auto", responses(ISOTROPIC, LEAST), np.array([0.2, -0.3, 0.2, 0.0]))
+    assert sweep.few and sweep.g.tolist() == [-0.3, 0.0, 0.2]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_variable_tells_speeds_of_any_solid_apart(seed):
+    solid = random_solid(seed)
+    for most in (0.99, 0.3, 1e-3, 1e-7):
+        z = variable(responses(solid, 50, most))
+        assert np.all(np.diff(z) > 0.0)
+
+
+def test_what_does_not_contract_has_the_square_of_the_speed():
+    class Still:
+        contraction = 1j
+
+        def __init__(self, c):
+            self.c = c
+
+    speeds = [0.0, 0.5, 0.2]
+    np.testing.assert_array_equal(variable([Still(c) for c in speeds]), np.square(speeds))
+
+
+def test_a_plan_says_what_it_will_do():
+    speeds = {"motion.c": {"from": 0.0, "to": 0.9, "number": 40}}
+    few = make_plan(template("tables4_5", speeds))
+    each = make_plan(template("tables4_5", speeds | {"solve.sweep": "every"}))
+    (told,) = [line for line in lines(template("tables4_5", speeds), few) if "tell the others" in line]
+    assert "40 speeds, c = 0 to 0.9" in told
+    assert not any("tell the others" in line for line in lines(template("tables4_5", speeds), each))
+    seconds = [float(expense(plan).split()[1]) for plan in (few, each)]
+    assert seconds[0] < 0.6 * seconds[1]

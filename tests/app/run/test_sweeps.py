@@ -1,0 +1,181 @@
+"""Many speeds of which few are solved: against speeds that are solved by themselves, and exact ones."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+from support import HOME, command
+
+import galinx
+from galinx.app.scene.read import parse
+from galinx.postprocess import scale
+from galinx.postprocess.tables import solved_speeds
+from galinx.solvers.parameters import values
+from galinx.solvers.solids import SOLIDS, Isotropic
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
+
+ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
+#: Frictions of both signs, more than are sampled themselves.
+FRICTION = "mu_c = [0.3, 0.8]\nsigma0_over_load = 2e4"
+
+
+def scene(solid, c, tolerance, quantities=("sif", "surface"), punch="", solve="", friction=FRICTION):
+    kind = next(name for name, known in SOLIDS.items() if known is type(solid))
+    constants = "\n".join(
+        f"{key} = {json.dumps(value)}"
+        for key, value in values(solid).items()
+        if np.size(value) and value is not None
+    )
+    return parse(
+        f'[solid]\nkind = "{kind}"\n{constants}\n[punch]\n{punch}\n[friction]\n{friction}\n[motion]\n'
+        f'c = {np.asarray(c).tolist()}\nstrokes = ["forward", "backward"]\nX_over_L = [0.2, 0.6, 0.95]\n'
+        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n"
+    )
+
+
+def differences(result, other):
+    """Largest relative differences of what both have, by what the estimates are of; (states,)."""
+    some, data = np.isin(result.data["states/c"], np.unique(other.data["states/c"])), other.data
+    mine = {
+        path: array[some]
+        for path, array in result.data.items()
+        if path.startswith(("states/", "surface/fem"))
+    }
+    by_c = np.argsort(mine["states/c"], kind="stable"), np.argsort(data["states/c"], kind="stable")
+
+    def of(path):
+        return mine[path][by_c[0]], data[path][by_c[1]]
+
+    found = {}
+    np.testing.assert_array_equal(*of("states/g"))
+    K = [np.array(pair) for pair in zip(*(of(f"states/fem/K_I_{end}") for end in ("left", "right")))]
+    size = np.maximum(np.abs(K[1]).max(axis=0), 1e-9)
+    found["estimate"] = np.abs(K[0] - K[1]).max(axis=0) / size
+    if "states/fem/half_width" in data:
+        h, other_h = of("states/fem/half_width")
+        found["estimate"] = np.maximum(found["estimate"] * 0.0, np.abs(h / other_h - 1.0))
+    if "surface/fem/sigma_XX" in data:
+        σ, other_σ = of("surface/fem/sigma_XX")
+        off = np.abs(σ - other_σ) / scale.of_in_plane(other_σ, data["surface/X_over_a"])
+        found["estimate_sigma_XX"] = off.max(axis=1)
+    return found, {name: sum(of(f"states/fem/{name}")) for name in found}
+
+
+def check(result, other, tolerance):
+    """A sweep is what speeds solved by themselves are, and says how good it is."""
+    found, allowed = differences(result, other)
+    for name, off in found.items():
+        assert off.max() <= tolerance, name
+        assert np.all(off <= allowed[name]), name
+    assert np.all(result.data["states/fem/true_error"] <= result.data["states/fem/estimate"])
+    assert result.verdict == "PASS"
+
+
+def solved(result):
+    """Speeds that were solved, and the others; what the archive says of them agrees."""
+    data = result.data
+    of_speed = dict(zip(data["run/fem/c"].tolist(), data["run/fem/factorisations"].tolist()))
+    fitted = data["states/fem/fitted"].tolist()
+    told = {c: one == 0.0 for c, one in zip(data["states/c"].tolist(), fitted)}
+    assert {c: count > 0 for c, count in of_speed.items()} == told
+    both = [sorted(c for c, one in told.items() if one is which) for which in (True, False)]
+    assert f"{len(both[0])} of {len(told)} speeds" in solved_speeds(data)
+    return both
+
+
+@pytest.mark.parametrize(
+    ("solid", "punch", "tolerance"),
+    [
+        (ISOTROPIC, "", 1e-4),
+        (random_solid(3), "", 1e-3),
+        (random_solid(5), "", 1e-3),
+        (ISOTROPIC, 'profile = "parabolic"\nradius = 0.1\nload = [1e4, 7e4]', 1e-4),
+        (ISOTROPIC, "tilt = 2e-4\nload = [1e4, 5e4, 2e5]", 1e-4),
+    ],
+    ids=["isotropic", "orthotropic", "cubic", "parabola", "tilted"],
+)
+def test_a_sweep_is_what_its_speeds_are_by_themselves(solid, punch, tolerance):
+    c = np.random.default_rng(7).permutation(np.linspace(0.0, 0.85, 24)) * solid.limit()
+    result = galinx.compute(scene(solid, c, tolerance, punch=punch))
+    once, told = solved(result)
+    assert len(once) <= 12
+    alone = [told[i] for i in np.linspace(0, len(told) - 1, 3).astype(int)]
+    other = galinx.compute(scene(solid, alone, tolerance, punch=punch))
+    assert "states/fem/fitted" not in other.data
+    check(result, other, tolerance)
+
+
+def test_speeds_that_hardly_differ_take_no_more_than_what_measures_the_error():
+    c = 0.5 + np.linspace(0.0, 1e-4, 20)
+    result = galinx.compute(scene(ISOTROPIC, c, 1e-3))
+    once, told = solved(result)
+    assert len(once) == 5
+    check(result, galinx.compute(scene(ISOTROPIC, told[:2], 1e-3)), 1e-3)
+
+
+def test_a_law_whose_friction_follows_the_speed():
+    c = np.linspace(0.05, 0.8, 20)
+    law = 'model = "stribeck"\nmu_c = 0.3\nmu_s = 0.9\nstribeck_velocity = 900.0'
+    result = galinx.compute(scene(ISOTROPIC, c, 1e-4, ("sif",), friction=law))
+    _, told = solved(result)
+    assert len(np.unique(result.data["states/g"])) == 40
+    check(result, galinx.compute(scene(ISOTROPIC, told[::4], 1e-4, ("sif",), friction=law)), 1e-4)
+
+
+def test_every_speed_is_solved_where_that_is_asked_for():
+    result = galinx.compute(
+        scene(ISOTROPIC, np.linspace(0.0, 0.5, 16), 1e-2, ("sif",), solve='sweep = "every"')
+    )
+    assert "states/fem/fitted" not in result.data and not solved_speeds(result.data)
+    assert np.all(result.data["run/fem/factorisations"] > 0)
+
+
+def test_what_no_fit_tells_well_enough_is_solved(monkeypatch):
+    from galinx.app.run.methods import sweep
+
+    monkeypatch.setattr(sweep, "FIT", 1e-12)
+    c = np.linspace(0.0, 0.8, 16)
+    result = galinx.compute(scene(ISOTROPIC, c, 1e-2, ("sif",)))
+    assert np.all(result.data["run/fem/factorisations"] > 0)
+    assert not result.data["states/fem/fitted"].any() and result.verdict == "PASS"
+
+
+def test_two_ranks_tell_what_one_does(tmp_path):
+    text = scene(ISOTROPIC, np.linspace(0.0, 0.8, 16), 1e-2).text
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    found = []
+    for ranks in ((), ("-n", "2")):
+        path = tmp_path / f"{len(ranks)}.h5"
+        done = command(*ranks, "run", tmp_path / "scene.toml", "-o", path, cwd=HOME)
+        assert done.returncode == 0 and "speeds solved, a fit tells the others" in done.stdout
+        found.append(galinx.load(path).data)
+    for path in (
+        "states/fem/K_I_left",
+        "states/fem/estimate",
+        "surface/fem/sigma_XX",
+        "states/fem/fitted",
+    ):
+        np.testing.assert_allclose(found[1][path], found[0][path], rtol=1e-9)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
+def test_all_of_256_speeds_at_once():
+    c = np.linspace(0.0, 0.98, 256) * ISOTROPIC.limit()
+    friction = "mu_c = [0.1, 0.3, 0.5, 0.8, 1.2]\nsigma0_over_load = [5e3, 2e4]"
+    result = galinx.compute(scene(ISOTROPIC, c, 1e-6, friction=friction))
+    assert len(solved(result)[0]) <= 14
+    each = scene(ISOTROPIC, c, 1e-6, friction=friction, solve='sweep = "every"')
+    check(result, galinx.compute(each), 1e-6)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
+@pytest.mark.parametrize("seed", range(12))
+def test_all_speeds_of_random_solids(seed):
+    rng, solid = np.random.default_rng(seed), random_solid(seed)
+    c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.95), 32)) * solid.limit()
+    tolerance = 10.0 ** rng.uniform(-6.0, -3.0)
+    result = galinx.compute(scene(solid, c, tolerance))
+    check(result, galinx.compute(scene(solid, c, tolerance, solve='sweep = "every"')), tolerance)

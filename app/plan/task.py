@@ -114,6 +114,11 @@ class Plan:
         """Number of states that differ by more than their load, where contacts of all loads are alike."""
         return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
 
+    @property
+    def shared(self) -> bool:
+        """Is there something that several ranks do together?"""
+        return self.fem is not None or self.starts is not None
+
     def asks(self, word: str, method: str = "") -> bool:
         """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
         return any(

@@ -69,9 +69,9 @@ def compute(
             for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
                 sink.put(path, values)
     judge = Judge(scene, plan.rules)
-    if plan.starts and ranks.is_root():
+    if plan.starts:
         _put_starts(sink, plan, judge, progress, clock)
-    if plan.methods:
+    if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         collector = Collector(sink, judge, progress, journal, plan, clock)
         for part in _parts(plan, states, collector.earlier(), progress, clock):
@@ -92,13 +92,14 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
 
 
 def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
-    """Starts from rest; one rank does them all."""
+    """Starts from rest."""
     assert plan.starts
     progress.say("starts from rest")
     found = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
     for path, values in found.items():
         sink.put(path, values)
-    judge.see(comparisons(found, plan.body.load, plan.rules))
+    if ranks.is_root():
+        judge.see(comparisons(found, plan.body.load, plan.rules))
 
 
 def _parts(
@@ -113,7 +114,8 @@ def _parts(
     work = Work(plan, states.g, methods, clock, finished)
     tasks = (task for task in plan.tasks if work.to_do(task))
     if plan.fem and plan.fem.shared_speeds:
-        yield from shared_out(list(tasks), work.parts)
+        # The fastest are the dearest.
+        yield from shared_out(sorted(tasks, key=lambda task: -task.response.c), work.parts)
     else:
         for task in tasks:
             yield from work.parts(task)

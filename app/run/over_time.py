@@ -1,13 +1,13 @@
 """Starts from rest of a scene: both methods, one speed after the other."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 from numpy.typing import NDArray
 
+from galinx.app import ranks
 from galinx.app.errors import finite_elements_installed
 from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
@@ -26,6 +26,8 @@ from galinx.solvers.transient.punch import StartingPunch, smooth
 _STEP, _TERMS = 0.2, 24
 
 _Found = dict[str, NDArray[np.float64]]
+#: A method and a speed.
+_Job = tuple[str, float]
 
 
 def follow(
@@ -33,15 +35,45 @@ def follow(
 ) -> _Found:
     """What happens over time in each start: datasets by path.
 
+    Under MPI this is collective, speeds and methods are shared out, and rank 0 alone has what is found.
+
     Raises:
         SolveError: finite elements could not be solved.
     """
     assert isinstance(solid, Isotropic)  # what the plan has made sure of
+    if FEM in starts.methods:
+        _import(clock)
+    # Finite elements are the dearer ones, and the fastest of them.
+    jobs = [(name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.g)[::-1]]
+    found: dict[_Job, list[_Found]] = {}
+    of = len(starts.methods) * starts.count
+    for job, courses in _computed(jobs, lambda job: _courses(job, starts, solid, clock)):
+        found[job] = courses
+        done(sum(map(len, found.values())), of)
+    return _joined(starts, solid, found) if ranks.is_root() else {}
+
+
+def _courses(job: _Job, starts: Starts, solid: Isotropic, clock: Clock) -> list[_Found]:
+    method, c = job
+    return (_finite_elements if method == FEM else _integral_equation)(starts, solid, c, clock)
+
+
+def _computed(
+    jobs: list[_Job], solve: Callable[[_Job], list[_Found]]
+) -> Iterator[tuple[_Job, list[_Found]]]:
+    """What each job gives, on rank 0."""
+    if ranks.size() == 1:
+        return ((job, solve(job)) for job in jobs)
+    from galinx.app.run.share import shared_out
+
+    return shared_out(jobs, lambda job: iter([(job, solve(job))]))
+
+
+def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -> _Found:
+    """Each start a row."""
     t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
-    found: list[_Found] = []
+    every = []
     for c, of_speed in starts.g.items():
-        by_sie = _integral_equation(starts, solid, c, clock) if SIE in starts.methods else None
-        by_fem = _finite_elements(starts, solid, c, clock) if FEM in starts.methods else None
         for i, g in enumerate(of_speed):
             steady = FlatPunch(solid.response(c), g)
             one = {
@@ -49,11 +81,10 @@ def follow(
                 rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
                 rows.STEADY_K_I.path: np.array(steady.K_I),
             }  # fmt: skip
-            for method in (by_sie, by_fem):
-                one |= method[i] if method else {}
-            found.append(one)
-            done(len(found), starts.count)
-    joined = {path: np.array([one[path] for one in found]) for path in found[0]}
+            for method in (SIE, FEM):
+                one |= found[method, c][i] if method in starts.methods else {}
+            every.append(one)
+    joined = {path: np.array([one[path] for one in every]) for path in every[0]}
     return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
 
 
@@ -99,13 +130,21 @@ def _share(ramp: float, t: float) -> float:
     return float(smooth(np.array(t), ramp))
 
 
+def _import(clock: Clock) -> None:
+    """On every rank, for PETSc begins on all of them or waits for the others for ever."""
+    with clock("import of dolfinx"), finite_elements_installed():
+        import galinx.solvers.fem.start  # noqa: F401
+
+
 def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
     """Values, times, and work with energy of each friction at a speed."""
-    with clock("import of dolfinx"), finite_elements_installed():
-        from galinx.solvers.fem.distributed import distribute
-        from galinx.solvers.fem.dynamic import Motion
-        from galinx.solvers.fem.space import Space
-        from galinx.solvers.fem.start import StartFromRest
+    from mpi4py import MPI
+
+    from galinx.solvers.fem.distributed import distribute
+    from galinx.solvers.fem.dynamic import Motion
+    from galinx.solvers.fem.space import Space
+    from galinx.solvers.fem.start import StartFromRest
+
     response = solid.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)

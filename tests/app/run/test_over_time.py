@@ -37,6 +37,14 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert "Starts from rest" in shown
 
 
+def test_two_ranks_end_as_one_does(tmp_path):
+    """Where nothing but starts is asked for, every rank takes part: PETSc waits for all of them."""
+    changes = [f"--set={key}={value}" for key, value in QUICK.items()]
+    done = command("-n", 2, "run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert galinx.load(tmp_path / "s.h5").attributes["verdict"] == "PASS"
+
+
 def test_a_step_may_be_given_and_states_of_one_friction_start_once():
     more = {"motion.strokes": ["forward", "forward"], "time.step": 0.25, "solve.methods": ["sie"]}
     data = computed("start_from_rest", QUICK | more).data

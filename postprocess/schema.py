@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from galinx.postprocess import compare_over_time  # noqa: F401  adds its rules
 from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite

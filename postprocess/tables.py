@@ -8,7 +8,7 @@ import numpy as np
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, runs, slider, validity, yielding
+from galinx.postprocess.quantities import Quantity, over_time, runs, slider, validity, yielding
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
@@ -233,3 +233,21 @@ def sliders_sheet(data: dict[str, Any]) -> Sheet:
     rows = [[str(n), *(f"{value:.6g}" for value in values)] for n, values in enumerate(zip(*columns))]
     heads = ["law", *(head for head, _ in _OF_SLIDERS)]
     return Sheet("Stick-slip of the slider", heads, rows, ["peak, least: of the velocity; nan: no cycle"])
+
+
+def starts_sheet(data: dict[str, Any]) -> Sheet:
+    """Where the first starts from rest have come to at the end, by the better method that there is."""
+    title = "Starts from rest, at the end"
+    method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
+    if not method:
+        return Sheet(title, [], [], [])
+    c, g, steady = (
+        data[row.path][:LIMIT] for row in (over_time.SPEED, over_time.RATIO, over_time.STEADY_CENTRE)
+    )
+    by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
+    last = [data[row[method].path][:LIMIT, -1] for row in by_method]
+    columns = [values.tolist() for values in (c, g, *last, steady)]
+    rows = [[f"{value:.6g}" for value in row] for row in zip(*columns)]
+    heads = ["c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady centre/a"]
+    end = data[over_time.TIMES.path][-1]
+    return Sheet(title, heads, rows, [f"at t = {end:g} a/c_s; centre: of the pressure, towards +X"])

@@ -40,7 +40,7 @@ def run(
     clock = Clock("start and end", age())
     path = output or Path(scene.stem + ".h5")
     checked = _read(scene, changes, unset)
-    if not ranks.is_root() and not make_plan(checked).fem:
+    if not ranks.is_root() and not make_plan(checked).shared:
         return errors.GOOD  # nothing to share
     target = Target(path, None, overwrite, options.inputs(scene))
     if not ranks.is_root():

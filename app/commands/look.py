@@ -27,6 +27,7 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
         limits_sheet,
         loops_sheet,
         sliders_sheet,
+        starts_sheet,
         states_sheet,
     )
 
@@ -39,7 +40,7 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
         else:
             states = states_sheet(data, attributes["title"], scaled)
             friction = inner_sheet(data), loops_sheet(data), sliders_sheet(data)
-            sheets = states, *friction, limits_sheet(data, scaled)
+            sheets = states, *friction, starts_sheet(data), limits_sheet(data, scaled)
             print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
             print_warnings(attributes)
     return errors.GOOD

@@ -18,6 +18,7 @@ from galinx.app.plan.limits import (
     warnings_of,
     warnings_of_size,
 )
+from galinx.app.plan.over_time import starts
 from galinx.app.plan.states import enumerate_states, laws_followed, order, seconds_to_integrate
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS
@@ -76,7 +77,7 @@ def make_plan(scene: Scene) -> Plan:
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, known), tolerance=scene.solve.tolerance,
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
-        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
+        warnings=tuple(warnings), integrated=seconds_to_integrate(scene), starts=starts(scene),
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
     return replace(plan, warnings=(*plan.warnings, *heavy))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.fem import OWN_MESHES, FemPlan
 from galinx.app.plan.order import Order
+from galinx.app.plan.over_time import Starts
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities import strata as layers
@@ -84,6 +85,7 @@ class Plan:
         tolerance: wanted relative accuracy.
         strokes: number of strokes along which friction laws are followed.
         integrated: seconds that laws without a formula take for that.
+        starts: from rest that are followed in time, None for none.
         fem: finite element work, None without.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
@@ -100,6 +102,7 @@ class Plan:
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
     integrated: float = 0.0
+    starts: Starts | None = None
 
     @property
     def states(self) -> int:
@@ -110,6 +113,11 @@ class Plan:
     def different(self) -> int:
         """Number of states that differ by more than their load, where contacts of all loads are alike."""
         return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
+
+    @property
+    def shared(self) -> bool:
+        """Is there something that several ranks do together?"""
+        return self.fem is not None or self.starts is not None
 
     def asks(self, word: str, method: str = "") -> bool:
         """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
@@ -139,7 +147,8 @@ class Plan:
         """
         names = {FINITE, *(rule for quantity in self.quantities for rule in quantity.compared)}
         own = self.body.pressure is not None
-        return frozenset(name for name in names if RULES[name].own_pressure or not own)
+        in_time = self.starts.rules if self.starts else frozenset()
+        return in_time | frozenset(name for name in names if RULES[name].own_pressure or not own)
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a state's entry."""

@@ -22,6 +22,8 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     if scene.slider:
         count = scene.friction.count * len(scene.punch.loads)
         result.append(f"slider: {count} motions of {scene.slider.duration:g} s")
+    if plan.starts:
+        result += plan.starts.words(scene.solid)  # type: ignore[arg-type]
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {plan.states} states")
@@ -80,6 +82,7 @@ def expense(plan: Plan) -> str:
         seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
         )  # fmt: skip
+        seconds += _in_time(plan)
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
@@ -90,10 +93,21 @@ def expense(plan: Plan) -> str:
     most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
     numbers = max(CHUNK_NUMBERS, together)
     memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
-    parts = {"start": cost.START, "finite elements": speeds, "states": states, "stresses inside": inside}
+    parts = {
+        "start": cost.START,
+        "starts from rest": _in_time(plan),
+        "finite elements": speeds,
+        "states": states,
+        "stresses inside": inside,
+    }
     told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
     total = sum(parts.values())
     return f"about {total:.2g} s ({told}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+
+
+def _in_time(plan: Plan) -> float:
+    """Seconds of starts from rest."""
+    return plan.starts.seconds(plan.body.solid) if plan.starts else 0.0  # type: ignore[arg-type]
 
 
 def _inside(plan: Plan) -> float:

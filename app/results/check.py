@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from galinx import __version__
+from galinx.app.plan.over_time import IN_TIME
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
 from galinx.app.run.judge import Judge
@@ -101,6 +102,8 @@ def _of_numbers(archive: reader.Archive) -> Iterator[str]:
         for comparison in compare.comparisons(rows, load, rules):
             worst[comparison.text] = float(np.max([worst.get(comparison.text, 0.0), comparison.value]))
             yield from _out_of_balance(comparison, start)
+    for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
+        worst[comparison.text] = comparison.value
     told = json.loads(archive.attributes["comparisons"])
     if told.keys() != worst.keys() or any(
         not np.isclose(worst[text], told[text], rtol=_SAME, atol=0.0, equal_nan=True) for text in told

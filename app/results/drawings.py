@@ -5,7 +5,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures import angles, film, friction, inside, numerics, slider, surface, sweep
+from galinx.app.pictures import (
+    angles,
+    film,
+    friction,
+    inside,
+    numerics,
+    over_time,
+    slider,
+    surface,
+    sweep,
+)
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
 from galinx.app.pictures.files import FILM, Files, Written
@@ -59,6 +69,7 @@ _FIGURES = {
     ),
     "inside": _Figure({"states", "quantities", "method"}, _below, inside.inside),
     "slider": _Figure(set(), lambda data, scene, _: slider.has(data), slider.slider),
+    "time": _Figure(set(), lambda data, scene, _: over_time.has(data), over_time.time),
     "angles": _Figure(set(), lambda data, scene, _: angles.has(scene), angles.angles),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),

@@ -17,6 +17,7 @@ from galinx.app.plan.words import lines
 from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
 from galinx.app.run.methods import METHODS
+from galinx.app.run.over_time import follow
 from galinx.app.run.sinks import Nowhere, Sink
 from galinx.app.run.slider import slide
 from galinx.app.run.solve import Work
@@ -24,6 +25,7 @@ from galinx.app.run.told import of_scene
 from galinx.app.run.versions import libraries, machine
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
+from galinx.postprocess.compare import comparisons
 from galinx.postprocess.journal import Journal, Part
 from galinx.postprocess.quantities import column, runs, stresses
 
@@ -67,7 +69,9 @@ def compute(
             for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
                 sink.put(path, values)
     judge = Judge(scene, plan.rules)
-    if plan.methods:
+    if plan.starts:
+        _put_starts(sink, plan, judge, progress, clock)
+    if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         collector = Collector(sink, judge, progress, journal, plan, clock)
         for part in _parts(plan, states, collector.earlier(), progress, clock):
@@ -87,6 +91,17 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
         sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
 
 
+def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
+    """Starts from rest."""
+    assert plan.starts
+    progress.say("starts from rest")
+    found = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
+    for path, values in found.items():
+        sink.put(path, values)
+    if ranks.is_root():
+        judge.see(comparisons(found, plan.body.load, plan.rules))
+
+
 def _parts(
     plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
@@ -99,7 +114,8 @@ def _parts(
     work = Work(plan, states.g, methods, clock, finished)
     tasks = (task for task in plan.tasks if work.to_do(task))
     if plan.fem and plan.fem.shared_speeds:
-        yield from shared_out(list(tasks), work.parts)
+        # The fastest are the dearest.
+        yield from shared_out(sorted(tasks, key=lambda task: -task.response.c), work.parts)
     else:
         for task in tasks:
             yield from work.parts(task)

@@ -1,30 +1,34 @@
 """Tasks shared out over the ranks: who is free takes the next."""
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from galinx.app.plan.task import Task
 from galinx.app.run.counter import Counter
-from galinx.postprocess.journal import Part
 
 #: Parts that a rank may have computed and rank 0 not yet taken in.
 AHEAD = 4
 
+_Task = TypeVar("_Task")
+_Part = TypeVar("_Part")
 
-def shared_out(tasks: Sequence[Task], solve: Callable[[Task], Iterator[Part]]) -> Iterator[Part]:
+
+def shared_out(tasks: Sequence[_Task], solve: Callable[[_Task], Iterator[_Part]]) -> Iterator[_Part]:
     """Parts of all tasks, on rank 0 only, which works too and takes in the others' results.
 
     Collective over MPI's world. Nobody is more than ``AHEAD`` parts ahead of rank 0, so memory stays
     bounded.
+
+    Args:
+        tasks: the dearest first: begun last, they would leave the other ranks waiting.
+        solve: parts of a task, none of them None.
     """
     world = MPI.COMM_WORLD
     counter = Counter(world)
-    # The fastest are the dearest: begun last, they would leave the other ranks waiting.
-    order = sorted(tasks, key=lambda task: -task.response.c)
-    mine = (part for i in counter.until(len(order)) for part in solve(order[i]))
+    mine = (part for i in counter.until(len(tasks)) for part in solve(tasks[i]))
     if world.rank > 0:
         pending: list[MPI.Request] = []
         for part in mine:
@@ -37,13 +41,13 @@ def shared_out(tasks: Sequence[Task], solve: Callable[[Task], Iterator[Part]]) -
     counter.free()
 
 
-def _taken_in(world: MPI.Comm, mine: Iterator[Part]) -> Iterator[Part]:
+def _taken_in(world: MPI.Comm, mine: Iterator[_Part]) -> Iterator[_Part]:
     working, busy = world.size - 1, True
     while working or busy:
         if busy:
             part = next(mine, None)
             busy = part is not None
-            if part:
+            if part is not None:
                 yield part
         while working and (not busy or world.iprobe()):
             message = world.recv()

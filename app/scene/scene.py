@@ -172,6 +172,21 @@ class Output:
 
 
 @dataclass(frozen=True)
+class Time:
+    """[time]: a start from rest; times over a/c_s.
+
+    Attributes:
+        end: last time.
+        step: of the finite elements, None where the tolerance sets it.
+        load_ramp: time within which the load comes on.
+    """
+
+    end: float
+    step: float | None
+    load_ramp: float
+
+
+@dataclass(frozen=True)
 class Scene:
     """A checked scene; numbers are in SI.
 
@@ -181,6 +196,7 @@ class Scene:
         half_plane, punch, friction, motion, solve, output: its sections.
         slider: a mass on a spring, None for none.
         layers: on the solid, from the top down.
+        time: of a start from rest, None for none.
     """
 
     title: str
@@ -193,6 +209,7 @@ class Scene:
     output: Output
     slider: Slider | None = None
     layers: tuple[Layer, ...] = ()
+    time: Time | None = None
 
     @cached_property
     def solid(self) -> Solid:

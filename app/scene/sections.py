@@ -7,13 +7,14 @@ from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.layers import LayerSections
 from galinx.app.scene.materials import LIBRARY
 from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve
+from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from galinx.app.scene.tables import Rows, Strokes
 from galinx.app.scene.values import (
     Choice,
     Choices,
     Map,
     Number,
+    OrAuto,
     Points,
     Pressure,
     Whole,
@@ -46,6 +47,12 @@ def _slider(damping: float, **given: float | None) -> Slider | None:
     if missing := [key for key, value in given.items() if value is None]:
         raise ValueError(f"missing {', '.join(missing)}, which a slider needs")
     return Slider(damping=damping, **given)  # type: ignore[arg-type]
+
+
+def _time(end: float | None, step: float | str, load_ramp: float) -> Time | None:
+    if end is None:
+        return None
+    return Time(end, None if isinstance(step, str) else step, load_ramp)
 
 
 _SOLID_KEYS = {
@@ -158,12 +165,28 @@ _SLIDER_KEYS = {
     "duration": Key(Number("s", _POSITIVE), "duration of the motion", None),
 }  # fmt: skip
 
+_TIME_KEYS = {
+    "end": Key(
+        Number("", Range(at_least=1.0, at_most=200.0)), "last time over a/c_s", None,
+        "the start from rest of a flat punch at constant speed and friction, of every state",
+    ),
+    "step": Key(
+        OrAuto(Number("", Range(at_least=1e-3, at_most=1.0))), "step of the finite elements over a/c_s",
+        "auto", '`"auto"`: by solve.tolerance and load_ramp',
+    ),
+    "load_ramp": Key(
+        Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
+        3.0,
+        "N times 10s³ - 15s⁴ + 6s⁵, s = t/load_ramp",
+    ),
+}  # fmt: skip
+
 _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
-        "`interfaces`: where layers meet",
+        "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
     ),
     "points": Key(
         Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
@@ -185,6 +208,7 @@ SECTIONS: dict[str, Any] = {
     "friction": ModelSection("model", "dahl", LAWS, Friction, _FRICTION_KEYS, several=True),
     "motion": Section(Motion, _MOTION_KEYS),
     "slider": Section(_slider, _SLIDER_KEYS),
+    "time": Section(_time, _TIME_KEYS),
     "solve": Section(Solve, _SOLVE_KEYS),
     "output": Section(Output, _OUTPUT_KEYS),
 }

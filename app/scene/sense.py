@@ -6,13 +6,14 @@ import numpy as np
 
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.slider import SLIDER
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.solvers.parameters import parameters, values
 
 #: Words of output.quantities that need no contact.
-FRICTIONS = frozenset({FRICTION_ALONE, SLIDER})
+FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
 #: Usual lengths of a stroke [m].
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
@@ -36,6 +37,8 @@ def contradictions(scene: Scene) -> list[str]:
             'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
             "drive_speed and duration"
         )
+    if (TIME in asked) != (scene.time is not None):
+        faults.append('time: the quantity "time" and the section [time] go together, with end')
     if ("interior" in asked) != bool(scene.output.points or scene.output.map):
         faults.append(
             'output: the quantity "interior" and output.points or output.map go together, as in points = '

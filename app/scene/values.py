@@ -59,6 +59,19 @@ class Number:
 
 
 @dataclass(frozen=True)
+class OrAuto:
+    """A number, or ``"auto"``."""
+
+    number: Number
+
+    def __call__(self, value: Any) -> Any:
+        return value if value == "auto" else self.number(value)
+
+    def schema(self) -> dict[str, Any]:
+        return self.number.schema()
+
+
+@dataclass(frozen=True)
 class NumberList:
     """So many numbers in ``unit``, each of which may be a text with a unit."""
 

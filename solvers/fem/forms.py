@@ -17,6 +17,8 @@ from galinx.registry import Registry
 
 #: Gradients with one entry 1, component by component, the others 0.
 _UNITS = np.eye(4).reshape(4, 2, 2).tolist()
+#: Displacements with one entry 1.
+_VECTORS = [ufl.as_vector(unit) for unit in np.eye(2).tolist()]
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,30 @@ def mixed(trial: tuple[Any, Any], test: tuple[Any, Any], constants: Any) -> Any:
     compliance = (κ - 1) / (3 - κ)  # μ/λ
     energy = 2 * ufl.inner(ufl.sym(Gu), ufl.sym(Gw)) - _inertia(Gu, Gw, c)
     return energy - p * ufl.tr(Gw) - q * ufl.tr(Gu) - compliance * p * q
+
+
+def momentum(u: Any, w: Any) -> Any:
+    """u·w: what ∂²/∂t² of the displacement makes, lengths over a and times over a/c_s."""
+    return ufl.inner(u, w)
+
+
+def carried(Gu: Any, w: Any) -> Any:
+    """u,X·w: -2c times that of ∂u/∂t is what a frame that moves makes of time's derivatives."""
+    return ufl.inner(Gu[:, 0], w)
+
+
+def momentum_density() -> NDArray[np.float64]:
+    """:func:`momentum` of unit displacements along X and Y, (2, 2)."""
+    return _of_units(momentum, _VECTORS)
+
+
+def carried_density() -> NDArray[np.float64]:
+    """:func:`carried` of unit tests along X and Y with u,X u,Y v,X v,Y, (2, 4)."""
+    return _of_units(carried, [ufl.as_matrix(unit) for unit in _UNITS])
+
+
+def _of_units(energy: Callable[..., Any], trials: list[Any]) -> NDArray[np.float64]:
+    return np.array([[ufl.as_ufl(energy(u, w))(()) for u in trials] for w in _VECTORS])
 
 
 def _inertia(Gu: Any, Gw: Any, c: Any) -> Any:

@@ -265,6 +265,10 @@ class Space:
             H = self.form.density(response)
         return part(H, self.contracted(response), corners)
 
+    def nodes_on(self, part: str) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
+        return self._owned_blocks(part)
+
     def _densities(self, response: ByCells, corners: NDArray) -> NDArray[np.float64]:
         """The form at the points of quadrature of cells, or in cells where all of them are uniform."""
         solid = response.solids(corners[..., 1].mean(axis=1))

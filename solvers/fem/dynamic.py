@@ -1,0 +1,123 @@
+"""Matrices of motion in a frame that moves: stiffness, momentum and what the frame carries along.
+
+All unknowns stay: inside cells waves have to be followed as they are at their boundaries.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix, csr_matrix
+
+from galinx.solvers.fem import adapter, cells
+from galinx.solvers.fem.element import Element
+from galinx.solvers.fem.forms import carried_density, momentum_density
+from galinx.solvers.fem.lagrange import lagrange
+from galinx.solvers.fem.space import Space
+from galinx.solvers.solids.solid import Response
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Equations M ü - 2c B u̇ + K u = forces of a space on one rank, in the physical chart.
+
+    Node i has the unknowns 2i and 2i + 1.
+
+    Args:
+        space: the space.
+        response: of the half-plane at a speed.
+    """
+
+    space: Space
+    response: Response
+
+    @cached_property
+    def K(self) -> csr_matrix:
+        """The steady form."""
+        space, element = self.space, Element(self.space.reference_nodes)
+        dofs = np.arange(element.size)
+        H = space.form.density(self.response)
+        chart = space.contracted(self.response)
+        return self._sum(element.matrices(H, chart, space.vertices, [(dofs, dofs)])[0])
+
+    @cached_property
+    def M(self) -> csr_matrix:
+        """Of momentum."""
+        return self._sum(_tensor(self._products[0], momentum_density()))
+
+    @cached_property
+    def B(self) -> csr_matrix:
+        """Of what is carried along, u,X·w."""
+        return self._sum(_tensor(self._products[1], carried_density()))
+
+    @cached_property
+    def contact(self) -> NDArray[np.int64]:
+        """Nodes under the punch from left to right."""
+        nodes = self._on("contact")
+        return nodes[np.argsort(self.space.coordinates[nodes, 0])]
+
+    @property
+    def X(self) -> NDArray[np.float64]:
+        """Where these are, over a."""
+        return np.asarray(self.space.coordinates[self.contact, 0])
+
+    @cached_property
+    def far(self) -> NDArray[np.int64]:
+        """Nodes of the far boundary."""
+        return self._on("far")
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return 2 * len(self.space.coordinates)
+
+    def _on(self, part: str) -> NDArray[np.int64]:
+        return np.asarray(self.space.nodes_on(part), dtype=np.int64)
+
+    @cached_property
+    def _products(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """∫ φ_a φ_b, (cells, 1, a, b), and ∫ φ_a ∂φ_b, by the two axes, (cells, 2, a, b)."""
+        grid, nodes = cells.tensor_order(self.space.reference_nodes)
+        points, weights = leggauss(len(nodes) + 1)
+        points, weights = (points + 1.0) / 2.0, weights / 2.0
+        value, slope = lagrange(nodes, points)
+        place = np.argsort(grid.ravel())
+        t = np.stack(np.meshgrid(points, points, indexing="ij"), axis=-1).reshape(-1, 2)
+        φ, along, across = (
+            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
+            for a, b in ((value, value), (slope, value), (value, slope))
+        )
+        weight = np.outer(weights, weights).ravel()
+        mass, gradient = [], []
+        for corners in self.space.vertices[:, :, :2]:
+            J = cells.jacobian(corners, t)
+            weighted = φ * (weight * np.abs(np.linalg.det(J)))[:, None]
+            inverse = np.linalg.inv(J)
+            slopes = [
+                inverse[:, 0, i, None] * along + inverse[:, 1, i, None] * across for i in (0, 1)
+            ]  # fmt: skip
+            mass.append([weighted.T @ φ])
+            gradient.append([weighted.T @ one for one in slopes])
+        return np.array(mass), np.array(gradient)
+
+    def _sum(self, matrices: NDArray) -> csr_matrix:
+        nodes = adapter.cell_nodes(self.space.V)
+        dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(len(nodes), -1)
+        rows = np.broadcast_to(dofs[:, :, None], matrices.shape)
+        columns = np.broadcast_to(dofs[:, None, :], matrices.shape)
+        entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
+        return coo_matrix(entries, shape=(self.size, self.size)).tocsr()
+
+
+def _tensor(products: NDArray, density: NDArray) -> NDArray[np.float64]:
+    """Element matrices of two components from those of scalars.
+
+    Args:
+        products: (cells, axes, a, b).
+        density: by components of the test, and of the trial with its axes, (2, 2·axes).
+    """
+    m, axes, n, _ = products.shape
+    by_components = density.reshape(2, 2, axes)
+    return np.einsum("mxab,ijx->maibj", products, by_components, optimize=True).reshape(m, 2 * n, 2 * n)

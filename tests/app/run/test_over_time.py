@@ -1,0 +1,77 @@
+"""Starts from rest in scenes: archived, judged, drawn; what has no answer is refused."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from support import command, computed
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
+from galinx.app.results.check import faults
+
+QUICK = {"time.end": 3.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
+
+
+def test_a_start_is_archived_judged_and_drawn(tmp_path):
+    changes = [f"--set={key}={value}" for key, value in QUICK.items()]
+    done = command("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert faults(tmp_path / "s.h5") == []
+    result = galinx.load(tmp_path / "s.h5")
+    data = result.data
+    assert data["time/t"][-1] == 3.0
+    assert data["time/load"][-1] == 1.0
+    assert data["time/fem/K_I_left"].shape == (1, len(data["time/t"]))
+    size = np.abs(data["time/sie/v0"]).max()
+    np.testing.assert_allclose(data["time/fem/v0"], data["time/sie/v0"], atol=1e-3 * size)
+    np.testing.assert_allclose(data["time/fem/work"][:, -1], data["time/fem/energy"][:, -1], rtol=1e-4)
+    # At first the pressure leans ahead, in steady motion behind.
+    assert data["time/fem/centre_of_pressure"][0, -1] > 0.0 > data["time/steady_centre"][0]
+    assert result.attributes["verdict"] == "PASS"
+    assert len(json.loads(result.attributes["comparisons"])) == 2
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "time"]
+    shown = command("show", tmp_path / "s.h5").stdout
+    assert "Starts from rest" in shown
+
+
+def test_two_ranks_end_as_one_does(tmp_path):
+    """Where nothing but starts is asked for, every rank takes part: PETSc waits for all of them."""
+    changes = [f"--set={key}={value}" for key, value in QUICK.items()]
+    done = command("-n", 2, "run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert galinx.load(tmp_path / "s.h5").attributes["verdict"] == "PASS"
+
+
+def test_a_step_may_be_given_and_states_of_one_friction_start_once():
+    more = {"motion.strokes": ["forward", "forward"], "time.step": 0.25, "solve.methods": ["sie"]}
+    data = computed("start_from_rest", QUICK | more).data
+    assert len(data["states/f"]) == 2
+    assert data["time/sie/v0"].shape == (1, 6)
+    assert "time/fem/v0" not in data
+
+
+@pytest.mark.parametrize(
+    "changes, said",
+    [
+        ({"solve.tolerance": 1e-7}, "found 1e-07, expected 1e-05 to 0.01"),
+        ({"solve.methods": ["closed_form"]}, "neither fem nor sie"),
+        ({"motion.c": 0.95}, "is not below the Rayleigh speed"),
+        ({"time.end": 200.0}, "unknowns"),
+        ({"solid.nu": 0.495}, "ν is not near 1/2"),
+        ({"friction.mu_c": [0.01 * i for i in range(1, 30)]}, "expected at most 24"),
+        ({"output.quantities": ["friction"]}, "go together"),
+        ({"time.step": "coarse"}, "time.step"),
+    ],
+)
+def test_what_has_no_answer_is_refused(changes, said):
+    with pytest.raises(BadInput, match=re.escape(said)):
+        make_plan(galinx.template("start_from_rest", changes))
+
+
+def test_a_plan_tells_starts():
+    done = command("plan", "scenes/start_from_rest.toml")
+    assert "integral equation in time: 1 starts from rest" in done.stdout
+    assert "finite elements in time" in done.stdout

@@ -1,0 +1,28 @@
+"""Starts from rest: run on one rank with the other tests and again under mpirun on two."""
+
+import numpy as np
+from mpi4py import MPI
+
+import galinx
+from galinx.app import ranks
+from galinx.app.plan.plan import make_plan
+from galinx.app.run.flow import compute
+from galinx.app.run.over_time import follow
+from galinx.app.run.sinks import Memory
+from galinx.clock import Clock
+
+QUICK = {"motion.c": [0.2, 0.5], "time.end": 2.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
+
+
+def test_ranks_share_out_starts(monkeypatch):
+    """Whoever computes a start finds the same, and all of it reaches rank 0."""
+    scene, found = galinx.template("start_from_rest", QUICK), Memory()
+    compute(scene, found)
+    told = {path: values for path, values in found.items() if path.startswith("time/")}
+    assert bool(told) == (MPI.COMM_WORLD.rank == 0)
+    monkeypatch.setattr(ranks, "_known", lambda: (0, 1))
+    plan = make_plan(scene)
+    alone = follow(plan.starts, plan.body.solid, Clock())
+    assert {"time/sie/v0", "time/fem/v0"} < alone.keys()
+    for path, values in told.items():
+        np.testing.assert_allclose(values, alone[path], rtol=1e-9, atol=1e-12, err_msg=path)

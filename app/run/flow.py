@@ -115,7 +115,10 @@ def _parts(
     tasks = (task for task in plan.tasks if work.to_do(task))
     if plan.fem and plan.fem.shared_speeds:
         # The fastest are the dearest.
-        yield from shared_out(sorted(tasks, key=lambda task: -task.response.c), work.parts)
+        to_do = sorted(tasks, key=lambda task: -task.response.c)
+        if to_do:
+            work.begin()
+        yield from shared_out(to_do, work.parts)
     else:
         for task in tasks:
             yield from work.parts(task)

@@ -8,6 +8,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from galinx.app.run.counter import Counter
+from galinx.solvers.errors import SolveError
 
 #: Parts that a rank may have computed and rank 0 not yet taken in.
 AHEAD = 4
@@ -55,6 +56,33 @@ def _taken_in(world: MPI.Comm, mine: Iterator[_Part]) -> Iterator[_Part]:
                 working -= 1
             else:
                 yield message
+
+
+def by_turns(items: Sequence[_Task], solve: Callable[[_Task], _Part], together: bool) -> list[_Part]:
+    """What comes of all items, on every rank, each found by one of them; collective over MPI's world.
+
+    Args:
+        items: the same on every rank.
+        solve: finds one.
+        together: every rank finds all, with the others.
+
+    Raises:
+        SolveError: one could not be found; on every rank.
+    """
+    world = MPI.COMM_WORLD
+    if together or world.size == 1:
+        return [solve(item) for item in items]
+    mine: list[_Part] = []
+    failure: SolveError | None = None
+    try:
+        mine.extend(solve(item) for item in items[world.rank :: world.size])
+    except SolveError as error:
+        failure = error
+    of_all = world.allgather((mine, failure))
+    for _, failed in of_all:
+        if failed:
+            raise failed
+    return [of_all[i % world.size][0][i // world.size] for i in range(len(items))]
 
 
 def same_on_all(finished: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -48,6 +48,12 @@ class Work:
     clock: Clock
     finished: NDArray[np.bool_]
 
+    def begin(self) -> None:
+        """What methods do once for all speeds; by all ranks together, before these are shared out."""
+        for method in self.methods.values():
+            if hasattr(method, "begin"):
+                method.begin()
+
     def to_do(self, task: Task) -> list[slice]:
         """Rows that are still to be computed."""
         return [rows for rows in self.plan.chunks(task) if not self.finished[rows].all()]

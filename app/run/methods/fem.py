@@ -50,6 +50,12 @@ class FiniteElements:
             return None
         return train(self.work, list(self._tasks), self._mode, self._progress.say)
 
+    def begin(self) -> None:
+        """What serves all speeds; under MPI before they are shared out, by all ranks together."""
+        self.work.mesh(self.work.plan.cuts)
+        with quiet_compiler():
+            self._trained  # noqa: B018 - cached
+
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         self.work.mesh(self.work.plan.cuts)

@@ -1,6 +1,6 @@
 """A fit through speeds that were solved: one rational function for all numbers of a punch's parts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from types import ModuleType
@@ -80,13 +80,18 @@ class Fit:
         slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
         return Singular(power(left, right), slopes if self.work.stresses else slopes[:, :0])
 
-    def add(self, task: Task, level: Any, record: dict[str, Any]) -> None:
-        """Take in a speed that was solved."""
+    def sampled(self, task: Task, level: Any) -> Sampled:
+        """What the fit is made of at a speed that was solved."""
         fields = bool({BELOW, YIELD, AT_INTERFACES} & self.work.stresses)
         found = sampled(level.punch, self.at, level.slopes, fields)
-        self.samples.append(found.smooth(self.singular(task)))
-        self.solved.append(task.number)
-        self.records[task.number] = record
+        return found.smooth(self.singular(task))
+
+    def take(self, solved: Sequence[tuple[int, Sampled, dict[str, Any]]]) -> None:
+        """Take in speeds that were solved: number, sample and record of each."""
+        for number, sample, record in solved:
+            self.samples.append(sample)
+            self.solved.append(number)
+            self.records[number] = record
         if len(self.samples) > 2:
             self.rational = self._rational()
 

@@ -36,7 +36,11 @@ class Solver(Protocol):
 
 
 class Method(Protocol):
-    """A way to solve the contact, for one plan."""
+    """A way to solve the contact, for one plan.
+
+    One that has a ``begin()`` is asked, on all ranks together, for what serves all speeds before these
+    are shared out over the ranks.
+    """
 
     def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
         """A solver at one speed.

@@ -23,10 +23,9 @@ from galinx.app.run.methods.fit import Fit
 from galinx.app.run.methods.fit_error import Estimates, FitError, largest_changes
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import WorkDone
+from galinx.app.run.share import by_turns
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.fitted import (
-    Frictions,
-)
+from galinx.solvers.fem.fitted import Frictions, Sampled
 from galinx.solvers.fem.space import Space
 from galinx.solvers.rational import (
     Rational,
@@ -39,6 +38,10 @@ from galinx.solvers.rational import (
 #: Share of the tolerance that the discretisation may take, and that of the larger of both which the fit
 #: may: together they stay below.
 DISCRETISATION, FIT = 0.88, 0.1
+
+#: Speeds that are solved before the fit is looked at again: two ranks have one each, and whatever their
+#: number, the same speeds are solved.
+AT_ONCE = 2
 
 #: Numbers of frictions that are tried until what lies between is known so well, relative: forces have to
 #: balance to 1e-9, and what cancels at free ends is as much larger than what is left.
@@ -116,6 +119,27 @@ def train(
             return None
 
 
+@dataclass(frozen=True)
+class _Solved:
+    """A speed that was solved.
+
+    Attributes:
+        number: of the speed.
+        degree: of its elements.
+        sample: for the fit.
+        record: of the work.
+        estimates: of the discretisation, by word, where they were measured.
+        off: how far the fit before was, by word, where it told the speed.
+    """
+
+    number: int
+    degree: int
+    sample: Sampled
+    record: dict[str, Any]
+    estimates: dict[str, NDArray] | None = None
+    off: dict[str, float] | None = None
+
+
 class _Training:
     """See :func:`train`; ``degree`` is that to begin with, the plan's if None."""
 
@@ -135,24 +159,22 @@ class _Training:
 
     def done(self) -> Trained | None:
         """The fit, None where it does not become good enough."""
-        tasks, z = self._tasks, self._sweep.z
-        fastest = int(np.argmin([task.response.margin for task in tasks]))
-        number: int | None = fastest
-        chosen: list[int] = []
-        for count in range(min(MOST, len(tasks) // 2)):
-            number = leja(z, chosen) if number is None else number
-            if number is None:
+        tasks = self._tasks
+        # The fastest asks for the highest degree: it is solved first, by every rank for itself.
+        chosen = [int(np.argmin([task.response.margin for task in tasks]))]
+        self._take([self._measured(chosen[0])])
+        number: int | None = None
+        while len(chosen) < min(MOST, len(tasks) // 2):
+            numbers = self._next(chosen, number)
+            if not numbers:
                 break  # there is no other speed
-            chosen.append(number)
-            task, number = tasks[number], None
-            self._say(f"finite elements at c = {task.response.c:g}, speed {count + 1} of the fit")
-            if count < LADDERS:
-                self._measured(task)
-                continue
-            if self._estimates.beyond(self._work.plan.tolerance):
+            before, error = self._solved(numbers, len(chosen))
+            chosen += numbers
+            if len(chosen) >= LADDERS and self._estimates.beyond(self._work.plan.tolerance):
                 break
-            before, error = self._checked(task)
-            if self._good(error):
+            number = None
+            if error and self._good(error):
+                assert before
                 changes = {worst: self._change(before, worst) for worst in self._worst(before)}
                 error = {word: max(one[word] for one in (error, *changes.values())) for word in error}
                 if self._good(error):
@@ -161,6 +183,47 @@ class _Training:
                 number = max(changes, key=lambda worst: self._excess(changes[worst]))
         self._say("no fit through speeds is good enough: each is solved")
         return None
+
+    def _next(self, chosen: list[int], number: int | None) -> list[int]:
+        """Numbers of the speeds that are solved next: the given one, and such as are far from all."""
+        found = [] if number is None else [number]
+        while len(found) < AT_ONCE:
+            number = leja(self._sweep.z, chosen + found)
+            if number is None:
+                break
+            found.append(number)
+        return found
+
+    def _solved(self, numbers: list[int], count: int) -> tuple[Rational | None, dict[str, float]]:
+        """Solve speeds, shared out over the ranks, and take them in.
+
+        Args:
+            numbers: of the speeds.
+            count: of those solved before.
+
+        Returns:
+            The fit before; how far it was off at most where no error was measured, by word.
+        """
+        laddered = numbers[: max(LADDERS - count, 0)]
+
+        def solve(number: int) -> _Solved:
+            return self._measured(number) if number in laddered else self._checked(number)
+
+        before = self._fit.rational if self._fit else None
+        found = by_turns(numbers, solve, not self._work.plan.shared_speeds)
+        self._take(found)
+        off = [one.off for one in found if one.off]
+        return before, {word: max(one[word] for one in off) for word in off[0]} if off else {}
+
+    def _take(self, found: list["_Solved"]) -> None:
+        fit = self._fit
+        assert fit
+        if (degree := max(one.degree for one in found)) > fit.space.degree:
+            raise HigherDegree(degree)
+        for one in found:
+            if one.estimates:
+                self._estimates.add(one.number, self._sweep.z[one.number], one.estimates)
+        fit.take([(one.number, one.sample, one.record) for one in found])
 
     def _frictions(self, count: int) -> Frictions:
         if self._sweep.few:
@@ -175,22 +238,25 @@ class _Training:
         tried = [self._frictions(count).g for count in _FRICTIONS]
         return np.unique(np.concatenate([self._probes, *tried]))
 
-    def _measured(self, task: Task) -> None:
+    def _measured(self, number: int) -> "_Solved":
         """Solve a speed with all that measures its error."""
-        work, mode = self._work, self._mode
+        work, mode, task = self._work, self._mode, self._tasks[number]
+        self._tell(task)
 
         def solved(space: Space, g: NDArray) -> Any:
             return mode.Level(work, task, space, g)
 
         with climbed(work, task, self._all, solved, self._degree, DISCRETISATION) as (ladder, error):
-            if self._fit and ladder.degree > self._fit.space.degree:
-                raise HigherDegree(ladder.degree)
-            level, self._degree = ladder.levels[-1], ladder.degree
-            of_probes = error.of(self._probes, self._loads)
-            self._estimates.add(task.number, self._sweep.z[task.number], of_probes)
+            level = ladder.levels[-1]
             if not self._fit:
-                self._fit = self._begun(level)
-            self._fit.add(task, level, ladder.record() | error.record())
+                self._fit, self._degree = self._begun(level), ladder.degree
+            return _Solved(
+                number, ladder.degree, self._fit.sampled(task, level), ladder.record() | error.record(),
+                estimates=error.of(self._probes, self._loads),
+            )  # fmt: skip
+
+    def _tell(self, task: Task) -> None:
+        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
 
     def _begun(self, level: Any) -> Fit:
         """A fit without samples: at as many frictions as tell those between."""
@@ -208,22 +274,22 @@ class _Training:
             self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery, moved
         )
 
-    def _checked(self, task: Task) -> tuple[Rational, dict[str, float]]:
-        """Solve a speed and take it in; the fit before, and how far it was off there, by word."""
-        work, fit = self._work, self._fit
+    def _checked(self, number: int) -> "_Solved":
+        """Solve a speed that the fit tells."""
+        work, fit, task = self._work, self._fit, self._tasks[number]
         assert fit and fit.rational
+        self._tell(task)
         with fit.level(task) as told:
             expected = told.measured(self._probes, self._loads)
         level = self._mode.Level(work, task, fit.space, self._all)
         try:
-            found = level.measured(self._probes, self._loads)
+            off = largest_changes(level.measured(self._probes, self._loads), expected)
             done = WorkDone()
             done.count(level)
-            before = fit.rational
-            fit.add(task, level, fit.record(task.number) | vars(done))
+            record = fit.record(number) | vars(done)
+            return _Solved(number, fit.space.degree, fit.sampled(task, level), record, off=off)
         finally:
             level.destroy()
-        return before, largest_changes(found, expected)
 
     def _good(self, error: dict[str, float]) -> bool:
         """Is an error of the fit, by word, small enough?"""

@@ -22,7 +22,9 @@ ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 FRICTION = "mu_c = [0.3, 0.8]\nsigma0_over_load = 2e4"
 
 
-def scene(solid, c, tolerance, quantities=("sif", "surface"), punch="", solve="", friction=FRICTION):
+def scene(
+    solid, c, tolerance, quantities=("sif", "surface"), punch="", solve="", friction=FRICTION, output=""
+):
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
     constants = "\n".join(
         f"{key} = {json.dumps(value)}"
@@ -32,7 +34,7 @@ def scene(solid, c, tolerance, quantities=("sif", "surface"), punch="", solve=""
     return parse(
         f'[solid]\nkind = "{kind}"\n{constants}\n[punch]\n{punch}\n[friction]\n{friction}\n[motion]\n'
         f'c = {np.asarray(c).tolist()}\nstrokes = ["forward", "backward"]\nX_over_L = [0.2, 0.6, 0.95]\n'
-        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n"
+        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n{output}"
     )
 
 
@@ -144,7 +146,8 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch):
 
 
 def test_two_ranks_tell_what_one_does(tmp_path):
-    text = scene(ISOTROPIC, np.linspace(0.0, 0.8, 16), 1e-2).text
+    c, points = np.linspace(0.0, 0.8, 16), "points = [[0.0, -0.5], [0.9, -0.2]]"
+    text = scene(ISOTROPIC, c, 1e-2, ("sif", "surface", "interior"), output=points).text
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     found = []
     for ranks in ((), ("-n", "2")):
@@ -156,6 +159,7 @@ def test_two_ranks_tell_what_one_does(tmp_path):
         "states/fem/K_I_left",
         "states/fem/estimate",
         "surface/fem/sigma_XX",
+        "interior/fem/sigma_XY",
         "states/fem/fitted",
     ):
         np.testing.assert_allclose(found[1][path], found[0][path], rtol=1e-9)

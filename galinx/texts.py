@@ -1,4 +1,4 @@
-"""Texts that can be archived and shown: none of their characters acts instead of being seen."""
+"""Texts that can be archived and shown, none of whose characters acts; counts of things."""
 
 import unicodedata
 
@@ -14,3 +14,8 @@ def unseen(text: str) -> str:
         if unicodedata.category(character) in _UNSEEN or ord(character) in _DIRECTIONS:
             return f"character {i + 1} is the control character U+{ord(character):04X}, expected none"
     return ""
+
+
+def counted(count: int, thing: str, things: str = "") -> str:
+    """A number of things, as one says it: "1 state", "3 states"."""
+    return f"{count} {thing if count == 1 else things or thing + 's'}"

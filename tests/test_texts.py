@@ -8,7 +8,7 @@ from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
 from galinx.postprocess.quantities import QUANTITIES, Quantity
 from galinx.registry import Registry
-from galinx.texts import unseen
+from galinx.texts import counted, unseen
 
 
 @pytest.mark.parametrize("code", [0, 7, 10, 27, 127, 0x9B, 0x2028, 0x202E, 0x2066, 0x061C, 0xD800])
@@ -47,3 +47,8 @@ def test_names_of_ones_own_models_have_none():
         with pytest.raises(ValueError, match=r"control character U\+0000"):
             QUANTITIES.add(quantity)
     assert "states/x" not in QUANTITIES
+
+
+def test_one_thing_is_no_several():
+    assert [counted(n, "state") for n in (0, 1, 2)] == ["0 states", "1 state", "2 states"]
+    assert counted(3, "start from rest", "starts from rest") == "3 starts from rest"

@@ -10,6 +10,7 @@ from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.texts import counted
 
 #: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
 _SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
@@ -18,15 +19,15 @@ _SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
 def lines(scene: Scene, plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
     law, integrator = scene.friction.law.about, scene.friction.integrator
-    result = [f"friction: {plan.states} states, {law}, integrator {integrator}"]
+    result = [f"friction: {counted(plan.states, 'state')}, {law}, integrator {integrator}"]
     if scene.slider:
         count = scene.friction.count * len(scene.punch.loads)
-        result.append(f"slider: {count} motions of {scene.slider.duration:g} s")
+        result.append(f"slider: {counted(count, 'motion')} of {scene.slider.duration:g} s")
     if plan.starts:
         result += plan.starts.words(scene.solid)  # type: ignore[arg-type]
     for name in plan.methods:
         if name != FEM:
-            result.append(f"{METHODS[name].about}: {plan.states} states")
+            result.append(f"{METHODS[name].about}: {counted(plan.states, 'state')}")
     if plan.fem:
         result += _fem_lines(scene, plan, plan.fem)
     if plan.asks(stresses.ON_SURFACE):

@@ -11,6 +11,7 @@ from galinx.postprocess.quantities import Quantity, of_states, stresses, table
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE, TEXT
 from galinx.postprocess.scaling import Scaling, as_archived
+from galinx.texts import counted
 
 #: Most cells of the table, and numbers of the curves: a page stays below 5 MB.
 _CELLS, _NUMBERS = 60_000, 250_000
@@ -49,10 +50,9 @@ def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[s
         list(range(kept)),
         *(_plain(_told(row, data[row.path][:kept], scaling), 12) for row in shown),
     ]
-    same = ", ".join(
-        f"{_head(row)} = {data[row.path][0]:g}" if row.type != TEXT else "" for row in constant
-    )
-    note = f"{count} states; click on a head to sort." + f" The same in all: {same}." * bool(same)
+    same = ", ".join(f"{_head(row)} = {data[row.path][0]:g}" for row in constant if row.type != TEXT)
+    note = f"{counted(count, 'state')}; click on a head to sort."
+    note += f" The same in all: {same}." * bool(same)
     if kept < count:
         note += f" The first {kept} are here; the command csv writes all."
     heads = [{"head": column["head"], "about": column["about"]} for column in columns]

@@ -18,7 +18,6 @@ from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
@@ -36,7 +35,6 @@ def follow(
     Raises:
         SolveError: finite elements could not be solved.
     """
-    assert isinstance(solid, Isotropic)  # what the plan has made sure of
     t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
     found: list[_Found] = []
     for c, of_speed in starts.g.items():
@@ -57,12 +55,12 @@ def follow(
     return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
 
 
-def _integral_equation(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     half = starts.steps // 2
     finer = int(np.ceil(starts.end / half / _STEP - 1e-9))
     response = solid.response(c)
     with clock("integral equation in time"):
-        punch = StartingPunch(response.k, solid.limit(), response, starts.end, half * finer, _TERMS)
+        punch = StartingPunch(response, solid.limit(), starts.end, half * finer, _TERMS)
         found = []
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
@@ -75,7 +73,7 @@ def _named(method: str, values: Any) -> _Found:
     return {row[method].path: value for row, value in zip(TOLD, values)}
 
 
-def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = smooth(coarse[0][1], starts.ramp)
     found = []
@@ -99,7 +97,7 @@ def _share(ramp: float, t: float) -> float:
     return float(smooth(np.array(t), ramp))
 
 
-def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
+def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
     """Values, times, and work with energy of each friction at a speed."""
     with clock("import of dolfinx"), finite_elements_installed():
         from galinx.solvers.fem.distributed import distribute

@@ -69,7 +69,8 @@ class StartingPunch:
     def course(self, g: float, load: Callable[[NDArray], NDArray]) -> Course:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
         basis = self._transformed.basis(g)
-        found = self._scheme.convolved(self._transformed.answers(basis), load)[: self._steps]
+        (answers,) = self._transformed.answers(basis)
+        found = self._scheme.convolved(answers, load)[: self._steps]
         a, v0 = found[:, :-1], found[:, -1]
         t = np.arange(1.0, self._steps + 1.0) * (self._end / self._steps)
         normal = a @ basis.moments

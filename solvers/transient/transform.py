@@ -5,12 +5,12 @@ same of the mirror image.
 """
 
 from functools import cached_property
-from math import exp, lgamma, log, pi
+from math import ceil, exp, lgamma, log, pi
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import eval_jacobi, roots_jacobi
+from scipy.special import roots_jacobi
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.kernel import Kernel, both_sides
@@ -20,8 +20,11 @@ from galinx.solvers.transient.kernel import Kernel, both_sides
 _NEAR, _FAR, _POINTS = 24, 5, 8
 #: Largest width of a panel.
 _EVEN = 0.125
-#: Steps and half-length of the double exponential rule along what two shifted contacts have in common.
-_STEPS, _LENGTH = 121, 3.4
+#: Steps, for so many polynomials, and half-length of the double exponential rule along what two shifted
+#: contacts have in common.
+_STEPS, _FOR, _LENGTH = 121, 24, 3.4
+#: More polynomials than there are.
+_ALL = 10**6
 
 
 class Transformed:
@@ -32,25 +35,37 @@ class Transformed:
         rayleigh: speed of the wave along the surface over c_s.
         s: over c_s/a, Re s >= 0 but not 0, (n,).
         terms: polynomials of the pressure.
+        panel: largest width of a panel of distances over a.
     """
 
-    def __init__(self, response: Response, rayleigh: float, s: NDArray, terms: int) -> None:
-        self._response, self.s, self.terms = response, s, terms
+    def __init__(
+        self, response: Response, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN
+    ) -> None:
+        self._response, self.s, self._terms, self._panel = response, s, terms, min(panel, _EVEN)
         self._kernels = both_sides(response, rayleigh)
 
     def basis(self, g: float) -> "Basis":
         """Of the pressure where σ_XY = g σ_YY."""
-        return Basis(self._response, g, self.terms)
+        return Basis(self._response, g, self._terms)
 
-    def answers(self, basis: "Basis") -> NDArray[np.complex128]:
-        """Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), for every s, (n, terms + 1)."""
-        whole = np.zeros((len(self.s), self.terms + 1, self.terms + 1), dtype=complex)
-        whole[:, :-1, :-1] = self._matrices(basis)
-        whole[:, :-1, -1] = basis.tested
-        whole[:, -1, 0] = basis.force
-        load = np.zeros((len(self.s), self.terms + 1, 1))
-        load[:, -1] = -2.0
-        return np.asarray(np.linalg.solve(whole, load)[..., 0])
+    def answers(
+        self, basis: "Basis", terms: tuple[int, ...] = (_ALL,)
+    ) -> tuple[NDArray[np.complex128], ...]:
+        """What a load N̂ makes for every s, by all polynomials or by the first of them.
+
+        Returns:
+            Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
+        """
+        matrices, found = self._matrices(basis), []
+        for count in (min(one, self._terms) for one in terms):
+            whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
+            whole[:, :-1, :-1] = matrices[:, :count, :count]
+            whole[:, :-1, -1] = basis.tested[:count]
+            whole[:, -1, 0] = basis.force
+            load = np.zeros((len(self.s), count + 1, 1))
+            load[:, -1] = -2.0
+            found.append(np.asarray(np.linalg.solve(whole, load)[..., 0], dtype=complex))
+        return tuple(found)
 
     def _matrices(self, basis: "Basis") -> NDArray[np.complex128]:
         """Tested response to each polynomial for every s, (s, tests, terms)."""
@@ -59,12 +74,12 @@ class Transformed:
         kernel = np.stack([ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1]])
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         found = kernel[0] @ flat[0] + kernel[1] @ flat[1]
-        return found.reshape(-1, self.terms, self.terms)
+        return found.reshape(-1, self._terms, self._terms)
 
     @cached_property
     def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
-        even = np.arange(_EVEN, 2.0, _EVEN)
+        even = np.linspace(_EVEN, 2.0, ceil((2.0 - _EVEN) / self._panel), endpoint=False)
         towards = [near[near < _EVEN], even, 2.0 - near[near < _EVEN][:_FAR:-1]]
         edges = np.concatenate([[0.0], *towards, [2.0]])
         t, w = leggauss(_POINTS)
@@ -99,7 +114,7 @@ class Basis:
         cot = g * response.q / (response.n + g * response.n12)
         self.α = -0.5 - np.arctan(cot) / pi
         self.β = -1.0 - self.α
-        self._orders = np.arange(terms)
+        self._scales = np.array([_norm(j, self.α, self.β) for j in range(terms)])  # of α and β alike
         X, w = _gauss_jacobi(terms, self.α, self.β)
         P = self._polynomials(X, self.α, self.β)
         self.moments = np.array([w @ P, (w * X) @ P]).T
@@ -112,12 +127,11 @@ class Basis:
 
     def _polynomials(self, X: NDArray, α: float, β: float) -> NDArray[np.float64]:
         """Jacobi's, about as large each, (n, terms)."""
-        scale = np.array([_norm(int(j), α, β) for j in self._orders])
-        return np.asarray(eval_jacobi(self._orders, α, β, X[..., None])) / scale
+        return _jacobi(np.asarray(X, dtype=float), α, β, len(self._scales)) / self._scales
 
     def shared(self, x: NDArray) -> NDArray[np.float64]:
         """∫ τ_i(X) w(X - x) P_j(X - x) dX at distances x > 0, and at -x: (2, x, tests, terms)."""
-        d, e, weights = _overlap(2.0 - x)
+        d, e, weights = _overlap(2.0 - x, _STEPS * max(len(self._scales), _FOR) // _FOR)
         x = x[:, None]
         found = []
         for right, left, other_right, other_left in (
@@ -140,6 +154,20 @@ def _gauss_jacobi(terms: int, α: float, β: float) -> tuple[NDArray, NDArray]:
     return X, w
 
 
+def _jacobi(X: NDArray, α: float, β: float, terms: int) -> NDArray[np.float64]:
+    """Jacobi's polynomials by their recurrence, α + β = -1, (..., terms), terms > 1."""
+    P = np.empty((*X.shape, terms))
+    P[..., 0] = 1.0
+    P[..., 1] = (α + 1.0) + (X - 1.0) / 2.0
+    for j in range(2, terms):
+        by_X = (2.0 * j - 2.0) * ((2.0 * j - 1.0) * (2.0 * j - 3.0) * X + (β - α))
+        back = 2.0 * (j + α - 1.0) * (j + β - 1.0) * (2.0 * j - 1.0)
+        P[..., j] = (by_X * P[..., j - 1] - back * P[..., j - 2]) / (
+            2.0 * j * (j - 1.0) * (2.0 * j - 3.0)
+        )
+    return P
+
+
 def _norm(j: int, α: float, β: float) -> float:
     """Root of the weighted square of Jacobi's polynomial where α + β = -1."""
     if j == 0:
@@ -148,9 +176,9 @@ def _norm(j: int, α: float, β: float) -> float:
     return exp(0.5 * (square - log(2.0 * j)))
 
 
-def _overlap(length: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+def _overlap(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
     """Double exponential rule on intervals: distances from both ends and weights, (n, steps) each."""
-    u = np.linspace(-_LENGTH, _LENGTH, _STEPS)
+    u = np.linspace(-_LENGTH, _LENGTH, steps)
     grown = pi / 2.0 * np.sinh(u)
     d, e = 1.0 / (1.0 + np.exp(-2.0 * grown)), 1.0 / (1.0 + np.exp(2.0 * grown))
     weights = (u[1] - u[0]) * pi * np.cosh(u) * d * e

@@ -49,14 +49,15 @@ class Reached:
             for y1, y0 in pairwise(Y)
             if y0 < -1.0 or abs(x0 + x1) > 4.0
         ])  # fmt: skip
-        return _tagged(np.concatenate([boxes, *squares]), float(X[-1]))
+        return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
 
 
 def _even(first: float, last: float, size: float) -> NDArray[np.float64]:
     return np.linspace(first, last, max(ceil((last - first) / size), 1) + 1)
 
 
-def _tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:
+def tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:
+    """A mesh of quadrilaterals (n, 4, 2) below the surface whose far corners are at X = ±last."""
     mesh = joined(quads.reshape(-1, 2), last)
     sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
     _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)

@@ -1,4 +1,4 @@
-"""Commands that draw what archives hold: plot."""
+"""Commands that draw what archives and scenes hold: plot, dispersion, response."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -109,4 +109,61 @@ def dispersion(
     return errors.GOOD
 
 
-COMMANDS: tuple[Any, ...] = (plot, dispersion)
+_FREQUENCY = click.FloatRange(0.0, 1e6, min_open=True)
+
+
+@click.command()
+@options.scene
+@options.changes
+@click.option(
+    "--from",
+    "first",
+    type=_FREQUENCY,
+    default=0.01,
+    show_default=True,
+    help="Lowest angular frequency, over c_s/a.",
+)
+@click.option(
+    "--to", "last", type=_FREQUENCY, help="Highest one; default: 10, or as far as speeds allow."
+)
+@click.option(
+    "--points", type=click.IntRange(2, 1000), default=41, show_default=True, help="How many."
+)  # fmt: skip
+@options.figures_to
+@options.overwrite
+def response(
+    scene: Path,
+    changes: tuple[str, ...],
+    unset: tuple[str, ...],
+    first: float,
+    last: float | None,
+    points: int,
+    to: Path,
+    overwrite: bool,
+) -> int:
+    """Tell and draw what the flat punch of SCENE answers to loads that oscillate while it slides.
+
+    Its dynamic stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
+    every speed and friction of the scene.
+
+    Example: ./run.sh response scenes/start_from_rest.toml -o figures
+    """
+    from galinx.app.pictures import response as punch
+    from galinx.app.pictures.files import Files
+    from galinx.app.scene.changes import from_words
+    from galinx.app.scene.read import read
+
+    files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
+    files.check(["response"])
+    asked = read(scene, from_words(changes, unset))
+    known = punch.answers(asked, first, last, points)
+    if ranks.is_root():
+        for one in known:
+            print(one.words)
+            print(*punch.table(asked, one), sep="\n")
+        for drawn in files.write(iter([punch.drawing(known)]), None):
+            print(f"{drawn.noun}: {drawn.path}")
+    return errors.GOOD
+
+
+COMMANDS: tuple[Any, ...] = (plot, dispersion, response)

@@ -12,7 +12,8 @@ from galinx.meshes.reached import Reached
 from galinx.postprocess.compare_over_time import BOTH, OF_FEM
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.solids.solid import Solid
+from galinx.solvers.transient.admittance import Admittance, InPlane
 
 #: Starts of a scene at most, and unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
@@ -86,7 +87,7 @@ class Starts:
         of_fem = {OF_FEM} if FEM in self.methods else set()
         return frozenset(of_fem | ({BOTH} if of_fem and SIE in self.methods else set()))
 
-    def words(self, solid: Isotropic) -> list[str]:
+    def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
         what = f"{self.count} starts from rest, to t = {self.end:g} a/c_s"
         lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
@@ -100,7 +101,7 @@ class Starts:
                 )
         return lines
 
-    def seconds(self, solid: Isotropic) -> float:
+    def seconds(self, solid: Solid) -> float:
         """About how long all of it takes."""
         total = 0.0
         for c, of_speed in self.g.items():
@@ -112,11 +113,11 @@ class Starts:
                 total += _SYMBOL * max(self.end / 0.2, self.steps / 2)
         return total
 
-    def levels(self, solid: Isotropic, c: float) -> tuple[Level, Level]:
+    def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
         """A coarser level with half as many steps, which tells the error, and that which is archived."""
         digits = -log10(self.tolerance)
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        fast = 1.0 / sqrt(solid.response(c).k)
+        fast = Admittance.of(solid.response(c)).fastest
         # A wave that goes out to the far boundary comes back to a punch that has moved. Implicit steps
         # let it be felt a little earlier.
         T = self.end * (1.0 + _EARLIER / self.steps)
@@ -160,7 +161,6 @@ def starts(scene: Scene) -> Starts | None:
     steps = 2 * ceil(scene.time.end / step / 2.0 - 1e-9)
     found = Starts(g, methods, scene.time.end, scene.time.load_ramp, tolerance, steps)
     if FEM in methods:
-        assert isinstance(scene.solid, Isotropic)
         for c in g:
             _, level = found.levels(scene.solid, c)
             if level.unknowns > LARGEST:
@@ -181,8 +181,8 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append(
             f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
         )
-    if not isinstance(solid, Isotropic):
-        faults.append("a start from rest is known of isotropic solids without layers")
+    if not isinstance(solid.response(0.0), InPlane):
+        faults.append("a start from rest is known of uniform solids, without layers")
     elif solid.nearly_incompressible:
         faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
     if not isinstance(scene.punch.profile, Flat):

@@ -18,7 +18,6 @@ from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
@@ -40,7 +39,6 @@ def follow(
     Raises:
         SolveError: finite elements could not be solved.
     """
-    assert isinstance(solid, Isotropic)  # what the plan has made sure of
     if FEM in starts.methods:
         _import(clock)
     # Finite elements are the dearer ones, and the fastest of them.
@@ -53,7 +51,7 @@ def follow(
     return _joined(starts, solid, found) if ranks.is_root() else {}
 
 
-def _courses(job: _Job, starts: Starts, solid: Isotropic, clock: Clock) -> list[_Found]:
+def _courses(job: _Job, starts: Starts, solid: Solid, clock: Clock) -> list[_Found]:
     method, c = job
     return (_finite_elements if method == FEM else _integral_equation)(starts, solid, c, clock)
 
@@ -69,7 +67,7 @@ def _computed(
     return shared_out(jobs, lambda job: iter([(job, solve(job))]))
 
 
-def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -> _Found:
+def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _Found:
     """Each start a row."""
     t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
     every = []
@@ -88,12 +86,12 @@ def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -
     return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
 
 
-def _integral_equation(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     half = starts.steps // 2
     finer = int(np.ceil(starts.end / half / _STEP - 1e-9))
     response = solid.response(c)
     with clock("integral equation in time"):
-        punch = StartingPunch(response.k, solid.limit(), response, starts.end, half * finer, _TERMS)
+        punch = StartingPunch(response, solid.limit(), starts.end, half * finer, _TERMS)
         found = []
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
@@ -106,7 +104,7 @@ def _named(method: str, values: Any) -> _Found:
     return {row[method].path: value for row, value in zip(TOLD, values)}
 
 
-def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
+def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = smooth(coarse[0][1], starts.ramp)
     found = []
@@ -136,7 +134,7 @@ def _import(clock: Clock) -> None:
         import galinx.solvers.fem.start  # noqa: F401
 
 
-def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
+def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
     """Values, times, and work with energy of each friction at a speed."""
     from mpi4py import MPI
 

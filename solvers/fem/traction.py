@@ -11,7 +11,7 @@ from galinx.solvers.fem.deformation import forces
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.surface import surface_facets
+from galinx.solvers.fem.surface import SurfaceFacets, surface_facets
 from galinx.solvers.solids.solid import Response
 
 #: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
@@ -53,7 +53,7 @@ class LoadedHalfPlane:
             σ_YY: the load.
             knots: positions X over a, under the punch, between which it is smooth.
         """
-        load = self._consistent_forces(σ_YY, self.space.chart.surface_coordinate(np.asarray(knots)))
+        load = consistent_forces(self.space, self._facets, σ_YY, knots)
         node = self.space.numbers[self._facets.nodes.ravel()]
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
@@ -84,24 +84,35 @@ class LoadedHalfPlane:
         for held in (self.factor, *self.fields, *self.corrections):
             held.destroy()
 
-    def _consistent_forces(self, σ_YY: Traction, knots: NDArray) -> NDArray[np.float64]:
-        """∫ σ_YY φ d(X/a) on each of this rank's contact facets, (F, p+1), smooth between knots in s."""
-        s = self._facets.s
-        forces = np.zeros_like(s)
-        left, right = self.space.contact.s[[0, -1]]
-        for i, nodes in enumerate(s):
-            length = nodes[-1] - nodes[0]
-            within = (knots[(nodes[0] < knots) & (knots < nodes[-1])] - nodes[0]) / length
-            for a, b in pairwise([0.0, *within, 1.0]):
-                from_a, from_b, w = _rule(nodes[0] == left and a == 0.0, nodes[-1] == right and b == 1.0)
-                # How far from the facet's two ends, over its length; each is exact at its own end.
-                start, end = a + (b - a) * from_a, (1.0 - b) + (b - a) * from_b
-                basis, _ = lagrange((nodes - nodes[0]) / length, start)
-                d_left, d_right, stretch = self.space.chart.under_punch(
-                    nodes[0] - left + length * start, right - nodes[-1] + length * end
-                )
-                forces[i] += (w * (b - a) * length * stretch * σ_YY(d_left, d_right)) @ basis
-        return forces
+
+def consistent_forces(
+    space: Space, facets: SurfaceFacets, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()
+) -> NDArray[np.float64]:
+    """∫ σ_YY φ d(X/a) on each of this rank's facets under the punch, (F, p+1).
+
+    Args:
+        space: of the functions φ.
+        facets: which.
+        σ_YY: the load.
+        knots: positions X over a, under the punch, between which it is smooth.
+    """
+    s, chart = facets.s, space.chart
+    knots = chart.surface_coordinate(np.asarray(knots))
+    forces = np.zeros_like(s)
+    left, right = space.contact.s[[0, -1]]
+    for i, nodes in enumerate(s):
+        length = nodes[-1] - nodes[0]
+        within = (knots[(nodes[0] < knots) & (knots < nodes[-1])] - nodes[0]) / length
+        for a, b in pairwise([0.0, *within, 1.0]):
+            from_a, from_b, w = _rule(nodes[0] == left and a == 0.0, nodes[-1] == right and b == 1.0)
+            # How far from the facet's two ends, over its length; each is exact at its own end.
+            start, end = a + (b - a) * from_a, (1.0 - b) + (b - a) * from_b
+            basis, _ = lagrange((nodes - nodes[0]) / length, start)
+            d_left, d_right, stretch = chart.under_punch(
+                nodes[0] - left + length * start, right - nodes[-1] + length * end
+            )
+            forces[i] += (w * (b - a) * length * stretch * σ_YY(d_left, d_right)) @ basis
+    return forces
 
 
 def _rule(at_left: bool, at_right: bool) -> tuple[NDArray, NDArray, NDArray]:

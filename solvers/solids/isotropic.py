@@ -6,7 +6,7 @@ speed, β_s and β_d the contraction factors of shear and dilatational waves.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import log, pi, sqrt
+from math import inf, log, pi, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -121,6 +121,31 @@ class MovingFrame:
     def k(self) -> float:
         """(c_s/c_d)² = (κ-1)/(κ+1)."""
         return (self.κ - 1.0) / (self.κ + 1.0)
+
+    @property
+    def c11(self) -> float:
+        """Stiffness over μ against being stretched with nothing across, 1/k; infinite at ν = 1/2."""
+        return 1.0 / self.k if self.k else inf
+
+    @property
+    def c12(self) -> float:
+        """λ over μ."""
+        return self.c11 - 2.0
+
+    @property
+    def c22(self) -> float:
+        """That along Y is that along X."""
+        return self.c11
+
+    @property
+    def c16(self) -> float:
+        """Nothing is sheared by being stretched."""
+        return 0.0
+
+    @property
+    def c26(self) -> float:
+        """Nor along Y."""
+        return 0.0
 
     @cached_property
     def β_s(self) -> float:

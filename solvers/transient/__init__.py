@@ -1,1 +1,1 @@
-"""A flat punch that starts to slide: integral equation in time, independent of the finite elements."""
+"""A flat punch whose load changes in time: integral equation, independent of the finite elements."""

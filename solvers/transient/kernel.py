@@ -1,168 +1,209 @@
-"""Surface motion of an isotropic half-plane under tractions that change in time, by Laplace's transform.
+"""Surface motion of a half-plane under tractions that change in time, by Laplace's transform.
 
 Seen from a frame that moves at c, fields e^(ikX + st) obey the formulas of steady motion with the complex
-speed C = c + is/k (lengths over a, speeds over c_s, times over a/c_s)::
+speed C = c + is/k (lengths over a, speeds over c_s, times over a/c_s, stresses over μ)::
 
-    v̂ = [n(C)/|k|] σ̂_YY + [i q(C)/k] σ̂_XY
+    ik û = 𝐘(C) σ̂ where k < 0,    the conjugate of 𝐘(C*) instead where k > 0
 
-The transform back to X is taken along the two branch cuts of the symbols, which begin at
-k_d = is/(c_d - c) and k_s = is/(1 - c) and are turned so that the integrand decays, with the residue of
-the Rayleigh wave, and that of a wave which leaks into the solid where the cuts have it between them.
+With the slowness ζ = k/(is) as seen from the frame, C = c + 1/ζ does not know s. The transform back to
+X > 0
+
+    v̂ = i/(2π) ∫₀ [𝐘(C) - conj 𝐘(C*)] e^(-sζX) dζ/ζ
+
+is taken along ways on which the integrand decays: the second part straight from 0; the first part on the
+upper side of the real axis up to the least speed of waves inside, and from there alike, with the residue
+of the wave along the surface. On these ways lie no other singularities, whatever the solid.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import log, sqrt
-from typing import Any
+from math import ceil, cos, log, log2, pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-#: Gauss's points of a panel along a cut, and panels' width in the logarithm of the distance from its end.
+from galinx.solvers.solids.solid import Response
+from galinx.solvers.transient.admittance import Admittance
+
+#: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8
-#: Decay after which nothing is left of an integrand, and how near to a cut's end it begins.
-_GONE, _NEAR = 32.0, 1e-8
-#: Directions of the cuts that are tried, over the least and the largest useful angle.
-_DIRECTIONS = np.linspace(0.3, 1.3, 21)
+#: Decay after which nothing is left of an integrand.
+_GONE = 32.0
+#: Directions of the ways below the real axis, and how far from the fastest decay one is taken.
+_DIRECTIONS = np.arange(0.6, 1.7, 0.3)
+#: First panel along a way over the distance of the nearest singularity.
+_FIRST = 0.1
+#: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
+_PANELS, _HALVINGS, _ACCURACY = 3, 12, 1e-10
+#: Radians of the exponential that a panel bears.
+_TURN = 5.0
+#: Where a panel is looked at.
+_BETWEEN = np.linspace(-0.9, 0.9, 4)
+#: Distances are treated together where one is so many times another at most.
+_ALIKE = 4.0
 
 
 @dataclass(frozen=True)
 class Kernel:
     """Response at a distance x > 0 ahead of a line load in a frame that moves at c.
 
-    Behind it the response is that ahead in a frame that moves at -c, with the sign of σ_XY's changed.
+    Behind it the response is that ahead, in the mirror image of the solid and a frame that moves at -c,
+    with the sign of σ_XY's changed.
 
     Args:
-        slow: (c_s/c_d)².
+        surface: of the solid.
         c: speed over c_s, of either sign.
-        rayleigh: Rayleigh speed over c_s.
+        rayleigh: of the wave along the surface over c_s.
     """
 
-    slow: float
+    surface: Admittance
     c: float
     rayleigh: float
 
     def __call__(self, x: NDArray, s: complex) -> NDArray[np.complex128]:
-        """v̂ of line loads σ_YY and σ_XY at distances x > 0, (n,), for Im s >= 0 < Re s: (2, n)."""
-        ψ = float(np.angle(s))
-        gap = 1.0 / sqrt(self.slow) if self.slow else np.inf
-        k_d, k_s = 1j * s / (gap - self.c), 1j * s / (1.0 - self.c)
-        along = self._direction(ψ, s, k_d, k_s)
-        decay = float(along.imag)
-        v, weights = _distances(abs(s), _GONE / (decay * float(x.min())))
+        """v̂ of line loads σ_YY and σ_XY at distances x > 0, (n,), for Im s >= 0 <= Re s: (2, n)."""
         values = np.zeros((2, len(x)), dtype=complex)
-        for start, of_shear in ((k_d, False), (k_s, True)):
-            if of_shear or self.slow:
-                jump = self._jump(start, along, v, s, of_shear) * (weights * along)
-                values += jump @ np.exp(1j * (start + along * v)[:, None] * x) / (2.0 * np.pi)
-        return values + self._rayleigh_wave(x, s) + self._leaking(x, s, k_d, k_s, along)
+        group = np.floor(np.log(x / x.max()) / log(_ALIKE) + 1e-9)
+        for one in np.unique(group):
+            values[:, group == one] = self._of(x[group == one], s)
+        ζ, residue = self._pole
+        return values + residue[:, None] * np.exp(-s * ζ * x)
 
-    def _direction(self, ψ: float, s: complex, k_d: complex, k_s: complex) -> complex:
-        """Of the cuts: where a pole between them is near neither."""
-        turns = (np.pi / 4.0 + ψ / 2.0) * _DIRECTIONS
-        directions = np.exp(1j * (np.pi / 2.0 + ψ - turns))
-        if self._leak is None:
-            return complex(directions[np.searchsorted(_DIRECTIONS, 1.0)])
-        clear = directions.imag  # of what decays slowly, too
-        for pole in (self._leak, self.rayleigh):
-            k = 1j * s / (pole - self.c)
-            for start in (k_d, k_s):
-                ahead = np.conj(directions) * (k - start)
-                clear = np.minimum(clear, np.abs(np.angle(ahead)))
-        return complex(directions[np.argmax(clear)])
-
-    def _jump(
-        self, start: complex, along: complex, v: NDArray, s: complex, of_shear: bool
-    ) -> NDArray[np.complex128]:
-        """What both symbols lose across a cut, right to left, at distances v from its end."""
-        k = start + along * v
-        C = self.c + 1j * s / k
-        bs = self._root(k, s, along, 1.0, v if of_shear else None) / k
-        bd = self._root(k, s, along, self.slow, None if of_shear else v) / k
-        if of_shear and self.slow:
-            bd = -bd  # continued from the right of the other cut
-        n, q = self._symbols(C, bs, bd)
-        P, e = -bs * bd, 2.0 - C * C
-        R = 4.0 * P - e * e
-        other_n, other_q = bd * C * C / R, (e - 2.0 * P) / R
-        if of_shear:
-            return np.array([n - other_n, 1j * (other_q - q)]) / k
-        return np.array([n + other_n, 1j * (q - other_q)]) / k
-
-    def _root(
-        self, k: NDArray, s: complex, along: complex, slow: float, v: NDArray | None
-    ) -> NDArray[np.complex128]:
-        """√(k² - slow (kC)²) with cuts along ``along`` above and straight down below."""
-        if slow == 0.0:
-            return np.asarray(k, dtype=complex)
-        fast = 1.0 / sqrt(slow)
-        above, below = 1j * s / (fast - self.c), -1j * s / (fast + self.c)
-        # √((k - above)/along·(-1)) has its cut where k - above is along.
-        turned = np.sqrt(-(k - above) / along) if v is None else 1j * np.sqrt(v)
-        factor = np.sqrt(-along * 1j) * turned
-        return np.sqrt(1.0 - slow * self.c**2) * factor * np.sqrt(-1j * (k - below)) * self._sign(along)
-
-    @staticmethod
-    def _sign(along: complex) -> float:
-        """So that the root is k far to the right."""
-        k = 1.0
-        found = np.sqrt(-along * 1j) * np.sqrt(-(k + 0j) / along) * np.sqrt(-1j * k)
-        return float(np.sign(found.real))
-
-    def _symbols(self, C: Any, bs: Any, bd: Any) -> tuple[Any, Any]:
-        """n and q at complex speeds without cancellation near C = 0."""
-        w = (1.0 + self.slow - self.slow * C * C) / (1.0 + bs * bd)
-        r = 4.0 - C * C - 4.0 * w
-        return bd / r, (2.0 * w - 1.0) / r
+    def _of(self, x: NDArray, s: complex) -> NDArray[np.complex128]:
+        """Without the wave along the surface."""
+        ψ = float(np.angle(s))
+        down = int(np.abs(_DIRECTIONS - ψ).argmin())
+        last = _GONE / (abs(s) * cos(ψ - _DIRECTIONS[down]) * float(x.min()))
+        turns = abs(s) * self._edges[-1] * float(x.max()) / _TURN
+        ζ, values = self._above(max(0, ceil(log2(max(turns, 1.0) / _PANELS))))
+        felt = ζ * (s.real * float(x.min())) < _GONE
+        ways = [
+            (ζ[felt], values[:, felt]),
+            *self._ways(down, max(0, ceil(log(last / self._first) / _WIDTH))),
+        ]
+        found = np.zeros((2, len(x)), dtype=complex)
+        for ζ, values in ways:
+            found += values @ np.exp(np.multiply.outer(-s * ζ, x))
+        return found
 
     @cached_property
-    def _residues(self) -> tuple[float, float]:
-        """Those of n and q in C at the Rayleigh speed."""
-        c, slow = self.rayleigh, self.slow
-        bs, bd = sqrt(1.0 - c * c), sqrt(1.0 - slow * c * c)
-        dR = 4.0 * (-c * bd / bs - slow * c * bs / bd) + 4.0 * c * (2.0 - c * c)
-        return bd * c * c / dR, (2.0 - c * c - 2.0 * bs * bd) / dR
-
-    def _rayleigh_wave(self, x: NDArray, s: complex) -> NDArray[np.complex128]:
-        apart = self.rayleigh - self.c
-        wave = np.exp(-s * x / apart) / apart
-        return np.array([1j * self._residues[0] * wave, self._residues[1] * wave])
+    def _edges(self) -> NDArray[np.float64]:
+        """0, and slownesses seen from the frame at which 𝐘 is not analytic, growing."""
+        return np.concatenate([[0.0], 1.0 / (self.surface.meeting[::-1] - self.c)])
 
     @cached_property
-    def _leak(self) -> complex | None:
-        """Speed of the wave that leaks into the solid, None where there is none of complex speed."""
-        k = self.slow
-        roots = np.roots([1.0, -8.0, 24.0 - 16.0 * k, -16.0 * (1.0 - k)])
-        above = [root for root in roots if root.imag > 1e-12]
-        return complex(np.sqrt(above[0])) if above else None
+    def _pole(self) -> tuple[float, NDArray[np.complex128]]:
+        """Slowness of the wave along the surface, and what it carries of σ_YY and σ_XY."""
+        ζ = 1.0 / (self.rayleigh - self.c)
+        return ζ, -ζ * self.surface.residue(self.rayleigh)[1, ::-1]
 
-    def _leaking(
-        self, x: NDArray, s: complex, k_d: complex, k_s: complex, along: complex
-    ) -> NDArray[np.complex128] | float:
-        if self._leak is None:
-            return 0.0
-        C, slow = self._leak, self.slow
-        k = 1j * s / (C - self.c)
-        sides = [(np.conj(along) * (k - start)).imag for start in (k_d, k_s)]
-        if not sides[1] < 0.0 < sides[0]:
-            return 0.0
-        bs, bd = -np.sqrt(1.0 - C * C), np.sqrt(1.0 - slow * C * C)
-        dR = 4.0 * (-C * bd / bs - slow * C * bs / bd) + 4.0 * C * (2.0 - C * C)
-        wave = np.exp(1j * k * x) / (C - self.c)
-        # Between the cuts n/|k| is -n/k on the sheet that shear has left.
-        return np.array([
-            1j * bd * C * C / dR * wave, (2.0 - C * C - 2.0 * bs * bd) / dR * wave,
-        ])  # fmt: skip
+    @property
+    def _first(self) -> float:
+        """Length of the first panel of a way."""
+        ends = self._edges
+        return _FIRST * min(self._pole[0] - ends[-1], *np.diff(ends))
+
+    def _row(self, ζ: NDArray, below: bool = False) -> NDArray[np.complex128]:
+        """Of 𝐘/ζ what σ_YY and σ_XY do along Y, (2, n); of the conjugate's, with ``below``."""
+        C = self.c + 1.0 / ζ
+        Y = np.conj(self.surface(np.conj(C))) if below else self.surface(C)
+        return np.asarray(Y[:, 1, ::-1].T / ζ)
+
+    def _ways(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
+        """Points and weighted values of both ways in a direction, up to some panels."""
+        count = _POINTS * (panels + 1)
+        return [(ζ[:count], values[:, :count]) for ζ, values in self._downwards(down, panels)]
+
+    def _downwards(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
+        known = self._known.get(down)
+        if known is None or len(known[0][0]) < _POINTS * (panels + 1):
+            v, weights = _distances(self._first, panels + 8)
+            along = np.exp(-1j * _DIRECTIONS[down])
+            ends = (self._edges[-1], False, 1.0), (0.0, True, -1.0)
+            known = []
+            for start, below, sign in ends:
+                ζ = start + along * v
+                factor = sign * 1j / (2.0 * pi) * along * weights
+                known.append((ζ, factor * self._row(ζ, below)))
+            self._known[down] = known
+        return known
+
+    @cached_property
+    def _known(self) -> dict[int, list[tuple[NDArray, NDArray]]]:
+        """Ways by direction, as far as they have been needed."""
+        return {}
+
+    @cached_property
+    def _refined(self) -> dict[int, tuple[NDArray, NDArray]]:
+        """The way above the real axis by the number of halvings."""
+        return {}
+
+    def _above(self, halvings: int) -> tuple[NDArray, NDArray]:
+        """Points and weighted values above the real axis, with each panel halved some times."""
+        if halvings not in self._refined:
+            t, w = leggauss(_POINTS)
+            cuts = np.arange(2**halvings)[:, None]
+            finer = ((2.0 * cuts + 1.0 + t) / 2**halvings - 1.0).ravel()
+            which, start, length, values = self._panels
+            ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
+            told = values @ (_interpolation(finer) * np.tile(w, 2**halvings)[:, None]).T
+            told = told * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
+            self._refined[halvings] = ζ.ravel(), told.swapaxes(0, 1).reshape(2, -1)
+        return self._refined[halvings]
+
+    def _between(self, which: NDArray, φ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Slownesses at shares of angles between two edges, where roots become smooth, and slopes."""
+        low, high = self._edges[which], self._edges[which + 1]
+        return low + (high - low) * np.sin(pi / 2.0 * φ) ** 2, (high - low) * pi / 2.0 * np.sin(pi * φ)
+
+    @cached_property
+    def _panels(self) -> tuple[NDArray[np.int64], NDArray, NDArray, NDArray[np.complex128]]:
+        """Of panels so short that polynomials tell 𝐘: which edge is before each, start and length in φ,
+        (panels,) each, and values times slopes at Gauss's points, (panels, 2, points)."""
+        t, _ = leggauss(_POINTS)
+        wanted = [
+            (n, k / _PANELS, 1.0 / _PANELS) for n in range(len(self._edges) - 1) for k in range(_PANELS)
+        ]
+        found = []
+        for halvings in range(_HALVINGS + 1):
+            again = []
+            for n, start, length in wanted:
+                at = np.append(t, _BETWEEN)
+                ζ, slope = self._between(np.array(n), start + length * (1.0 + at) / 2.0)
+                values = self._row(ζ) * slope
+                known, rest = values[:, : len(t)], values[:, len(t) :]
+                off = np.abs(known @ _interpolation(_BETWEEN).T - rest).max()
+                if off > _ACCURACY * np.abs(values).max() and halvings < _HALVINGS:
+                    again += [(n, start, length / 2.0), (n, start + length / 2.0, length / 2.0)]
+                else:
+                    found.append((n, start, length, known))
+            wanted = again
+        which, starts, lengths, values = (np.array(column) for column in zip(*found))
+        return which, starts, lengths, values
 
 
-def _distances(size: float, last: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and weights along a cut: its end is a square root, far away powers and a decay."""
-    first = _NEAR * size
-    count = max(int(np.ceil(log(last / first) / _WIDTH)), 1)
-    edges = np.linspace(log(first), log(last), count + 1)
+def _interpolation(at: NDArray) -> NDArray[np.float64]:
+    """What Gauss's points of a panel tell between them, (points there, Gauss's)."""
+    t, _ = leggauss(_POINTS)
+    return np.asarray(np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(at, _POINTS - 1).T).T)
+
+
+def both_sides(response: Response, rayleigh: float) -> tuple[Kernel, Kernel]:
+    """Kernels ahead and behind of a load that moves over a solid.
+
+    Args:
+        response: of the solid at the load's speed.
+        rayleigh: of the wave along its surface over c_s.
+    """
+    surface = Admittance.of(response)
+    return Kernel(surface, response.c, rayleigh), Kernel(surface.mirrored, -response.c, rayleigh)
+
+
+def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points and weights along a way: its end is a square root, far away powers and a decay."""
     t, w = leggauss(_POINTS)
-    half = np.diff(edges)[:, None] / 2.0
-    y = (edges[:-1, None] + half * (1.0 + t)).ravel()
-    v = np.exp(y)
-    return v, (half * w).ravel() * v
+    near, weights = first * ((1.0 + t) / 2.0) ** 2, first * (1.0 + t) / 2.0 * w
+    starts = log(first) + _WIDTH * np.arange(panels)[:, None]
+    v = np.exp(starts + _WIDTH * (1.0 + t) / 2.0)
+    return np.append(near, v.ravel()), np.append(weights, (v * _WIDTH / 2.0 * w).ravel())

@@ -37,6 +37,7 @@ GOOD = {
     "schema": ([], []),
     "csv": (["quick.h5"], [["--states"], ["--si"]]),
     "dispersion": (None, []),
+    "response": (None, []),
     "plot": (None, []),
     "fields": (None, []),
     "fit": (None, []),

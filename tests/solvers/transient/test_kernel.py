@@ -1,9 +1,11 @@
-"""The kernels of motion in time against the transform by its definition."""
+"""The kernels of motion in time against the transform by its definition, its symbols by eigenvectors."""
 
 import numpy as np
 import pytest
+from random_solids import random_solid, stiffness
 
-from galinx.solvers.solids.isotropic import rayleigh_speed
+from galinx.solvers.solids.isotropic import MovingFrame, rayleigh_speed
+from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.kernel import Kernel
 
 
@@ -40,7 +42,49 @@ def by_definition(slow, c, x, s):
 def test_kernels_are_the_transform_of_their_symbols(ν, c, s):
     κ = 3.0 - 4.0 * ν
     slow = (κ - 1.0) / (κ + 1.0)
-    found = Kernel(slow, c, rayleigh_speed(κ))(np.array([0.3, 1.5]), s)
+    found = Kernel(Admittance.of(MovingFrame(κ, 0.0)), c, rayleigh_speed(κ))(np.array([0.3, 1.5]), s)
     for value, x in zip(found.T, (0.3, 1.5)):
         expected = by_definition(slow, c, x, s)
         np.testing.assert_allclose(value, expected, rtol=0.0, atol=2e-7 * np.abs(expected).max())
+
+
+def symbols(C, k, stiff):
+    """v̂ of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors of what decays, (2, n)."""
+    c11, c12, c16, c22, c26, c66 = stiff
+    R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
+    found = np.empty((2, len(C)), dtype=complex)
+    for n, (one, at) in enumerate(zip(C, k)):
+        Q = np.array([[c11, c16], [c16, c66]]) - one**2 * np.eye(2)
+        whole = np.block(
+            [[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(T, Q), -np.linalg.solve(T, R + R.T)]]
+        )
+        p, vectors = np.linalg.eig(whole)
+        # e^(ikpY) decays downwards where Im p has the sign of -Re k.
+        kept = np.argsort(p.imag * np.sign(at.real))[:2]
+        A = vectors[:2, kept]
+        tractions = 1j * at * (R.T @ A + T @ A * p[kept])
+        found[:, n] = (A @ np.linalg.inv(tractions))[1, ::-1]
+    return found
+
+
+def of_any_solid(stiff, c, x, s):
+    """(1/2π) ∫ symbols e^(ikx) dk as above; where all waves' wavenumbers are near the axis it is long."""
+    last = 25.0 * abs(s)
+    k, w = panels(np.linspace(-last, last, 161))
+    total = symbols(c + 1j * s / k, k + 0j, stiff) @ (w * np.exp(1j * k * x))
+    v, w = panels(np.geomspace(1e-3, 40.0 / x, 21) - 1e-3)
+    for sign in (1.0, -1.0):
+        k = sign * last + 1j * v
+        total += symbols(c + 1j * s / k, k, stiff) @ (1j * sign * w * np.exp(1j * k * x))
+    return total / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_kernels_of_any_solid_are_the_transform_of_their_symbols(seed):
+    rng, solid = np.random.default_rng(seed), random_solid(seed)
+    limit = solid.limit()
+    c, s = rng.uniform(-0.8, 0.8) * limit, complex(2.0, rng.uniform(0.0, 3.0))
+    stiff = stiffness(solid.response(0.0))
+    found = Kernel(Admittance(*stiff[:5]), c, limit)(np.array([0.4]), s)[:, 0]
+    expected = of_any_solid(stiff, c, 0.4, s)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())

@@ -1,0 +1,121 @@
+"""What a scene's punch answers to loads that oscillate: its dynamic stiffness over frequency."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.errors import BadInput
+from galinx.app.pictures.drawing import Drawing
+from galinx.app.pictures.told import spread
+from galinx.app.plan.states import enumerate_states
+from galinx.app.scene.scene import Scene
+from galinx.postprocess.figures.response import Curve, response_figure
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.transient.admittance import InPlane
+from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
+
+#: Speeds with frictions that are solved at most, and curves that can be told apart.
+MOST, _CURVES = 24, 6
+#: Highest frequency where none is asked for, over c_s/a.
+_USUAL = 10.0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A speed with a friction.
+
+    Attributes:
+        c: speed over c_s.
+        g: σ_XY/σ_YY under the punch.
+        found: what is answered.
+        plane_waves: what the stiffness over iω comes to at high frequencies, over 2μ a/c_s.
+    """
+
+    c: float
+    g: float
+    found: Oscillation
+    plane_waves: float
+
+    @property
+    def words(self) -> str:
+        """What tells it from others."""
+        return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}"
+
+
+def answers(scene: Scene, first: float, last: float | None, count: int) -> list[Answer]:
+    """Of all speeds and frictions of a scene.
+
+    Args:
+        scene: the scene.
+        first, last: angular frequencies over c_s/a; as far as is known, and 10 at most, if none is given.
+        count: of the frequencies, evenly spaced in their logarithm.
+
+    Raises:
+        BadInput: there is no answer.
+    """
+    solid = scene.solid
+    if not isinstance(solid.response(0.0), InPlane) or solid.nearly_incompressible:
+        raise BadInput(
+            "response: found layers or a solid with ν near 1/2, expected a uniform solid that waves pass"
+        )
+    if not isinstance(scene.punch.profile, Flat):
+        raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a flat punch")
+    states = enumerate_states(scene)
+    pairs = np.unique(np.column_stack([states.columns["c"], states.g]), axis=0)
+    limit, c = solid.limit(), np.unique(pairs[:, 0]).tolist()
+    if len(pairs) > MOST:
+        raise BadInput(f"response: found {len(pairs)} speeds with frictions, expected at most {MOST}")
+    if max(c) >= limit:
+        raise BadInput(f"response: c = {max(c):g} is not below the Rayleigh speed {limit:.6g} (over c_s)")
+    if last is None:
+        last = min(_USUAL, *(highest(solid.response(one), limit) for one in c))
+    if not first < last:
+        raise BadInput(
+            f"response: found frequencies from {first:g} to {last:g} c_s/a, expected them to grow"
+        )
+    ω, found = np.geomspace(first, last, count), []
+    for one in c:
+        try:
+            punch = OscillatingPunch(solid.response(one), limit, ω)
+        except ValueError as error:
+            raise BadInput(f"response: {error}") from error
+        of_speed = pairs[pairs[:, 0] == one, 1].tolist()
+        found += [Answer(one, g, punch.oscillation(g), punch.plane_waves(g)) for g in of_speed]
+    return found
+
+
+def table(scene: Scene, answer: Answer) -> list[str]:
+    """Lines that tell an answer in SI units."""
+    found, μ = answer.found, scene.solid.μ
+    hertz = found.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
+    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)    Im N/v0 (Pa)    |v0/N| (1/Pa)   phase of v0 (°)"]
+    for ω, f, K in zip(found.ω, hertz, 2.0 * μ * found.stiffness):
+        lag = -np.angle(K, deg=True)
+        lines.append(
+            f"{ω:<10.4g} {f:<15.6g} {K.real:<15.6g} {K.imag:<15.6g} {1.0 / abs(K):<15.6g} {lag:.2f}"
+        )
+    return [*lines, f"largest relative error, measured: {found.error.max():.1e}"]
+
+
+def drawing(known: list[Answer]) -> Drawing:
+    """Stiffness and damping as a figure."""
+    shown = [known[i] for i in spread(list(range(len(known))), _CURVES)]
+    curves = [_curve(one) for one in shown]
+    caption = (
+        "Dynamic stiffness of the punch, N̂/v̂₀ of a load N̂ e^(iωt) about that of steady sliding: its "
+        "real part, and its imaginary part over ω, which is what waves carry away. Dashed: plane waves "
+        "straight down, to which the latter comes at high frequencies. At low ones the stiffness goes "
+        "like 1/log ω: a half-plane has none of its own at rest."
+    )
+    left = f"{len(known) - len(shown)} of {len(known)} speeds with frictions not shown."
+    return Drawing(
+        "response", caption, response_figure(curves), left_out=left * (len(shown) < len(known))
+    )
+
+
+def _curve(answer: Answer) -> Curve:
+    K, ω = answer.found.stiffness, answer.found.ω
+    parts: NDArray[np.float64] = np.array([K.real, K.imag / ω])
+    label = f"$c = {answer.c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {answer.g:.4g}$"
+    return Curve(label, ω, parts, answer.plane_waves)

@@ -1,0 +1,224 @@
+"""What the surface of a half-plane answers to tractions at complex speeds.
+
+Fields e^(ik(X - Ct)) below the surface have u,Y = G u,X, where G has the two roots p of
+
+    det(Q(C) + p (R + Rᵀ) + p² T) = 0
+
+as eigenvalues of which e^(ik p Y) decays: Im p > 0 where k < 0. With the stiffness c_ij over μ, and C
+over √(μ/ρ), Q, R and T are those of steady motion at a real C. The surface has u,X = 𝐘(C) (σ_XY, σ_YY)/μ.
+
+Away from the real axis no root is real (the solid is one of real speeds), so that 𝐘 is analytic in the
+whole plane but where |C| is real and at least the least speed at which a decaying root meets a growing
+one; there the value is that of Im C → -0. Its poles are the speeds of the wave along the surface.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Imaginary part of a root below which it is real, over its size, where C is.
+_REAL = 1e-9
+#: Newton's steps: roots begin with half the digits where two of them meet.
+_STEPS = 3
+#: Directions that are looked at for waves, and halvings of what is between two of them.
+_SEEN, _HALVINGS = 1440, 60
+#: Points on a circle round the pole, which halves the way to the next speed at which 𝐘 is not analytic.
+_CIRCLE = 64
+
+
+@runtime_checkable
+class InPlane(Protocol):
+    """A uniform solid that tells its stiffness over μ = c₆₆: c₁₁, c₁₂, c₁₆, c₂₂, c₂₆."""
+
+    @property
+    def c11(self) -> float: ...
+    @property
+    def c12(self) -> float: ...
+    @property
+    def c16(self) -> float: ...
+    @property
+    def c22(self) -> float: ...
+    @property
+    def c26(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Admittance:
+    """Of the surface of a uniform solid.
+
+    Args:
+        c11, c12, c16, c22, c26: stiffness over c₆₆.
+    """
+
+    c11: float
+    c12: float
+    c16: float
+    c22: float
+    c26: float
+
+    @classmethod
+    def of(cls, response: Any) -> "Admittance":
+        """That of a half-plane's solid.
+
+        Raises:
+            ValueError: the response does not tell its solid's stiffness in the plane.
+        """
+        if not isinstance(response, InPlane):
+            raise ValueError(
+                f"{type(response).__name__}: expected a uniform solid, with c11 … c26 over μ"
+            )
+        solid = response
+        return cls(solid.c11, solid.c12, solid.c16, solid.c22, solid.c26)
+
+    @property
+    def mirrored(self) -> "Admittance":
+        """Of the mirror image in X = 0."""
+        return Admittance(self.c11, self.c12, -self.c16, self.c22, -self.c26)
+
+    def __call__(self, C: NDArray) -> NDArray[np.complex128]:
+        """𝐘 of the roots with Im p > 0 at speeds (n,): (n, 2, 2)."""
+        C = np.asarray(C, dtype=complex)
+        s, d = self._sum_and_product(C)
+        C2 = C * C
+        mixed, T = 2.0 * self.c16 + s, self.c12 + 1.0 + s * self.c26
+        # (R + Rᵀ + sT) G = dT - Q, and L = Rᵀ + T G, all of two rows.
+        M = np.array([[mixed, T], [T, 2.0 * self.c26 + s * self.c22]])
+        F = np.array(
+            [
+                [d - self.c11 + C2, d * self.c26 - self.c16],
+                [d * self.c26 - self.c16, d * self.c22 - 1.0 + C2],
+            ]
+        )
+        G = np.linalg.solve(np.moveaxis(M, 2, 0), np.moveaxis(F, 2, 0))
+        across = np.array([[1.0, self.c26], [self.c26, self.c22]])
+        L = np.array([[self.c16, 1.0], [self.c12, self.c26]]) + across @ G
+        return np.asarray(np.linalg.inv(L), dtype=complex)
+
+    def _quartic(self, C2: Any) -> list[Any]:
+        """Coefficients of p⁰ to p⁴ at C²."""
+        c11, c12, c16, c22, c26 = self.c11, self.c12, self.c16, self.c22, self.c26
+        return [
+            (c11 - C2) * (1.0 - C2) - c16 * c16,
+            2.0 * (c16 * (1.0 - C2) + c26 * (c11 - C2) - (c12 + 1.0) * c16),
+            (1.0 - C2) + 2.0 * c16 * c26 + c22 * (c11 - C2) - (c12 + 1.0) ** 2,
+            2.0 * (c16 * c22 - c26 * c12) + 0.0 * C2,
+            c22 - c26 * c26 + 0.0 * C2,
+        ]
+
+    def _sum_and_product(self, C: NDArray) -> tuple[NDArray, NDArray]:
+        """Of the two roots, polished, for they keep their digits where these meet."""
+        size = np.maximum(1.0, np.abs(C))
+        a = np.array(self._quartic(C * C))
+        b = (a / a[4] * size ** (np.arange(5)[:, None] - 4.0))[:4]  # of p over its size
+        companion = np.zeros((len(C), 4, 4), dtype=complex)
+        companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
+        companion[:, :, 3] = -b.T
+        p = np.asarray(np.linalg.eigvals(companion), dtype=complex)
+        p = np.take_along_axis(p, np.argsort(-self._imaginary(p, C, size, b), axis=1), axis=1)
+        s, d = _polished(p[:, :2].sum(axis=1), p[:, :2].prod(axis=1), p[:, 2:].prod(axis=1), b)
+        return s * size, d * size**2
+
+    def _imaginary(self, p: NDArray, C: NDArray, size: NDArray, b: NDArray) -> NDArray[np.float64]:
+        """Imaginary parts of roots; where they are real, of what they are for Im C → -0."""
+        found = p.imag.copy()
+        at = (C.imag == 0.0)[:, None] & (np.abs(p.imag) < _REAL * np.maximum(np.abs(p), 1.0))
+        slope_p = 4.0 * p**3 + 3.0 * b[3][:, None] * p**2 + 2.0 * b[2][:, None] * p + b[1][:, None]
+        whole = p * size[:, None]
+        C2, a4 = (C * C)[:, None], self.c22 - self.c26**2
+        by_C2 = (2.0 * C2 - self.c11 - 1.0) - 2.0 * (self.c16 + self.c26) * whole
+        by_C2 = (by_C2 - (1.0 + self.c22) * whole**2) / a4
+        rate = -by_C2 * 2.0 * C[:, None] / (slope_p * size[:, None] ** 3)
+        found[at] = -_REAL * rate.real[at]
+        return found
+
+    @cached_property
+    def meeting(self) -> NDArray[np.float64]:
+        """Real speeds > 0 at which a decaying root meets a growing one, from below.
+
+        There the root is real, and the square of the speed of waves e^(ik(X + pY)) stationary in p.
+        """
+        φ = (np.arange(_SEEN + 1) / _SEEN - 0.5) * pi * (1.0 - 1.0 / _SEEN)
+        low, high = np.tan(φ[:-1]), np.tan(φ[1:])
+        found = []
+        for sheet in (0, 1):
+            below, above = self._slope(low, sheet), self._slope(high, sheet)
+            turns = (below > 0.0) != (above > 0.0)
+            one, other, rising = low[turns], high[turns], below[turns] > 0.0
+            for _ in range(_HALVINGS):
+                middle = (one + other) / 2.0
+                first = (self._slope(middle, sheet) > 0.0) == rising
+                one, other = np.where(first, middle, one), np.where(first, other, middle)
+            found.append(np.linalg.eigvalsh(self._acoustic(one))[:, sheet])
+        return np.unique(np.sqrt(np.concatenate(found)))
+
+    def _acoustic(self, p: NDArray) -> NDArray[np.float64]:
+        """Q(0) + p (R + Rᵀ) + p² T at real p (n,), (n, 2, 2)."""
+        return (
+            self._parts[0]
+            + np.multiply.outer(p, self._parts[1])
+            + np.multiply.outer(p * p, self._parts[2])
+        )
+
+    @property
+    def _parts(self) -> NDArray[np.float64]:
+        across = [[1.0, self.c26], [self.c26, self.c22]]
+        mixed = [[2.0 * self.c16, self.c12 + 1.0], [self.c12 + 1.0, 2.0 * self.c26]]
+        return np.array([[[self.c11, self.c16], [self.c16, 1.0]], mixed, across])
+
+    def _slope(self, p: NDArray, sheet: int) -> NDArray[np.float64]:
+        """Of the square of the speed of the slower or the faster wave by p."""
+        _, mixed, across = self._parts
+        wave = np.linalg.eigh(self._acoustic(p))[1][:, :, sheet]
+        return np.einsum("ni,nij,nj->n", wave, mixed + 2.0 * np.multiply.outer(p, across), wave)
+
+    @property
+    def least(self) -> float:
+        """The least of these: 𝐘 is analytic below."""
+        return float(self.meeting[0])
+
+    @cached_property
+    def fastest(self) -> float:
+        """Largest speed of a wave inside, over all directions in the plane."""
+        φ = np.linspace(-pi / 2.0, pi / 2.0, _SEEN, endpoint=False)[1:]
+        waves = np.linalg.eigvalsh(self._acoustic(np.tan(φ)))[:, 1] * np.cos(φ) ** 2
+        return float(np.sqrt(max(waves.max(), np.linalg.eigvalsh(self._parts[2])[1])))
+
+    def residue(self, speed: float) -> NDArray[np.complex128]:
+        """Of 𝐘 at the speed of the wave along the surface, (2, 2)."""
+        radius = (self.least - speed) / 2.0
+        turn = np.exp(2j * pi * (np.arange(_CIRCLE) + 0.5) / _CIRCLE)
+        around = self(speed + radius * turn)
+        return np.asarray((radius * turn[:, None, None] * around).mean(axis=0))
+
+    @property
+    def impedance(self) -> NDArray[np.float64]:
+        """Of plane waves straight down, over √(μρ): tractions by velocities of the surface, (2, 2)."""
+        λ, vectors = np.linalg.eigh(self._parts[2])
+        return np.asarray(vectors * np.sqrt(λ) @ vectors.T)
+
+
+def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:
+    """Sum and product of two roots of p⁴ + b₃p³ + …, Newton's method for both quadratic factors.
+
+    Args:
+        s, d: of the two, (n,).
+        e: product of the other two.
+        b: coefficients of p⁰ to p³, (4, n).
+    """
+    for _ in range(_STEPS):
+        t = -b[3] - s  # sum of the other two
+        rest = np.array([d + e + s * t - b[2], -(s * e + t * d) - b[1], d * e - b[0]])
+        one = np.ones_like(s)
+        slopes = np.array([[t - s, one, one], [d - e, -t, -s], [0.0 * s, e, d]])
+        with np.errstate(all="ignore"):
+            try:
+                step = np.linalg.solve(np.moveaxis(slopes, 2, 0), rest.T[..., None])[..., 0].T
+            except np.linalg.LinAlgError:
+                break  # a decaying root meets a growing one
+        small = np.abs(step).max(axis=0) < 0.1 * np.maximum(1.0, np.abs(d))
+        s, d, e = (value - np.where(small, change, 0.0) for value, change in zip((s, d, e), step))
+    return s, d

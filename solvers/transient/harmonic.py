@@ -1,0 +1,95 @@
+"""A flat punch that slides at constant speed under a load that oscillates: its dynamic stiffness.
+
+Loads and indentations are the real parts of N̂ e^(iωt) and v̂₀ e^(iωt) about those of steady motion, and
+friction stays σ_XY = g σ_YY. At low frequencies v̂₀ is a logarithm of ω, as a half-plane has no static
+indentation; at high ones plane waves go straight down.
+"""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.solids.solid import Response
+from galinx.solvers.transient.admittance import Admittance
+from galinx.solvers.transient.transform import Transformed
+
+#: Polynomials of the pressure without waves, and for each radian of the shortest wave along the
+#: contact's half-width; so many of them, as a share, tell the error.
+_TERMS, _PER_RADIAN, _FEWER = 18, 1.0, 0.75
+#: Radians of the shortest wave along the half-width at most, and in a panel of distances.
+MOST, _TURN = 60.0, 4.0
+#: Frequencies are solved together where one is so many times another at most.
+_BAND = 3.0
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """What a punch answers to loads that oscillate, of shape (frequencies,) each.
+
+    Attributes:
+        ω: angular frequencies over c_s/a.
+        flexibility: v̂₀/N̂ over 1/(2μ), complex.
+        centre: that of the pressure's amplitude over a, complex.
+        error: relative error of the flexibility, as fewer polynomials tell it.
+    """
+
+    ω: NDArray[np.float64]
+    flexibility: NDArray[np.complex128]
+    centre: NDArray[np.complex128]
+    error: NDArray[np.float64]
+
+    @property
+    def stiffness(self) -> NDArray[np.complex128]:
+        """N̂/v̂₀ over 2μ."""
+        return 1.0 / self.flexibility
+
+
+class OscillatingPunch:
+    """All frictions at one speed.
+
+    Args:
+        response: of steady motion at that speed.
+        rayleigh: speed of the wave along the surface over c_s.
+        ω: angular frequencies over c_s/a, > 0, growing.
+
+    Raises:
+        ValueError: a wave along the contact is too short.
+    """
+
+    def __init__(self, response: Response, rayleigh: float, ω: NDArray) -> None:
+        if (last := float(ω.max())) > (most := highest(response, rayleigh)):
+            raise ValueError(
+                f"found a frequency of {last:.4g} c_s/a, expected at most {most:.4g} c_s/a at c = "
+                f"{response.c:.4g}: the wave ahead of the punch is too short beyond"
+            )
+        self._ω, self._response = ω, response
+        band = np.floor(np.log(ω.max() / ω) / np.log(_BAND))
+        self._bands = []
+        for one in np.unique(band)[::-1]:
+            shortest = float(ω[band == one].max()) / (rayleigh - abs(response.c))
+            terms = ceil(_TERMS + _PER_RADIAN * shortest)
+            s = 1j * ω[band == one]
+            self._bands.append((terms, Transformed(response, rayleigh, s, terms, _TURN / shortest)))
+
+    def oscillation(self, g: float) -> Oscillation:
+        """What is answered where σ_XY = g σ_YY under the punch."""
+        parts = []
+        for terms, transformed in self._bands:
+            basis = transformed.basis(g)
+            found, fewer = transformed.answers(basis, (terms, ceil(_FEWER * terms)))
+            moments = found[:, :-1] @ basis.moments
+            parts.append((found[:, -1], moments[:, 1] / moments[:, 0], fewer[:, -1]))
+        v, centre, other = (np.concatenate(values) for values in zip(*parts))
+        return Oscillation(self._ω, v, centre, np.abs(v - other) / np.abs(v))
+
+    def plane_waves(self, g: float) -> float:
+        """What the stiffness over iω comes to at high frequencies, over 2μ: c_d/c_s where isotropic."""
+        slopes = np.linalg.inv(Admittance.of(self._response).impedance)[1]
+        return float(1.0 / (slopes[1] + g * slopes[0]))
+
+
+def highest(response: Response, rayleigh: float) -> float:
+    """Highest angular frequency over c_s/a that is known at a speed."""
+    return MOST * (rayleigh - abs(response.c))

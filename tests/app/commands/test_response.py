@@ -1,0 +1,37 @@
+"""The command that tells what a punch answers to loads that oscillate."""
+
+from support import HOME, command
+
+SCENE = HOME / "scenes" / "start_from_rest.toml"
+
+
+def numbers(text):
+    return [[float(cell) for cell in line.split()] for line in text.splitlines() if line[:1].isdigit()]
+
+
+def test_response_of_a_scene(tmp_path):
+    words = ["--points", "3", "--from", "0.1", "--to", "2", "--set", "motion.c=[0.0, 0.5]"]
+    done = command("response", SCENE, "-o", tmp_path / "punch.png", *words)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "punch.png").stat().st_size > 10_000
+    found = numbers(done.stdout)
+    assert [row[0] for row in found] == [0.1, 0.4472, 2.0] * 2
+    c_s, a = (200e9 / 2.5 / 7800.0) ** 0.5, 1e-3
+    for ω, hertz, stiff, damping, flexible, lag in found:
+        assert abs(hertz / (ω * c_s / a / 6.283185) - 1.0) < 1e-4
+        assert abs(flexible * (stiff**2 + damping**2) ** 0.5 - 1.0) < 1e-4
+        assert -90.0 < lag < 0.0  # it lags behind: waves take work
+
+
+def test_what_has_no_answer_is_refused(tmp_path):
+    for words, said in (
+        (["--set", "motion.c=0.95"], "is not below the Rayleigh speed"),
+        (["--to", "50", "--set", "motion.c=0.9"], "expected at most"),
+        (["--from", "2", "--to", "1"], "expected them to grow"),
+        (["--set", "solid.nu=0.499"], "expected a uniform solid"),
+    ):
+        done = command("response", SCENE, "-o", tmp_path, *words)
+        assert done.returncode == 2 and said in done.stderr, done.stderr
+    done = command("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
+    assert done.returncode == 2 and "expected a flat punch" in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,98 @@
+"""Loads that oscillate: known limits, the mirror image, and finite elements in time."""
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.harmonic import OscillatingPunch, highest
+from galinx.solvers.transient.transform import Transformed
+
+SOLIDS = [Isotropic(1.0, 0.25, 1.0), random_solid(0), random_solid(2)]
+
+
+def oscillation(solid, c, g, ω):
+    return OscillatingPunch(solid.response(c), solid.limit(), np.asarray(ω)).oscillation(g)
+
+
+@pytest.mark.parametrize("solid", SOLIDS)
+@pytest.mark.parametrize("share, g", [(0.0, 0.0), (0.5, -0.4)])
+def test_at_low_frequencies_a_steady_punch_sinks_by_a_logarithm(solid, share, g):
+    """v̂₀ = -(N̂/πμ) (n + g n₁₂) log iω + what is the same at all of them, but for ω log ω."""
+    c = share * solid.limit()
+    steady = solid.response(c)
+    ω = np.array([1e-5, 2e-5])
+    v = oscillation(solid, c, g, ω).flexibility
+    slope = (v[1] - v[0]) / np.log(2.0)
+    assert abs(slope + 2.0 / np.pi * (steady.n + g * steady.n12)) < 2e-4 * abs(v[0])
+
+
+@pytest.mark.parametrize("solid", SOLIDS)
+def test_at_low_frequencies_the_pressure_is_that_of_steady_motion(solid):
+    c, g = 0.5 * solid.limit(), -0.4
+    steady = solid.response(c)
+    cot = g * steady.q / (steady.n + g * steady.n12)
+    # Centre β - α of the flat punch, α = -1/2 - atan(cot)/π.
+    assert abs(oscillation(solid, c, g, [1e-6]).centre[0] - 2.0 * np.arctan(cot) / np.pi) < 1e-4
+
+
+@pytest.mark.parametrize("solid", SOLIDS)
+def test_at_high_frequencies_plane_waves_go_down(solid):
+    """Two edges add what falls like 1/ω."""
+    c, g = 0.3 * solid.limit(), 0.3
+    punch = OscillatingPunch(
+        solid.response(c), solid.limit(), np.linspace(10.0, 20.0, 11) * solid.limit()
+    )
+    found = punch.oscillation(g)
+    damping = found.stiffness / (1j * found.ω)
+    np.testing.assert_allclose(damping.mean(), punch.plane_waves(g), rtol=0.04)
+    isotropic = OscillatingPunch(SOLIDS[0].response(0.0), SOLIDS[0].limit(), np.array([1.0]))
+    assert abs(isotropic.plane_waves(0.3) - 3.0**0.5) < 1e-12  # c_d/c_s at ν = 1/4
+
+
+@pytest.mark.parametrize("solid", SOLIDS)
+def test_mirror_image_answers_alike(solid):
+    """The mirror image that moves the other way, with friction reversed, from the other side."""
+    c, g, ω = 0.4 * solid.limit(), -0.5, np.array([0.3, 3.0])
+    known = solid.response(c)
+
+    class Mirrored:
+        c, n, q, n12 = -known.c, known.n, known.q, -known.n12
+        c11, c12, c16, c22, c26 = known.c11, known.c12, -known.c16, known.c22, -known.c26
+
+    found = OscillatingPunch(Mirrored, solid.limit(), ω).oscillation(-g)
+    expected = oscillation(solid, c, g, ω)
+    np.testing.assert_allclose(found.flexibility, expected.flexibility, rtol=1e-9)
+    np.testing.assert_allclose(found.centre, -expected.centre, atol=1e-9)
+
+
+def test_polynomials_tell_their_error():
+    """At half of the highest frequency that is known, against some more of them."""
+    solid = SOLIDS[0]
+    steady, limit = solid.response(0.5), solid.limit()
+    last = highest(steady, limit) / 2.0
+    found = OscillatingPunch(steady, limit, np.array([last])).oscillation(-0.4)
+    basis = (more := Transformed(steady, limit, np.array([1j * last]), 64, 0.1)).basis(-0.4)
+    ((best,),) = more.answers(basis)
+    off = abs(found.flexibility[0] / best[-1] - 1.0)
+    assert off < found.error[0] + 1e-11 < 1e-7
+
+
+def test_waves_that_are_too_short_are_refused():
+    with pytest.raises(ValueError, match=r"at most 4\.1"):
+        oscillation(SOLIDS[0], 0.85, 0.0, [5.0])
+
+
+def test_finite_elements_in_time_answer_alike():
+    """Laplace's transform of what a pulse of the load does, at complex s: ∫ e^(-st) v₀ dt."""
+    from test_start import Started, smooth
+
+    started, g = Started(SOLIDS[0], 0.6, 5.0, 50), -0.4
+    run = started.solver.run(50, lambda t: g, lambda t: float(smooth(t, 1.0) - smooth(t - 1.0, 1.0)))
+    load = smooth(run.t, 1.0) - smooth(run.t - 1.0, 1.0)
+    s = 2.0 + 1j * np.array([0.0, 1.0, 3.0])
+    weights = np.tile([4.0, 2.0], 25) / 3.0 * 0.1  # Simpson's; both begin with 0 and end with next to it
+    by_time = [np.exp(-np.multiply.outer(s, run.t)) @ (weights * values) for values in (run.v0, load)]
+    punch = Transformed(started.response, SOLIDS[0].limit(), s, 24)
+    (found,) = punch.answers(punch.basis(g))
+    np.testing.assert_allclose(by_time[0] / by_time[1], found[:, -1], rtol=2e-3)

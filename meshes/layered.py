@@ -6,7 +6,7 @@ rings go on towards it: their lines do not run through the whole mesh.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, ceil, log
 
@@ -27,6 +27,8 @@ _GENTLE_GROWTH, _THIN = 2.5, 0.4
 #: Where stresses are wanted: size of a cell over the length on which fields change there, and how much
 #: beyond the last place, or the last interface, that holds; then lines grow by a factor.
 _RESOLVED, _BEYOND, _DEEPER, _FAR_GROWTH = 1.2, 1.1, 3.0, 3.0
+#: Share of the tolerance of stresses that the innermost cells take half of.
+_OF_INNERMOST = 0.3
 #: Tolerance of stresses below which one degree more is always asked for.
 _TIGHT = 1e-5
 #: The least growth of columns: beside solids along whose planes fields go far aside there is no end.
@@ -102,6 +104,12 @@ class OnLayers(MeshKind):
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
         return max(self._innermost(wanted) ** 2, 1e-11)
+
+    def _innermost(self, wanted: Wanted) -> float:
+        if wanted.nearest is None:
+            return super()._innermost(wanted)
+        # What these cells spoil beside them no degree mends.
+        return super()._innermost(replace(wanted, tolerance=_OF_INNERMOST * wanted.tolerance))
 
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         return 0.3 * self.innermost_size(wanted) / margin**0.4
@@ -207,7 +215,7 @@ def on_layers(
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
-        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5, depths=tuple(depths),
+        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
         far_length=far_length, roots=roots,
     )  # fmt: skip

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.layers.graded import Graded
 from galinx.solvers.layers.medium import Medium
-from galinx.solvers.layers.speed import highest
+from galinx.solvers.layers.speed import bisected, highest
 from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.uniform import Uniform
 from galinx.solvers.parameters import made, parameters, values
@@ -168,7 +168,14 @@ class Layered:
 
         # Waves much shorter than a layer, and much longer than all, run as in one solid.
         most = min(self.surface.limit(), self.substrate.limit() * self.substrate.c_s / self.c_s)
-        return highest(stack, most, 1e-9 if graded else 1e-13)
+        return highest(stack, bisected(self._outruns, most), 1e-9 if graded else 1e-13)
+
+    def _outruns(self, c: float) -> bool:
+        """Are waves inside all solids faster?"""
+        try:
+            return bool(self.response(c).roots)
+        except ValueError:
+            return False
 
     def limit(self) -> float:
         """Highest speed over ``c_s`` at which no wave runs with the load, freely."""

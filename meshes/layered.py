@@ -6,7 +6,7 @@ rings go on towards it: their lines do not run through the whole mesh.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, ceil, log
 
@@ -16,14 +16,23 @@ from numpy.typing import NDArray
 from galinx.meshes.charts import Physical
 from galinx.meshes.kind import DEGREES, MeshKind, Wanted
 from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
+from galinx.meshes.strata import Strata, between
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
 _GROWTH = 4.0
 #: The same under the punch, where facets have to follow what the pressure is read off by.
 _UNDER = 1.8
-#: The same where stresses are wanted, whose derivatives ask for more, and over an uppermost layer that is
-#: thinner than so many a.
+#: The same over an uppermost layer that is thinner than so many a.
 _GENTLE_GROWTH, _THIN = 2.5, 0.4
+#: Where stresses are wanted: size of a cell over the length on which fields change there, and how much
+#: beyond the last place, or the last interface, that holds; then lines grow by a factor.
+_RESOLVED, _BEYOND, _DEEPER, _FAR_GROWTH = 1.2, 1.1, 3.0, 3.0
+#: Share of the tolerance of stresses that the innermost cells take half of.
+_OF_INNERMOST = 0.3
+#: Tolerance of stresses below which one degree more is always asked for.
+_TIGHT = 1e-5
+#: The least growth of columns: beside solids along whose planes fields go far aside there is no end.
+_LEAST_GROWTH = 1.25
 #: Size of a ring over that of the one outside it, and where stresses are wanted beside it.
 _RATIO, _NEAR_RATIO = 0.45, 0.5
 #: Cells along a leg of an L by how far apart the planes are in which fields live.
@@ -55,12 +64,14 @@ class OnLayers(MeshKind):
         drawn_together: smallest Im p of the uppermost solid: its fields see depths so much smaller.
         wide: Im p midway between both: width over height of what its fields take for a square.
         far_length: over which the layers are seen from far, over a.
+        roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
     """
 
     depths: tuple[float, ...] = ()
     drawn_together: float = 1.0
     wide: float = 1.0
     far_length: float = 1.0
+    roots: tuple[tuple[complex, ...], ...] = ()
 
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
@@ -94,27 +105,32 @@ class OnLayers(MeshKind):
         """Of the cells at the edges, over a."""
         return max(self._innermost(wanted) ** 2, 1e-11)
 
+    def _innermost(self, wanted: Wanted) -> float:
+        if wanted.nearest is None:
+            return super()._innermost(wanted)
+        # What these cells spoil beside them no degree mends.
+        return super()._innermost(replace(wanted, tolerance=_OF_INNERMOST * wanted.tolerance))
+
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         return 0.3 * self.innermost_size(wanted) / margin**0.4
 
     def degree(self, wanted: Wanted, margin: float) -> int:
         """One less than usual for K_I alone: the measured error asks for more where it is needed."""
-        return max(super().degree(wanted, margin) - (wanted.nearest is None), DEGREES[0] + 1)
+        degree = super().degree(wanted, margin)
+        if wanted.nearest is None:
+            return max(degree - 1, DEGREES[0] + 1)
+        return min(degree + (wanted.tolerance < _TIGHT), DEGREES[1])
 
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
         b, R = min(_SHARE * self.depths[0], _SQUARE / max(self.wide, 1.0)), self.radius(wanted)
         near = wanted.nearest is not None and wanted.nearest < b
         legs = (2 if near else 1) + ceil(_LEGS * wanted.spread - 0.5)
-        gentle = wanted.nearest is not None or self.depths[0] < _THIN
-        growth = _GENTLE_GROWTH if gentle else _GROWTH
         wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
-        beside, under = _outwards(wide, R, growth), _outwards(wide, 1.0, min(_UNDER, growth))
+        beside, under, below = self._lines(wanted, b)
         outer, inner = (np.concatenate([self.wide * in_square, lines]) for lines in (beside, under))
         right = np.concatenate([1.0 - inner, [1.0], 1.0 + outer])
         X = np.unique(np.concatenate([-right, right]))
-        fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
-        below = np.concatenate([_between(low, high, growth) for low, high in pairwise(fixed)])
         rows = -np.concatenate([[0.0], in_square, below, [R]])
         cells = [
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -130,16 +146,23 @@ class OnLayers(MeshKind):
         ]
         return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
-
-def _outwards(first: float, last: float, growth: float) -> NDArray[np.float64]:
-    """Distances from an edge, from the first to the last, which grow by a factor."""
-    return np.append(_between(first, last, growth), last)
-
-
-def _between(low: float, high: float, growth: float) -> NDArray[np.float64]:
-    """From low to below high."""
-    count = max(ceil(log(high / low) / log(growth) - 1e-9), 1) if high > low else 0
-    return low * (high / low) ** (np.arange(count) / max(count, 1))
+    def _lines(self, wanted: Wanted, b: float) -> list[NDArray[np.float64]]:
+        """Distances of columns from an edge, beside the punch and under it, and depths of rows below b."""
+        R, wide = self.radius(wanted), self.wide * b
+        if wanted.nearest is None:
+            growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
+            beside = between(wide, R, growth)
+            fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
+            below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
+        else:
+            strata = Strata(self.depths, self.roots or ((1j,),) * (len(self.depths) + 1))
+            growth = max(1.0 + _RESOLVED * strata.aside, _LEAST_GROWTH)
+            far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * wanted.farthest), R)
+            beyond = between(far, R, _FAR_GROWTH)
+            beside = np.append(between(wide, far, growth), beyond)
+            below = np.append(strata.rows(b, far, _RESOLVED), beyond)
+        under = between(wide, 1.0, min(_UNDER, growth))
+        return [np.append(beside, R), np.append(under, 1.0), below]
 
 
 def _rings(
@@ -186,12 +209,13 @@ def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
 
 
 def on_layers(
-    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0
+    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0,
+    roots: tuple[tuple[complex, ...], ...] = (),
 ) -> OnLayers:
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
-        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5, depths=tuple(depths),
+        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length,
+        far_length=far_length, roots=roots,
     )  # fmt: skip

@@ -54,6 +54,9 @@ def of_degrees(order: int) -> Rate:
 #: The same of moments where convergence was seen to be uneven.
 SLOWER = Rate(0.3, 0.3)
 
+#: The same of derivatives at depths, away from all singularities, which many cells tell and evenly.
+AT_DEPTHS = Rate(0.3, 0.3, _ERRATIC)
+
 
 def remaining(
     first: NDArray,

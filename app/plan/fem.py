@@ -193,7 +193,15 @@ def _seen_by_layers(responses: Sequence[Any]) -> dict[str, float]:
         "drawn_together": float(np.min(roots)),
         "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         "far_length": max(response.far_field.length for response in responses),
+        "roots": _roots(responses),
     }
+
+
+def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
+    """p of every solid at the lowest and the highest speed, where they are farthest apart."""
+    by_speed = sorted(responses, key=lambda response: response.c)
+    each = [response.roots for response in (by_speed[0], by_speed[-1])]
+    return tuple(one + other for one, other in zip(*each))
 
 
 def _mode(scene: Scene) -> str:

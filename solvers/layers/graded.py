@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.medium import Medium
@@ -27,9 +28,11 @@ from galinx.solvers.layers.uniform import Uniform
 
 #: Coefficients of the polynomials in which properties are expanded, at first and at most, and what of
 #: them is rounding.
-_FEW, _MANY, _ROUNDING = 17, 129, 2e-15
+_FEW, _MANY, _ROUNDING = 17, 513, 2e-15
 #: Twice k Im p times the depth below which nothing is felt on top.
 _FELT = 78.0
+#: Depths at which it is looked at how fast fields fall.
+_LOOKED_AT = 33
 #: Slices by which it is seen whether a wave runs inside.
 _SLICES = 16
 #: Relative error of a step, and absolute error of δ over Z.
@@ -101,15 +104,19 @@ class Graded:
         raise SolveError("the solid of a graded layer changes too much to be followed at this speed")
 
     @cached_property
-    def decay(self) -> float:
-        """Smallest Im p in the layer: fields fall like e^(-k Im p d) at least."""
-        return min(
-            p.imag for s in np.linspace(0.0, 1.0, 9) for p in self.medium_of(s).response.roots.each
-        )
+    def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
+        depth = np.linspace(0.0, self.H, _LOOKED_AT)
+        decay = [
+            min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()
+        ]
+        return depth, cumulative_trapezoid(decay, depth, initial=0.0)
 
     def _reach(self, k: NDArray) -> NDArray[np.float64]:
         """Depth over which the integration goes, (n,)."""
-        return np.minimum(self.H, _FELT / np.maximum(2.0 * self.decay * k, 1e-300))
+        depth, fallen = self._falls
+        with np.errstate(divide="ignore"):
+            return np.interp(_FELT / (2.0 * k), fallen, depth)
 
     def _properties(self, depth: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """N, T⁻¹ and dZ₋/dY at depths, (n, 2, 2) each."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.layers.graded import Graded
 from galinx.solvers.layers.medium import Medium
-from galinx.solvers.layers.speed import highest
+from galinx.solvers.layers.speed import bisected, highest
 from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.uniform import Uniform
 from galinx.solvers.parameters import made, parameters, values
@@ -18,6 +18,8 @@ from galinx.solvers.solids.solid import Potential, Response, Solid
 
 #: How constants change from the upper face of a layer to the lower one.
 GRADINGS = ("linear", "exponential", "power")
+#: Depths at which a graded layer's planes are looked at.
+_SAMPLES = 5
 
 
 @dataclass(frozen=True)
@@ -166,7 +168,14 @@ class Layered:
 
         # Waves much shorter than a layer, and much longer than all, run as in one solid.
         most = min(self.surface.limit(), self.substrate.limit() * self.substrate.c_s / self.c_s)
-        return highest(stack, most, 1e-9 if graded else 1e-13)
+        return highest(stack, bisected(self._outruns, most), 1e-9 if graded else 1e-13)
+
+    def _outruns(self, c: float) -> bool:
+        """Are waves inside all solids faster?"""
+        try:
+            return bool(self.response(c).roots)
+        except ValueError:
+            return False
 
     def limit(self) -> float:
         """Highest speed over ``c_s`` at which no wave runs with the load, freely."""
@@ -245,6 +254,18 @@ class LayeredResponse:
     def medium(self, solid: Solid) -> Medium:
         """One of its solids at that speed."""
         return Medium(solid.response(self.c * self.solid.c_s / solid.c_s), solid.μ / self.solid.μ)
+
+    @property
+    def roots(self) -> list[tuple[complex, ...]]:
+        """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
+        shares = [np.linspace(0.0, 1.0, _SAMPLES if one.bottom else 1) for one in self.solid.layers]
+        solids = [
+            *([one.at(share) for share in some.tolist()] for one, some in zip(self.solid.layers, shares)),
+            [self.solid.substrate],
+        ]
+        return [
+            tuple(p for solid in some for p in self.medium(solid).response.roots.each) for some in solids
+        ]
 
     def stack(self, a: float, rtol: float = 0.0) -> Stack:
         """Its layers with lengths over a.

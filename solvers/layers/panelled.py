@@ -173,7 +173,7 @@ class PanelledPressure:
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return self.panels.values(self.p, _x(r))
 
-    def rest(self, r: NDArray) -> NDArray[np.float64]:
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         panels, found = self.panels, np.empty(len(r))
         under = np.abs(r) < 1.0
         found[~under] = (panels.weights * self.p / (panels.t - r[~under, None])).sum(axis=1)

@@ -12,8 +12,8 @@ from scipy.special import roots_jacobi
 from galinx.solvers.layers.panelled import Panels
 from galinx.solvers.sie.collocation import Expansion
 
-#: |r| up to which polynomials have not grown, and points of the rule beyond it.
-_NEAR, _FINE = 1.1, 96
+#: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
+_NEAR, _GROWN, _FINE = 1.1, 1e3, 96
 
 
 class Pressure(Protocol):
@@ -34,7 +34,7 @@ class Pressure(Protocol):
     def series(self, r: NDArray) -> NDArray[np.float64]:
         """p at |r| <= near."""
 
-    def rest(self, r: NDArray) -> NDArray[np.float64]:
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         """(1/π) ∫ σ/(t - r) dt, where |r| <= near less p(r) times that of the weight."""
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
@@ -57,7 +57,9 @@ class Polynomial:
 
     expansion: Expansion
 
-    near = _NEAR
+    @property
+    def near(self) -> float:
+        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.expansion.c))))
 
     @property
     def α(self) -> float:
@@ -75,9 +77,9 @@ class Polynomial:
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return self.expansion.series(r)
 
-    def rest(self, r: NDArray) -> NDArray[np.float64]:
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         t, w, p = self._rule
-        known = np.abs(r) <= _NEAR
+        known = np.abs(r) <= near
         taken = np.zeros_like(r)
         taken[known] = self.series(r[known])
         difference = t - r[:, None]

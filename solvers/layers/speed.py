@@ -18,8 +18,8 @@ from galinx.solvers.layers.stack import Stack
 _DENSITY, _LONGEST, _SHORTEST = 6, 1e-3, 30.0
 #: Times that the neighbourhood of the smallest one is looked at again, and wavenumbers there.
 _CLOSER, _THERE = 4, 9
-#: Halvings of a bracket at most.
-_STEPS = 90
+#: Steps at most; those below waves inside grow so much, from the second on.
+_STEPS, _STRIDE, _FIRST_STEP = 90, 2.0, 1e-4
 
 
 def weakest(stack: Stack) -> tuple[float, float]:
@@ -45,25 +45,47 @@ def wavenumbers(whole: float, thinnest: float) -> NDArray[np.float64]:
 def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> float:
     """Highest speed at which nothing gives way.
 
+    Where something does, one wave says how much slower it has to be; that is asked again for the wave
+    that is weakest there.
+
     Args:
         stack: of a speed; raises ValueError where some wave inside is not faster.
         most: a speed that is no lower.
         accuracy: relative.
+
+    Raises:
+        SolveError: nothing was found.
     """
+    speed, step = most, accuracy
+    for _ in range(_STEPS):
+        try:
+            value, k = weakest(stack(speed))
+        except (ValueError, SolveError):
+            # Beyond waves inside, or too near to them to be followed.
+            value, k = -np.inf, np.nan
+        if value > 0.0:
+            return speed
+        if np.isfinite(value):
+            speed = (1.0 - accuracy) * _where_it_falls(stack, k, speed, accuracy)
+        else:
+            speed, step = speed * (1.0 - step), max(_STRIDE * step, _FIRST_STEP)
+        if not 0.0 < step < 1.0:
+            break
+    raise SolveError("no speed was found at which the layers stand; are their constants as meant?")
+
+
+def _where_it_falls(
+    stack: Callable[[float], Stack], k: float, high: float, accuracy: float
+) -> float:
+    """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
 
     def stands(speed: float) -> float:
         try:
-            return weakest(stack(speed))[0]
+            return float(stack(speed).stands(np.array([k]))[0])
         except (ValueError, SolveError):
             return -np.inf
 
-    low, high = 0.0, most
-    f_low, f_high = stands(low), stands(high)
-    if f_low <= 0.0:
-        raise SolveError("the layers have no stiffness at rest; are their constants as meant?")
-    if f_high > 0.0:
-        return most
-    side = 0
+    low, f_low, f_high, side = 0.0, stands(0.0), stands(high), 0
     for _ in range(_STEPS):
         if high - low <= accuracy * high:
             break
@@ -106,7 +128,7 @@ def dispersion(
         except (ValueError, SolveError):
             return np.full(len(some), -np.inf)
 
-    slowest_inside = _bisected(lambda c: bool(np.isfinite(stands(c, k[:1]))[0]), most)
+    slowest_inside = bisected(lambda c: bool(np.isfinite(stands(c, k[:1]))[0]), most)
     speeds = slowest_inside * _SPEEDS
     values = np.array([stands(speed, k) for speed in speeds.tolist()])
     found = np.full(len(k), np.nan)
@@ -114,7 +136,7 @@ def dispersion(
         if (column <= 0.0).any():
             j = int(np.argmax(column <= 0.0))
             holds = partial(_one_stands, stands, k[i : i + 1])
-            found[i] = _bisected(holds, speeds[j], speeds[j - 1], accuracy)
+            found[i] = bisected(holds, speeds[j], speeds[j - 1], accuracy)
     return found
 
 
@@ -122,10 +144,12 @@ def _one_stands(stands: Callable[[float, NDArray], NDArray], k: NDArray, speed: 
     return bool(stands(speed, k)[0] > 0.0)
 
 
-def _bisected(
+def bisected(
     holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 1e-13
 ) -> float:
     """Highest number at which something holds that holds up to it."""
+    if holds(high):
+        return high
     for _ in range(_CLOSE):
         if high - low <= accuracy * high:
             break

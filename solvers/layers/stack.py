@@ -68,9 +68,19 @@ class Stack:
     def stands(self, k: NDArray) -> NDArray[np.float64]:
         """Smallest stiffness against a wave with each wavenumber, on the surface or inside, (n,).
 
-        It falls with speed; where it is 0 that wave runs with the load, freely.
+        It falls with speed; where it is 0 that wave runs with the load, freely. Of waves that something
+        below gives way to no more is asked.
         """
-        under = self.below(k)
-        found = [least(self.stiffness(k))]
-        found += [layer.stands(k, Z) for layer, Z in zip(self.layers, under)]
-        return np.min(np.where(np.isnan(found), -np.inf, found), axis=0)
+        found, going = np.full(len(k), np.inf), np.arange(len(k))
+        Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
+        for layer in self.layers[::-1]:
+            here = layer.stands(k[going], Z)
+            found[going] = np.minimum(found[going], np.where(np.isnan(here), -np.inf, here))
+            holds = found[going] > 0.0
+            going = going[holds]
+            if not len(going):
+                return found
+            Z = layer.top.down + layer.excess(k[going], Z[holds])
+        surface = least(Z)
+        found[going] = np.minimum(found[going], np.where(np.isnan(surface), -np.inf, surface))
+        return found

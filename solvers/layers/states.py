@@ -85,6 +85,11 @@ class Frictions:
     g: NDArray[np.float64]
     each: list[Found]
 
+    @property
+    def near(self) -> float:
+        """|r| up to which all pressures are known without their weights."""
+        return min(one.near for found in self.each for one in (found.pressure, found.before))
+
     def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
         """What is read off every pressure, (nodes, ...)."""
         return np.array([what(one.pressure) for one in self.each])

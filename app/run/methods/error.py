@@ -14,8 +14,9 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import SLOWER, before, of_degrees, remaining
+from galinx.postprocess.estimate import AT_DEPTHS, SLOWER, Rate, before, of_degrees, remaining
 from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.solvers.fem.space import Space
 
 #: What rounding does, over what of it breaks the mirror image.
@@ -139,13 +140,19 @@ class MeasuredError:
 
     def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors that the levels show, (states,)."""
-        # What a thin layer adds converges unevenly: a small change says less there.
-        order = 2 if word == INTENSITIES else 1
-        rate = SLOWER if order == 2 and self._ladder.task.body.layered else of_degrees(order)
+        rate = self._rate(word)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
         first, second = changes
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
+
+    def _rate(self, word: str) -> Rate:
+        if word == AT_INTERFACES:
+            return AT_DEPTHS
+        if word != INTENSITIES:
+            return of_degrees(1)
+        # What a thin layer adds converges unevenly: a small change says less there.
+        return SLOWER if self._ladder.task.body.layered else of_degrees(2)
 
     def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
@@ -167,7 +174,9 @@ class MeasuredError:
                 found[gauge.word] = innermost + far * of_edges
             else:
                 of_places = compliance * (0.3 + 1.9 / gauge.scale.min(axis=1)) / margin ** (1.0 / 6.0)
-                found[gauge.word] = innermost + kind.unseen_beside(wanted) + far * (of_edges + of_places)
+                # No interface is near an edge.
+                beside = kind.unseen_beside(wanted) * (gauge.word != AT_INTERFACES)
+                found[gauge.word] = innermost + beside + far * (of_edges + of_places)
         return found
 
 

@@ -71,7 +71,7 @@ class AtSpeed:
     @cached_property
     def near(self) -> NDArray[np.bool_]:
         """Positions on the surface at which the pressure without its weight is known."""
-        return np.abs(self.task.places.X) <= self.nodes.each[0].pressure.near
+        return np.abs(self.task.places.X) <= self.nodes.near
 
     # Whatever is read off pressures is read off those with fewer unknowns as well: (2, nodes, ...).
 
@@ -84,7 +84,7 @@ class AtSpeed:
     @cached_property
     def rest(self) -> NDArray[np.float64]:
         """What is regular of their Hilbert transforms, (2, nodes, n)."""
-        return self.nodes.both(lambda pressure: pressure.rest(self.task.places.X))
+        return self.nodes.both(lambda pressure: pressure.rest(self.task.places.X, self.nodes.near))
 
     def level(self, depth: float, X: NDArray) -> tuple[Level, NDArray[np.float64]]:
         """A depth, and u,X, σ_YY and σ_XY there, (3, 2, nodes, n)."""

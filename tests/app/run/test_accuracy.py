@@ -1,11 +1,15 @@
 """Scenes against their closed form, from rest to near the Rayleigh speed."""
 
+import os
+
 import numpy as np
 import pytest
 from support import computed
 
 from galinx.postprocess import compare
 from galinx.solvers.solids import Isotropic
+
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 #: One state of scenes/tables4_5.toml.
 SINGLE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.8}
@@ -56,8 +60,9 @@ def test_states_at_once_are_the_states_one_by_one(tables_run):
         np.testing.assert_allclose(one[name][0], tables_run.data[name][7], rtol=1e-8)
 
 
-@pytest.mark.parametrize("c", [0.0, 0.9])
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
+@pytest.mark.parametrize(
+    "tolerance, c", [(1e-3, 0.0), (1e-3, 0.9), (1e-9, 0.0), *([(1e-9, 0.9)] if THOROUGH else [])]
+)
 def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
     changes = {"motion.c": c, "solve.tolerance": tolerance, "friction.mu_c": 1.0}
     data = computed("tables4_5", changes).data
@@ -151,7 +156,7 @@ def test_a_pressure_that_pulls_fails():
 _IN_PLANE = ("X_over_a", "fem/sigma_XX", "closed_form/sigma_XX")
 
 
-@pytest.mark.parametrize("ν", [-0.9, 0.45, 0.48, 0.5])
+@pytest.mark.parametrize("ν", [-0.9, 0.45, 0.48, 0.5] if THOROUGH else [-0.9, 0.48])
 def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     """At 0.9995 c_R residuals are up to 1e-7 of the forces, which says nothing of K_I."""
     c = 0.9995 * Isotropic(1.0, ν, 1.0).limit()

@@ -13,12 +13,15 @@ from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
+from galinx.postprocess import to_steady
 from galinx.postprocess.compare_over_time import TOLD, largest_change
 from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Solid
+from galinx.solvers.transient.approach import approach
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
 #: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
@@ -46,13 +49,17 @@ def follow(
                 rows.SPEED.path: np.array(c), rows.RATIO.path: np.array(g),
                 rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
                 rows.STEADY_K_I.path: np.array(steady.K_I),
+                APPROACH.path: np.array(approach(solid, c, g).within(0.01)),
             }  # fmt: skip
             for method in (by_sie, by_fem):
                 one |= method[i] if method else {}
             found.append(one)
             done(len(found), starts.count)
     joined = {path: np.array([one[path] for one in found]) for path in found[0]}
-    return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+    whole = {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+    for name in starts.methods:
+        whole |= to_steady.told(whole, name)
+    return whole
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:

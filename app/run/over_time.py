@@ -17,6 +17,7 @@ from galinx.postprocess import to_steady
 from galinx.postprocess.compare_over_time import TOLD, largest_change
 from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
+from galinx.postprocess.quantities import work_over_time
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -72,7 +73,11 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
             values = course.v0, course.centre, course.K_left, course.K_right
-            found.append(_named(SIE, [value[finer - 1 :: finer] for value in values]))
+            more = course.work_of_load, course.work_of_friction, course.σ_XX_left, course.σ_XX_right
+            found.append(
+                _named(SIE, [value[finer - 1 :: finer] for value in values])
+                | {row.path: value[finer - 1 :: finer] for row, value in zip(work_over_time.ALL, more)}
+            )
     return found
 
 

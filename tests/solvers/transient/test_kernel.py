@@ -49,7 +49,7 @@ def test_kernels_are_the_transform_of_their_symbols(ν, c, s):
 
 
 def symbols(C, k, stiff):
-    """v̂ and û of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors of what decays, (4, n)."""
+    """v̂ and û of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors, (4, n)."""
     c11, c12, c16, c22, c26, c66 = stiff
     R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
     found = np.empty((4, len(C)), dtype=complex)
@@ -99,7 +99,7 @@ def test_slopes_are_those_of_the_response():
 
 
 def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
-    """Those of shear and pressure; at an angle alike, and nothing is faster or slower along the surface."""
+    """Those of shear and pressure; nothing is faster, and straight down waves are these two."""
     solid = Isotropic(1.0, 0.3, 1.0)
     fast = solid.response(0.0).k ** -0.5
     for one in (solid, isotropic_as("anisotropic", solid)):

@@ -54,5 +54,7 @@ def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
 def told(data: Mapping[str, Any], method: str) -> dict[str, NDArray[np.float64]]:
     """Datasets of a method by path: how far at the end, and when near."""
     off = from_steady(data, method)
+    off = np.where(np.isnan(off), np.inf, off)  # where K_I cannot be told, nothing is known to be near
     times, load = data[rows.TIMES.path], data[rows.LOAD.path]
-    return {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
+    found = {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
+    return {path: np.where(np.isfinite(values), values, np.nan) for path, values in found.items()}

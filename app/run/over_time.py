@@ -23,7 +23,7 @@ from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.approach import approach
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.punch import PLACES, StartingPunch, smooth
 
 #: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
 _STEP, _TERMS = 0.2, 24
@@ -58,6 +58,8 @@ def follow(
             done(len(found), starts.count)
     joined = {path: np.array([one[path] for one in found]) for path in found[0]}
     whole = {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+    if SIE in starts.methods:
+        whole[work_over_time.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= to_steady.told(whole, name)
     return whole
@@ -73,10 +75,16 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
             values = course.v0, course.centre, course.K_left, course.K_right
-            more = course.work_of_load, course.work_of_friction, course.σ_XX_left, course.σ_XX_right
+            works, sides = (
+                (course.work_of_load, course.work_of_friction),
+                (course.σ_XX_left, course.σ_XX_right),
+            )
             found.append(
                 _named(SIE, [value[finer - 1 :: finer] for value in values])
-                | {row.path: value[finer - 1 :: finer] for row, value in zip(work_over_time.ALL, more)}
+                | {
+                    row.path: value[finer - 1 :: finer]
+                    for row, value in zip(work_over_time.ALL, (*works, course.σ_YY, *sides))
+                }
             )
     return found
 

@@ -1,7 +1,7 @@
 """How far starts from rest are from steady motion, one row for each."""
 
 from galinx.postprocess.quantities.over_time import START, TIME
-from galinx.postprocess.quantities.quantity import FEM, QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Shares of steady motion within which something is told to be.
@@ -17,7 +17,7 @@ OFF = {
         f"time/{method}/off_steady", "1",
         "distance from steady motion at the end, the largest of the differences of K_I at both ends, "
         f"over that of steady motion, and of the centre of the pressure, over the half-width, {told}",
-        (START,), asked_by=TIME, range=_NOT_NEGATIVE, method=method,
+        (START,), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
     for method, told in _HOW.items()
 }  # fmt: skip
@@ -26,7 +26,7 @@ WITHIN = {
         f"time/{method}/steady_within", "a/c_s",
         "time from which on that is at most 0.1, 0.01 and 0.001; where it is later than the last of "
         f"/time/t what is left is taken to fall like 1/t, {told}",
-        (START, SHARE), asked_by=TIME, range=_NOT_NEGATIVE, method=method,
+        (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
     for method, told in _HOW.items()
 }  # fmt: skip

@@ -1,4 +1,4 @@
-"""Works, and the stress beside the contact, over time of starts from rest, one row for each."""
+"""Works, and stresses on the surface, over time of starts from rest, one row for each."""
 
 from galinx.postprocess.quantities.over_time import INSTANT, START, TIME
 from galinx.postprocess.quantities.quantity import QUANTITIES, SIE, Quantity
@@ -23,7 +23,18 @@ OF_FRICTION = _row(
 LEFT = _row("sigma_XX_left", "N/(2a)", "in-plane stress on the free surface at X = -1.05 a")
 RIGHT = _row("sigma_XX_right", "N/(2a)", "in-plane stress on the free surface at X = 1.05 a")
 
+#: Dimension of places under the punch.
+PLACE = "places"
+PLACES = Quantity(
+    "time/X_over_a", "1", "positions under the punch over the half-width", (PLACE,), asked_by=TIME,
+    method=SIE,
+)  # fmt: skip
+PRESSURE = Quantity(
+    "time/sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE),
+    asked_by=TIME, method=SIE,
+)  # fmt: skip
+
 #: In the order in which a course tells them.
-ALL = OF_LOAD, OF_FRICTION, LEFT, RIGHT
+ALL = OF_LOAD, OF_FRICTION, PRESSURE, LEFT, RIGHT
 
 QUANTITIES.add_all(globals())

@@ -21,6 +21,8 @@ _SCALED = 1e-15
 _LONGER = 1.5
 #: Distance over a beyond the ends of the contact at which σ_XX is told: it is infinite at them.
 BESIDE = 0.05
+#: Places X over a under the punch at which the pressure is told, closer towards the ends.
+PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
 
 
 def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
@@ -43,6 +45,7 @@ class Course:
         work_of_load: ∫ N dv₀ over N²/(4μ).
         work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): what friction gives to
             the motion of the solid besides being carried past the punch.
+        σ_YY: under the punch at ``PLACES``, (times, places).
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
     """
 
@@ -54,6 +57,7 @@ class Course:
     K_right: NDArray[np.float64]
     work_of_load: NDArray[np.float64]
     work_of_friction: NDArray[np.float64]
+    σ_YY: NDArray[np.float64]
     σ_XX_left: NDArray[np.float64]
     σ_XX_right: NDArray[np.float64]
 
@@ -96,7 +100,7 @@ class StartingPunch:
         left, right = -(whole + (whole - half) / 3.0).T / 2.0
         return Course(
             t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load,
-            g * _work(t, a, u), *σ_XX.T,
+            g * _work(t, a, u), a @ basis.pressures(PLACES).T, *σ_XX.T,
         )  # fmt: skip
 
 

@@ -166,6 +166,11 @@ class Basis:
         """Those of the pressure, without its weight, (n, terms)."""
         return self._polynomials(X, self.α, self.β)
 
+    def pressures(self, X: NDArray) -> NDArray[np.float64]:
+        """Those with their weight, under the punch, (n, terms)."""
+        weight = (1.0 - X) ** self.α * (1.0 + X) ** self.β
+        return np.asarray(weight[:, None] * self.polynomials(X))
+
     def shared(self, x: NDArray, itself: bool = False) -> NDArray[np.float64]:
         """∫ τ_i(X) w(X - x) P_j(X - x) dX at distances x > 0, and at -x: (2, x, tests, terms).
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.to_steady import from_steady, within
+from galinx.postprocess.to_steady import from_steady, told, within
 
 
 def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
@@ -13,6 +13,16 @@ def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
     found = within(t, load, off)
     np.testing.assert_allclose(found[0], [21.0, 201.0, 2001.0], rtol=1e-3)
     np.testing.assert_allclose(found[1], [t[0], np.log(5.0), np.log(50.0)], rtol=1e-2)
+
+
+def test_where_K_I_cannot_be_told_nothing_is_near():
+    nan = np.full((1, 3), np.nan)
+    data = {
+        "time/t": np.array([1.0, 2.0, 3.0]), "time/load": np.ones(3), "time/steady_K_I": np.array([0.3]),
+        "time/steady_centre": np.array([0.0]), "time/fem/K_I_left": nan, "time/fem/K_I_right": nan,
+        "time/fem/centre_of_pressure": np.zeros((1, 3)),
+    }  # fmt: skip
+    assert all(np.isnan(values).all() for values in told(data, "fem").values())
 
 
 def test_the_largest_difference_is_taken():

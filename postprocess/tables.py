@@ -8,7 +8,7 @@ import numpy as np
 
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.named import parameters
-from galinx.postprocess.quantities import Quantity, over_time, runs, slider, validity, yielding
+from galinx.postprocess.quantities import Quantity, over_time, runs, slider, to_steady, validity, yielding
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
@@ -246,8 +246,14 @@ def starts_sheet(data: dict[str, Any]) -> Sheet:
     )
     by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
     last = [data[row[method].path][:LIMIT, -1] for row in by_method]
-    columns = [values.tolist() for values in (c, g, *last, steady)]
+    off, near = data[to_steady.OFF[method].path], data[to_steady.WITHIN[method].path][:, 1]
+    columns = [values[:LIMIT].tolist() for values in (c, g, *last, steady, 100.0 * off, near)]
     rows = [[f"{value:.6g}" for value in row] for row in zip(*columns)]
     heads = ["c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady centre/a"]
+    heads += ["off steady (%)", "within 1 % from (a/c_s)"]
     end = data[over_time.TIMES.path][-1]
-    return Sheet(title, heads, rows, [f"at t = {end:g} a/c_s; centre: of the pressure, towards +X"])
+    notes = [
+        f"at t = {end:g} a/c_s; centre: of the pressure, towards +X",
+        "off steady: K_I and centre, the largest difference; within 1 %: of both, by 1/t after the end",
+    ]
+    return Sheet(title, heads, rows, notes)

@@ -1,13 +1,14 @@
 """Where the answers of a run do not hold, in words; all of it is archived state by state."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import validity as of
-from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.quantities.states import RATIO, SPEED
 
 #: Wave crossings in a stroke below which a steady state is not reached.
 FEW = 30.0
@@ -19,10 +20,40 @@ WIDE = 0.01
 STEEP = 1.0
 
 
-class Validity:
-    """Watches the datasets of states, some at a time."""
+@dataclass(frozen=True)
+class Steady:
+    """How long a start from rest takes to be steady.
 
-    def __init__(self) -> None:
+    Attributes:
+        within: time over a/c_s from which on K_I and the pressure's centre are within 1 % of those of
+            steady motion, by speed over c_s and σ_XY/σ_YY.
+        unit: a/c_s [s].
+    """
+
+    within: Callable[[float, float], float]
+    unit: float
+
+    def words(self, c: float, g: float, crossings: float) -> str:
+        """Against a stroke in which a wave crosses the contact so often."""
+        needed, lasts = self.within(c, g), 2.0 * crossings
+        return (
+            f"from rest it takes {needed:.3g} a/c_s ({needed * self.unit:.3g} s) to come within 1 % of "
+            f"it, at c = {c:.4g}, and the stroke lasts {lasts:.3g} a/c_s ({lasts * self.unit:.3g} s)"
+        )
+
+
+class Validity:
+    """Watches the datasets of states, some at a time.
+
+    Args:
+        steady: tells how long steady motion takes, where that is known.
+    """
+
+    def __init__(self, steady: Steady | None = None) -> None:
+        self._steady = steady
+        #: Speed, σ_XY/σ_YY and wave crossings of the shortest stroke, and of the fastest that has enough.
+        self._shortest: tuple[float, float, float] | None = None
+        self._fastest: tuple[float, float, float] | None = None
         self._states: dict[str, int] = {}
         self._worst: dict[str, float] = {}
         self._where = 0.0
@@ -32,6 +63,8 @@ class Validity:
         if of.CROSSINGS.path in data:
             often = data[of.CROSSINGS.path]
             self._count("crossings", often < FEW, -often)
+            if self._steady and SPEED.path in data and RATIO.path in data:
+                self._see_strokes(*(data[row.path] for row in (SPEED, RATIO, of.CROSSINGS)))
         if RATIO.path in data:
             ratio = np.abs(data[RATIO.path])
             self._count("ratio", ratio >= STEEP, ratio)
@@ -45,6 +78,18 @@ class Validity:
                 if np.nanmax(tension, initial=0.0) > self._worst.get("tension", 0.0):
                     self._where = float(data[where.path][np.nanargmax(tension)])
                 self._count("tension", tension > 0.0, tension)
+
+    def _see_strokes(self, c: NDArray, g: NDArray, often: NDArray) -> None:
+        states = np.column_stack([c, g, often])[np.isfinite(often)]
+        few, enough = states[states[:, 2] < FEW], states[states[:, 2] >= FEW]
+        if len(few):
+            shortest = few[np.lexsort([-np.abs(few[:, 1]), few[:, 2]])[0]]
+            self._shortest = min(
+                self._shortest or (0.0, 0.0, np.inf), tuple(shortest), key=lambda one: one[2]
+            )
+        if len(enough):
+            fastest = enough[np.lexsort([-np.abs(enough[:, 1]), -enough[:, 0]])[0]]
+            self._fastest = max(self._fastest or (-1.0, 0.0, 0.0), tuple(fastest), key=lambda one: one[0])
 
     def _count(self, name: str, bad: NDArray, size: NDArray) -> None:
         if bad.any():
@@ -64,7 +109,14 @@ class Validity:
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
                 f"{some['crossings']}: the steady state that is told is a limit which such a stroke does "
                 "not reach"
+                + (f"; {self._steady.words(*self._shortest)}" if self._steady and self._shortest else "")
             )
+        if (
+            self._steady
+            and self._fastest
+            and 2.0 * self._fastest[2] < self._steady.within(*self._fastest[:2])
+        ):
+            yield f"the steady state is told, but {self._steady.words(*self._fastest)}"
         if "ratio" in told:
             yield (
                 f"|σ_XY/σ_YY| is up to {told['ratio']}, and at least {STEEP:g} in {some['ratio']}: such "

@@ -1,12 +1,16 @@
 """The verdict on a run."""
 
 from collections.abc import Iterable
+from math import inf
 
 import numpy as np
 
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.compare import RULES, Comparison
-from galinx.postprocess.validity import Validity
+from galinx.postprocess.validity import Steady, Validity
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.transient.admittance import InPlane
+from galinx.solvers.transient.approach import approach
 
 #: Speeds that could not be solved of which a verdict says why, at most.
 _FAILURES = 10
@@ -28,7 +32,7 @@ class Judge:
     def __init__(self, scene: Scene, names: Iterable[str]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
-        self.validity = Validity()
+        self.validity = Validity(_steady(scene))
         rules = {name: RULES[name] for name in names}
         limits = {
             name: rule.allowed(scene.solve.tolerance)
@@ -57,3 +61,16 @@ class Judge:
         if len(self.failures) > _FAILURES:
             reasons.append(f"not solved, and {len(self.failures) - _FAILURES} more speeds")
         return "PASS" if good else "FAIL", reasons
+
+
+def _steady(scene: Scene) -> Steady | None:
+    """Known of flat punches on uniform solids, below the speed of the wave along the surface."""
+    solid = scene.solid
+    if not isinstance(scene.punch.profile, Flat) or not isinstance(solid.response(0.0), InPlane):
+        return None
+    limit = solid.limit()
+
+    def within(c: float, g: float) -> float:
+        return approach(solid, c, g).within(0.01) if c < limit else inf
+
+    return Steady(within, scene.body.half_width / solid.c_s)

@@ -13,13 +13,17 @@ from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
+from galinx.postprocess import to_steady
 from galinx.postprocess.compare_over_time import TOLD, largest_change
 from galinx.postprocess.over_time import told
 from galinx.postprocess.quantities import over_time as rows
+from galinx.postprocess.quantities import work_over_time
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Solid
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.approach import approach
+from galinx.solvers.transient.punch import PLACES, StartingPunch, smooth
 
 #: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
 _STEP, _TERMS = 0.2, 24
@@ -78,12 +82,18 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
                 rows.SPEED.path: np.array(c), rows.RATIO.path: np.array(g),
                 rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
                 rows.STEADY_K_I.path: np.array(steady.K_I),
+                APPROACH.path: np.array(approach(solid, c, g).within(0.01)),
             }  # fmt: skip
             for method in (SIE, FEM):
                 one |= found[method, c][i] if method in starts.methods else {}
             every.append(one)
     joined = {path: np.array([one[path] for one in every]) for path in every[0]}
-    return {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+    whole = {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
+    if SIE in starts.methods:
+        whole[work_over_time.PLACES.path] = PLACES
+    for name in starts.methods:
+        whole |= to_steady.told(whole, name)
+    return whole
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
@@ -96,7 +106,17 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
             values = course.v0, course.centre, course.K_left, course.K_right
-            found.append(_named(SIE, [value[finer - 1 :: finer] for value in values]))
+            works, sides = (
+                (course.work_of_load, course.work_of_friction),
+                (course.σ_XX_left, course.σ_XX_right),
+            )
+            found.append(
+                _named(SIE, [value[finer - 1 :: finer] for value in values])
+                | {
+                    row.path: value[finer - 1 :: finer]
+                    for row, value in zip(work_over_time.ALL, (*works, course.σ_YY, *sides))
+                }
+            )
     return found
 
 

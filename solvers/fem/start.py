@@ -21,8 +21,18 @@ from scipy.linalg import lu_factor, lu_solve
 
 from galinx.clock import Clock
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.scheme import TIMES, A, γ
 from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
+
+_γ = 0.25
+#: The scheme: stages below the first, which is the end of the step before.
+_A = (
+    (1 / 4,),
+    (8611 / 62500, -1743 / 31250),
+    (5012029 / 34652500, -654441 / 2922500, 174375 / 388108),
+    (15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768, 2285395 / 8070912),
+    (82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211),
+)
+_TIMES = (0.5, 83 / 250, 31 / 50, 17 / 20, 1.0)
 
 
 @dataclass(frozen=True)
@@ -61,7 +71,7 @@ class StartFromRest:
         self._motion, self._h = motion, h
         with (clock := clock or Clock())("assembly"):
             self._K, self._M = motion.K, motion.M
-            S = (self._M - 2.0 * motion.response.c * γ * h * motion.B + (γ * h) ** 2 * self._K).tocsr()
+            S = (self._M - 2.0 * motion.response.c * _γ * h * motion.B + (_γ * h) ** 2 * self._K).tocsr()
         self._Y, X = 2 * motion.contact + 1, 2 * motion.contact
         held = np.zeros(motion.size, dtype=bool)
         held[self._Y] = True
@@ -95,18 +105,18 @@ class StartFromRest:
         power = 0.0
         for n in range(steps):
             velocities, accelerations, powers = [w], [a], [power]
-            for weights, time in zip(A, TIMES):
+            for weights, time in zip(_A, _TIMES):
                 before = u + h * sum(of * one for of, one in zip(weights, velocities))
                 given = w + h * sum(of * one for of, one in zip(weights, accelerations))
                 at = h * (n + time)
                 now, r = self._stage(before, given, g(at), load(at))
                 velocities.append(now)
-                accelerations.append((now - given) / (γ * h))
+                accelerations.append((now - given) / (_γ * h))
                 powers.append(float(r @ (now[self._Y] + g(at) * now[self._Y - 1])))
-            u = before + γ * h * now
+            u = before + _γ * h * now
             w, a, forces[n] = now, accelerations[-1], r
             v0[n], power = -u[self._Y[0]], powers[-1]
-            done[n] = h * np.dot([*A[-1], γ], powers)
+            done[n] = h * np.dot([*_A[-1], _γ], powers)
             energy[n] = (w @ (self._M @ w) + u @ (self._K @ u)) / 2.0
         return Steps(np.arange(1.0, steps + 1.0) * h, v0, forces, np.cumsum(done), energy)
 
@@ -114,7 +124,7 @@ class StartFromRest:
         self, before: NDArray, given: NDArray, g: float, load: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Velocities and normal reactions from what earlier stages give."""
-        b = self._M @ given - γ * self._h * (self._K @ before)
+        b = self._M @ given - _γ * self._h * (self._K @ before)
         w = np.zeros(self._motion.size)
         w[self._free] = self.factor.solve(b[self._free])
         ρ = self._rows @ w - b[self._Y]
@@ -122,10 +132,10 @@ class StartFromRest:
         factors = lu_factor(np.eye(len(P)) - g * P)
         found = lu_solve(factors, np.column_stack([ρ, ρ_v]))
         total = found.sum(axis=0)
-        rate = (-2.0 * load * γ * self._h - total[0]) / total[1]
+        rate = (-2.0 * load * _γ * self._h - total[0]) / total[1]
         r = found[:, 0] + rate * found[:, 1]
         w += self._fields @ np.append(g * r, rate)
-        return w, r / (γ * self._h)
+        return w, r / (_γ * self._h)
 
     def destroy(self) -> None:
         """Free the factor."""

@@ -49,7 +49,7 @@ class Kernel:
     """Response at a distance x > 0 ahead of a line load in a frame that moves at c.
 
     Behind it the response is that ahead, in the mirror image of the solid and a frame that moves at -c,
-    with the sign of σ_XY's changed.
+    with the signs of σ_XY's and u changed.
 
     Args:
         surface: of the solid.
@@ -61,16 +61,23 @@ class Kernel:
     c: float
     rayleigh: float
 
-    def __call__(self, x: NDArray, s: complex) -> NDArray[np.complex128]:
-        """v̂ of line loads σ_YY and σ_XY at distances x > 0, (n,), for Im s >= 0 <= Re s: (2, n)."""
-        values = np.zeros((2, len(x)), dtype=complex)
+    def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+        """v̂ of line loads σ_YY and σ_XY, and û of them, (4, n).
+
+        Args:
+            x: distances > 0, (n,).
+            s: over c_s/a, Im s >= 0 <= Re s.
+            slopes: of these along X instead.
+        """
+        values = np.zeros((4, len(x)), dtype=complex)
         group = np.floor(np.log(x / x.max()) / log(_ALIKE) + 1e-9)
         for one in np.unique(group):
-            values[:, group == one] = self._of(x[group == one], s)
+            values[:, group == one] = self._of(x[group == one], s, slopes)
         ζ, residue = self._pole
-        return values + residue[:, None] * np.exp(-s * ζ * x)
+        wave = (-s * ζ if slopes else 1.0) * np.exp(-s * ζ * x)
+        return values + residue[:, None] * wave
 
-    def _of(self, x: NDArray, s: complex) -> NDArray[np.complex128]:
+    def _of(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
         """Without the wave along the surface."""
         ψ = float(np.angle(s))
         down = int(np.abs(_DIRECTIONS - ψ).argmin())
@@ -82,9 +89,9 @@ class Kernel:
             (ζ[felt], values[:, felt]),
             *self._ways(down, max(0, ceil(log(last / self._first) / _WIDTH))),
         ]
-        found = np.zeros((2, len(x)), dtype=complex)
+        found = np.zeros((4, len(x)), dtype=complex)
         for ζ, values in ways:
-            found += values @ np.exp(np.multiply.outer(-s * ζ, x))
+            found += (values * (-s * ζ) if slopes else values) @ np.exp(np.multiply.outer(-s * ζ, x))
         return found
 
     @cached_property
@@ -94,9 +101,9 @@ class Kernel:
 
     @cached_property
     def _pole(self) -> tuple[float, NDArray[np.complex128]]:
-        """Slowness of the wave along the surface, and what it carries of σ_YY and σ_XY."""
+        """Slowness of the wave along the surface, and what it carries, (4,)."""
         ζ = 1.0 / (self.rayleigh - self.c)
-        return ζ, -ζ * self.surface.residue(self.rayleigh)[1, ::-1]
+        return ζ, -ζ * self.surface.residue(self.rayleigh)[::-1, ::-1].ravel()
 
     @property
     def _first(self) -> float:
@@ -104,11 +111,11 @@ class Kernel:
         ends = self._edges
         return _FIRST * min(self._pole[0] - ends[-1], *np.diff(ends))
 
-    def _row(self, ζ: NDArray, below: bool = False) -> NDArray[np.complex128]:
-        """Of 𝐘/ζ what σ_YY and σ_XY do along Y, (2, n); of the conjugate's, with ``below``."""
+    def _rows(self, ζ: NDArray, below: bool = False) -> NDArray[np.complex128]:
+        """Of 𝐘/ζ what σ_YY and σ_XY do along Y, and along X, (4, n); ``below``, of its conjugate."""
         C = self.c + 1.0 / ζ
         Y = np.conj(self.surface(np.conj(C))) if below else self.surface(C)
-        return np.asarray(Y[:, 1, ::-1].T / ζ)
+        return np.asarray(Y[:, ::-1, ::-1].reshape(-1, 4).T / ζ)
 
     def _ways(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
         """Points and weighted values of both ways in a direction, up to some panels."""
@@ -125,7 +132,7 @@ class Kernel:
             for start, below, sign in ends:
                 ζ = start + along * v
                 factor = sign * 1j / (2.0 * pi) * along * weights
-                known.append((ζ, factor * self._row(ζ, below)))
+                known.append((ζ, factor * self._rows(ζ, below)))
             self._known[down] = known
         return known
 
@@ -149,7 +156,7 @@ class Kernel:
             ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
             told = values @ (_interpolation(finer) * np.tile(w, 2**halvings)[:, None]).T
             told = told * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
-            self._refined[halvings] = ζ.ravel(), told.swapaxes(0, 1).reshape(2, -1)
+            self._refined[halvings] = ζ.ravel(), told.swapaxes(0, 1).reshape(4, -1)
         return self._refined[halvings]
 
     def _between(self, which: NDArray, φ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -160,7 +167,7 @@ class Kernel:
     @cached_property
     def _panels(self) -> tuple[NDArray[np.int64], NDArray, NDArray, NDArray[np.complex128]]:
         """Of panels so short that polynomials tell 𝐘: which edge is before each, start and length in φ,
-        (panels,) each, and values times slopes at Gauss's points, (panels, 2, points)."""
+        (panels,) each, and values times slopes at Gauss's points, (panels, 4, points)."""
         t, _ = leggauss(_POINTS)
         wanted = [
             (n, k / _PANELS, 1.0 / _PANELS) for n in range(len(self._edges) - 1) for k in range(_PANELS)
@@ -171,7 +178,7 @@ class Kernel:
             for n, start, length in wanted:
                 at = np.append(t, _BETWEEN)
                 ζ, slope = self._between(np.array(n), start + length * (1.0 + at) / 2.0)
-                values = self._row(ζ) * slope
+                values = self._rows(ζ) * slope
                 known, rest = values[:, : len(t)], values[:, len(t) :]
                 off = np.abs(known @ _interpolation(_BETWEEN).T - rest).max()
                 if off > _ACCURACY * np.abs(values).max() and halvings < _HALVINGS:

@@ -10,6 +10,7 @@ from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.transform import Transformed
@@ -18,6 +19,10 @@ from galinx.solvers.transient.transform import Transformed
 _SCALED = 1e-15
 #: Length of the quadrature over what is told of it: near its end rounding is enlarged most.
 _LONGER = 1.5
+#: Distance over a beyond the ends of the contact at which σ_XX is told: it is infinite at them.
+BESIDE = 0.05
+#: Places X over a under the punch at which the pressure is told, closer towards the ends.
+PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
 
 
 def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
@@ -37,6 +42,11 @@ class Course:
         centre: of the pressure over a.
         K_left, K_right: normalised intensities of the pressure at X = -a and X = a, by the exponents of
             steady motion and over the final load, as those of the steady state.
+        work_of_load: ∫ N dv₀ over N²/(4μ).
+        work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): what friction gives to
+            the motion of the solid besides being carried past the punch.
+        σ_YY: under the punch at ``PLACES``, (times, places).
+        σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
     """
 
     t: NDArray[np.float64]
@@ -45,6 +55,11 @@ class Course:
     centre: NDArray[np.float64]
     K_left: NDArray[np.float64]
     K_right: NDArray[np.float64]
+    work_of_load: NDArray[np.float64]
+    work_of_friction: NDArray[np.float64]
+    σ_YY: NDArray[np.float64]
+    σ_XX_left: NDArray[np.float64]
+    σ_XX_right: NDArray[np.float64]
 
 
 class StartingPunch:
@@ -61,7 +76,7 @@ class StartingPunch:
     def __init__(
         self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24
     ) -> None:
-        self._end, self._steps, self._terms = end, steps, terms
+        self._response, self._end, self._steps, self._terms = response, end, steps, terms
         longer = ceil(_LONGER * steps)
         self._scheme = Radau(end / steps * longer, longer)
         self._transformed = Transformed(response, rayleigh, self._scheme.s, terms)
@@ -70,15 +85,33 @@ class StartingPunch:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
         basis = self._transformed.basis(g)
         (answers,) = self._transformed.answers(basis)
-        found = self._scheme.convolved(answers, load)[: self._steps]
-        a, v0 = found[:, :-1], found[:, -1]
+        along = self._transformed.along(basis, answers[:, :-1])
+        strains = self._transformed.strains(basis, answers[:, :-1], BESIDE)
+        found = self._scheme.convolved(np.hstack([answers, along, strains]), load)[: self._steps]
+        a, v0 = found[:, : self._terms], found[:, self._terms]
         t = np.arange(1.0, self._steps + 1.0) * (self._end / self._steps)
+        u, u_X = found[:, self._terms + 1 : -2], found[:, -2:]
+        σ_XX = self._response.σ_XX(u_X, np.zeros_like(u_X), np.zeros_like(u_X))
+        by_load = _work(t, 2.0 * load(t)[:, None], v0[:, None])
         normal = a @ basis.moments
         # Inertia adds r log r to what the polynomials tell at a distance r from an end, so that their
         # sum there converges with the square of their number; half of them say how.
         whole, half = (a[:, :n] @ basis.ends[:, :n].T for n in (self._terms, self._terms // 2))
         left, right = -(whole + (whole - half) / 3.0).T / 2.0
-        return Course(t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right)
+        return Course(
+            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load,
+            g * _work(t, a, u), a @ basis.pressures(PLACES).T, *σ_XX.T,
+        )  # fmt: skip
+
+
+def _work(t: NDArray, forces: NDArray, ways: NDArray) -> NDArray[np.float64]:
+    """∫ Σ force d(way) up to each time from rest at t = 0, (times,); forces and ways are (times, n)."""
+    times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))
+    F, u = (CubicSpline(times, np.concatenate([still, one])) for one in (forces, ways))
+    y, w = np.polynomial.legendre.leggauss(4)
+    half = np.diff(times)[:, None] / 2.0
+    at = times[:-1, None] + half * (1.0 + y)
+    return np.asarray(np.cumsum(((F(at) * u(at, 1)).sum(axis=-1) * w * half).sum(axis=-1)))
 
 
 class Radau:

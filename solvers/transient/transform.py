@@ -23,6 +23,8 @@ _EVEN = 0.125
 #: Steps, for so many polynomials, and half-length of the double exponential rule along what two shifted
 #: contacts have in common.
 _STEPS, _FOR, _LENGTH = 121, 24, 3.4
+#: Points of the pressure as seen from beside the contact.
+_FEW = 96
 #: More polynomials than there are.
 _ALL = 10**6
 
@@ -68,13 +70,44 @@ class Transformed:
         return tuple(found)
 
     def _matrices(self, basis: "Basis") -> NDArray[np.complex128]:
-        """Tested response to each polynomial for every s, (s, tests, terms)."""
-        g, both = basis.g, basis.shared(self._x)
+        """Tested v̂ of each polynomial for every s, (s, tests, terms)."""
         ahead, behind = self._values
-        kernel = np.stack([ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1]])
+        g = basis.g
+        return self._summed(
+            basis.shared(self._x), ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1]
+        )
+
+    def _summed(self, both: NDArray, ahead: NDArray, behind: NDArray) -> NDArray[np.complex128]:
+        """A response by the distance, (s, distances), with what tests and polynomials share there."""
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
-        found = kernel[0] @ flat[0] + kernel[1] @ flat[1]
-        return found.reshape(-1, self._terms, self._terms)
+        return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, self._terms, self._terms)
+
+    def along(self, basis: "Basis", a: NDArray) -> NDArray[np.complex128]:
+        """∫ û weighted with each polynomial of the pressure, over N̂/(2μ), (s, terms).
+
+        Args:
+            basis: of the pressure.
+            a: its coefficients for every s, (s, terms).
+        """
+        ahead, behind = self._values
+        g = basis.g
+        u = self._summed(
+            basis.shared(self._x, itself=True), ahead[:, 2] + g * ahead[:, 3],
+            g * behind[:, 3] - behind[:, 2],
+        )  # fmt: skip
+        return np.asarray(np.einsum("sij,sj->si", u, a))
+
+    def strains(self, basis: "Basis", a: NDArray, beyond: float) -> NDArray[np.complex128]:
+        """û,X on the surface at a distance over a beyond both ends, over N̂/(2aμ), (s, 2)."""
+        X, w = _gauss_jacobi(_FEW, basis.α, basis.β)
+        pressure = a @ (w[:, None] * basis.polynomials(X)).T
+        found, g = [], basis.g
+        for kernel, distances, sign in zip(
+            self._kernels, (1.0 + beyond - X, 1.0 + beyond + X), (1.0, -1.0)
+        ):
+            slopes = np.array([_at(kernel, distances, s, True) for s in self.s])
+            found.append(((slopes[:, 2] + sign * g * slopes[:, 3]) * pressure).sum(axis=1))
+        return np.array(found[::-1]).T
 
     @cached_property
     def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -96,14 +129,14 @@ class Transformed:
 
     @cached_property
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Responses ahead and behind at all distances for every s, (s, 2, distances) each."""
+        """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
         ahead, behind = (np.array([_at(kernel, self._x, s) for s in self.s]) for kernel in self._kernels)
         return ahead, behind
 
 
-def _at(kernel: Kernel, x: NDArray, s: complex) -> NDArray[np.complex128]:
+def _at(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
     """Where Im s < 0 the transform of what is real is the conjugate."""
-    return kernel(x, s) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s)))
+    return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))
 
 
 class Basis:
@@ -129,17 +162,32 @@ class Basis:
         """Jacobi's, about as large each, (n, terms)."""
         return _jacobi(np.asarray(X, dtype=float), α, β, len(self._scales)) / self._scales
 
-    def shared(self, x: NDArray) -> NDArray[np.float64]:
-        """∫ τ_i(X) w(X - x) P_j(X - x) dX at distances x > 0, and at -x: (2, x, tests, terms)."""
+    def polynomials(self, X: NDArray) -> NDArray[np.float64]:
+        """Those of the pressure, without its weight, (n, terms)."""
+        return self._polynomials(X, self.α, self.β)
+
+    def pressures(self, X: NDArray) -> NDArray[np.float64]:
+        """Those with their weight, under the punch, (n, terms)."""
+        weight = (1.0 - X) ** self.α * (1.0 + X) ** self.β
+        return np.asarray(weight[:, None] * self.polynomials(X))
+
+    def shared(self, x: NDArray, itself: bool = False) -> NDArray[np.float64]:
+        """∫ τ_i(X) w(X - x) P_j(X - x) dX at distances x > 0, and at -x: (2, x, tests, terms).
+
+        Args:
+            x: distances.
+            itself: the tests τ_i are the polynomials with their weight, not those of the mirror image.
+        """
+        α, β = (self.α, self.β) if itself else (self.β, self.α)
         d, e, weights = _overlap(2.0 - x, _STEPS * max(len(self._scales), _FOR) // _FOR)
         x = x[:, None]
         found = []
         for right, left, other_right, other_left in (
             (e, x + d, x + e, d), (x + e, d, e, x + d),
         ):  # fmt: skip
-            of_test = weights * right**self.β * left**self.α
+            of_test = weights * right**α * left**β
             of_trial = other_right**self.α * other_left**self.β
-            tests = self._polynomials((left - right) / 2.0, self.β, self.α)
+            tests = self._polynomials((left - right) / 2.0, α, β)
             trials = self._polynomials((other_left - other_right) / 2.0, self.α, self.β)
             product = (of_test * of_trial)[..., None] * tests
             found.append(product.swapaxes(1, 2) @ trials)

@@ -7,9 +7,10 @@ import pytest
 from scipy.optimize import brentq
 from support import computed
 
-from galinx.postprocess.validity import Validity
+from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids import Isotropic
+from galinx.solvers.transient.approach import approach
 
 SOLID = Isotropic(193e9, 0.25, 7860.0)
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -120,3 +121,23 @@ def test_what_several_parts_say_is_one_sentence():
         validity.see({"states/g": np.array(g)})
     (text,) = validity.words()
     assert "up to 3, and at least 1 in 3 states" in text
+
+
+def test_strokes_are_held_against_the_time_that_steady_motion_takes():
+    """The study's fast stroke lasts a thousandth of it; one of 40 crossings at 0.9 c_s is too short."""
+    result = computed("tables4_5", CLOSED | {"motion.c": 0.6})
+    (warning,) = (text for text in json.loads(result.attributes["warnings"]) if "1 %" in text)
+    solid, g = result.scene.solid, np.abs(result.data["states/g"]).max()
+    assert f"takes {approach(solid, 0.6, -g).within(0.01):.3g} a/c_s" in warning
+    assert "the stroke lasts 0.167 a/c_s" in warning
+    steady = Steady(lambda c, g: 100.0 * c, 1e-6)
+    fast, slow = Validity(steady), Validity(steady)
+    fast.see({"states/wave_crossings": np.array([40.0, 1e6]), "states/c": np.array([0.9, 0.1]),
+              "states/g": np.zeros(2)})  # fmt: skip
+    slow.see({"states/wave_crossings": np.array([40.0]), "states/c": np.array([0.7]),
+              "states/g": np.zeros(1)})  # fmt: skip
+    assert fast.words() == [
+        "the steady state is told, but from rest it takes 90 a/c_s (9e-05 s) to come within 1 % of it, "
+        "at c = 0.9, and the stroke lasts 80 a/c_s (8e-05 s)"
+    ]
+    assert slow.words() == []

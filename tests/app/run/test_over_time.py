@@ -30,9 +30,22 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     np.testing.assert_allclose(data["time/fem/work"][:, -1], data["time/fem/energy"][:, -1], rtol=1e-4)
     # At first the pressure leans ahead, in steady motion behind.
     assert data["time/fem/centre_of_pressure"][0, -1] > 0.0 > data["time/steady_centre"][0]
+    # Both methods tell alike how far it is from steady, at the end and by 1/t from there on.
+    assert data["time/fem/off_steady"][0] == pytest.approx(data["time/sie/off_steady"][0], rel=0.02)
+    # Its integral is the load; near the ends a rule of Gauss and Chebyshev knows roots alone.
+    X, σ = data["time/X_over_a"], data["time/sie/sigma_YY"][0]
+    resultant = -(σ * np.sqrt(1.0 - X**2)).sum(axis=-1) * np.pi / len(X)
+    np.testing.assert_allclose(resultant / 2.0, data["time/load"], atol=0.03)
+    np.testing.assert_allclose(
+        data["time/sie/work_of_load"] + data["time/sie/work_of_friction"],
+        data["time/fem/energy"],
+        atol=1e-3,
+    )
+    ten, one, tenth = data["time/fem/steady_within"][0]
+    assert tenth > one > ten > 3.0
     assert result.attributes["verdict"] == "PASS"
     assert len(json.loads(result.attributes["comparisons"])) == 2
-    assert [drawing.name for drawing in result.drawings()] == ["friction", "time"]
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "time", "pressures"]
     shown = command("show", tmp_path / "s.h5").stdout
     assert "Starts from rest" in shown
 

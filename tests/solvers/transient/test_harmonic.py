@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from random_solids import random_solid
+from started import ByFiniteElements
 
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.harmonic import OscillatingPunch, highest
+from galinx.solvers.transient.punch import smooth
 from galinx.solvers.transient.transform import Transformed
 
 SOLIDS = [Isotropic(1.0, 0.25, 1.0), random_solid(0), random_solid(2)]
@@ -85,10 +87,8 @@ def test_waves_that_are_too_short_are_refused():
 
 def test_finite_elements_in_time_answer_alike():
     """Laplace's transform of what a pulse of the load does, at complex s: ∫ e^(-st) v₀ dt."""
-    from test_start import Started, smooth
-
-    started, g = Started(SOLIDS[0], 0.6, 5.0, 50), -0.4
-    run = started.solver.run(50, lambda t: g, lambda t: float(smooth(t, 1.0) - smooth(t - 1.0, 1.0)))
+    started, g = ByFiniteElements(SOLIDS[0], 0.6, 5.0, 50), -0.4
+    run = started.run(g, lambda t: smooth(t, 1.0) - smooth(t - 1.0, 1.0))
     load = smooth(run.t, 1.0) - smooth(run.t - 1.0, 1.0)
     s = 2.0 + 1j * np.array([0.0, 1.0, 3.0])
     weights = np.tile([4.0, 2.0], 25) / 3.0 * 0.1  # Simpson's; both begin with 0 and end with next to it

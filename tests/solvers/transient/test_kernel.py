@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from random_solids import random_solid, stiffness
+from random_solids import isotropic_as, random_solid, stiffness
 
-from galinx.solvers.solids.isotropic import MovingFrame, rayleigh_speed
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.kernel import Kernel
 
@@ -42,17 +42,17 @@ def by_definition(slow, c, x, s):
 def test_kernels_are_the_transform_of_their_symbols(ν, c, s):
     κ = 3.0 - 4.0 * ν
     slow = (κ - 1.0) / (κ + 1.0)
-    found = Kernel(Admittance.of(MovingFrame(κ, 0.0)), c, rayleigh_speed(κ))(np.array([0.3, 1.5]), s)
+    found = Kernel(Admittance.of(MovingFrame(κ, 0.0)), c, rayleigh_speed(κ))(np.array([0.3, 1.5]), s)[:2]
     for value, x in zip(found.T, (0.3, 1.5)):
         expected = by_definition(slow, c, x, s)
         np.testing.assert_allclose(value, expected, rtol=0.0, atol=2e-7 * np.abs(expected).max())
 
 
 def symbols(C, k, stiff):
-    """v̂ of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors of what decays, (2, n)."""
+    """v̂ and û of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors, (4, n)."""
     c11, c12, c16, c22, c26, c66 = stiff
     R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
-    found = np.empty((2, len(C)), dtype=complex)
+    found = np.empty((4, len(C)), dtype=complex)
     for n, (one, at) in enumerate(zip(C, k)):
         Q = np.array([[c11, c16], [c16, c66]]) - one**2 * np.eye(2)
         whole = np.block(
@@ -63,7 +63,7 @@ def symbols(C, k, stiff):
         kept = np.argsort(p.imag * np.sign(at.real))[:2]
         A = vectors[:2, kept]
         tractions = 1j * at * (R.T @ A + T @ A * p[kept])
-        found[:, n] = (A @ np.linalg.inv(tractions))[1, ::-1]
+        found[:, n] = (A @ np.linalg.inv(tractions))[::-1, ::-1].ravel()
     return found
 
 
@@ -88,3 +88,22 @@ def test_kernels_of_any_solid_are_the_transform_of_their_symbols(seed):
     found = Kernel(Admittance(*stiff[:5]), c, limit)(np.array([0.4]), s)[:, 0]
     expected = of_any_solid(stiff, c, 0.4, s)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
+
+
+def test_slopes_are_those_of_the_response():
+    solid = random_solid(2)
+    kernel = Kernel(Admittance.of(solid.response(0.0)), 0.2, solid.limit())
+    x, s, h = np.array([0.1, 0.7]), 1.0 + 5.0j, 1e-4
+    expected = (kernel(x + h, s) - kernel(x - h, s)) / (2.0 * h)
+    np.testing.assert_allclose(kernel(x, s, slopes=True), expected, rtol=1e-5)
+
+
+def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
+    """Those of shear and pressure; nothing is faster, and straight down waves are these two."""
+    solid = Isotropic(1.0, 0.3, 1.0)
+    fast = solid.response(0.0).k ** -0.5
+    for one in (solid, isotropic_as("anisotropic", solid)):
+        surface = Admittance.of(one.response(0.0))
+        np.testing.assert_allclose(surface.meeting, [1.0, fast], rtol=1e-12)
+        assert abs(surface.fastest / fast - 1.0) < 1e-12
+    np.testing.assert_allclose(surface.impedance, np.diag([1.0, fast]), atol=1e-12)

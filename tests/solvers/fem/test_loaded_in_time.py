@@ -14,7 +14,7 @@ from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.pressed import PressedHalfPlane
+from galinx.solvers.fem.loaded_in_time import LoadedInTime
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 from galinx.solvers.transient.punch import smooth
@@ -33,7 +33,7 @@ def at_once(t):
 def found_and_expected(mesh, c, end, steps, degree, ramp, g=0.0):
     """u, v on the surface within 2 a by both, (2, times, nodes, 2), over the largest of all."""
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree)
-    solver = PressedHalfPlane(Motion(space, SOLID.response(c)), end / steps)
+    solver = LoadedInTime(Motion(space, SOLID.response(c)), end / steps)
     run = solver.run(steps, uniform, g, (lambda t: float(smooth(t, ramp))) if ramp else at_once)
     history = ((lambda t: smooth(t, ramp)), (0.0, ramp)) if ramp else None
     near = np.flatnonzero(np.abs(run.X) < 2.0)[::7]
@@ -87,6 +87,8 @@ def test_suddenly_loaded_strip_everywhere(c):
 def test_friction_drags_the_surface_along():
     """Tangential tractions along X move the surface that way, and twice as many twice as far."""
     mesh = Even(3.0, 1.5, 0.5).drawn()
-    moved = [found_and_expected(mesh, 0.0, 1.0, 20, 5, 1.0, g)[0][..., 0].sum() for g in (0.0, -0.5, -1.0)]
+    moved = [
+        found_and_expected(mesh, 0.0, 1.0, 20, 5, 1.0, g)[0][..., 0].sum() for g in (0.0, -0.5, -1.0)
+    ]
     assert moved[1] - moved[0] > 1.0
     assert moved[2] - moved[0] == pytest.approx(2.0 * (moved[1] - moved[0]))

@@ -33,7 +33,7 @@ class SurfaceMotion:
     u: NDArray[np.float64]
 
 
-class PressedHalfPlane:
+class LoadedInTime:
     """All loads at one speed with one step size.
 
     Args:

@@ -1,0 +1,34 @@
+"""When starts are near steady motion, of courses that are known."""
+
+import numpy as np
+import pytest
+
+from galinx.postprocess.to_steady import from_steady, told, within
+
+
+def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
+    t = np.linspace(0.1, 40.0, 400)
+    load = np.clip(t / 2.0, 0.0, 1.0)  # as if it came on at once at t = 1
+    off = np.array([2.0 / np.maximum(t - 1.0, 0.1), 0.05 * np.exp(-t)])
+    found = within(t, load, off)
+    np.testing.assert_allclose(found[0], [21.0, 201.0, 2001.0], rtol=1e-3)
+    np.testing.assert_allclose(found[1], [t[0], np.log(5.0), np.log(50.0)], rtol=1e-2)
+
+
+def test_where_K_I_cannot_be_told_nothing_is_near():
+    nan = np.full((1, 3), np.nan)
+    data = {
+        "time/t": np.array([1.0, 2.0, 3.0]), "time/load": np.ones(3), "time/steady_K_I": np.array([0.3]),
+        "time/steady_centre": np.array([0.0]), "time/fem/K_I_left": nan, "time/fem/K_I_right": nan,
+        "time/fem/centre_of_pressure": np.zeros((1, 3)),
+    }  # fmt: skip
+    assert all(np.isnan(values).all() for values in told(data, "fem").values())
+
+
+def test_the_largest_difference_is_taken():
+    data = {
+        "time/steady_K_I": np.array([0.3]), "time/steady_centre": np.array([-0.1]),
+        "time/sie/K_I_left": np.array([[0.3, 0.33]]), "time/sie/K_I_right": np.array([[0.3, 0.24]]),
+        "time/sie/centre_of_pressure": np.array([[0.05, -0.1]]),
+    }  # fmt: skip
+    assert from_steady(data, "sie") == pytest.approx(np.array([[0.15, 0.2]]))

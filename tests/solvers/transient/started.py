@@ -1,0 +1,37 @@
+"""Starts from rest of any solid by both methods."""
+
+from mpi4py import MPI
+
+from galinx.meshes.charts import Physical
+from galinx.meshes.reached import Reached
+from galinx.meshes.rings import TAGS
+from galinx.postprocess.over_time import told
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.dynamic import Motion
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.start import StartFromRest
+from galinx.solvers.transient.admittance import Admittance
+from galinx.solvers.transient.punch import StartingPunch, smooth
+
+
+def by_integral_equation(solid, c, g, end, steps, ramp=3.0, terms=16):
+    punch = StartingPunch(solid.response(c), solid.limit(), end, steps, terms)
+    return punch.course(g, lambda t: smooth(t, ramp))
+
+
+class ByFiniteElements:
+    """Of one speed."""
+
+    def __init__(self, solid, c, end, steps, degree=7, innermost=1e-5):
+        self.response, self.steps = solid.response(c), steps
+        fast, T = Admittance.of(self.response).fastest, end * (1.0 + 16.0 / steps)
+        mesh = Reached(1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0, 2.0, innermost).drawn()
+        space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
+        self.motion = Motion(space, self.response)
+        self.solver = StartFromRest(self.motion, end / steps)
+
+    def run(self, g, load):
+        return self.solver.run(self.steps, lambda t: g, lambda t: float(load(t)))
+
+    def told(self, run, α, β):
+        return told(self.motion.X, run.forces, α, β)

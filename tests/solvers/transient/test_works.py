@@ -1,0 +1,45 @@
+"""Works of the load and of friction, and σ_XX beside the contact, of starts from rest."""
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+from started import ByFiniteElements, by_integral_equation
+
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.punch import BESIDE, smooth
+
+ISOTROPIC = Isotropic(1.0, 0.25, 1.0)
+
+
+@pytest.mark.parametrize(("solid", "c", "g"), [(ISOTROPIC, 0.6, -0.4), (random_solid(0), 0.4, 0.3)])
+def test_works_are_the_energy_that_finite_elements_hold(solid, c, g):
+    """Both methods know nothing of each other; friction and load give what moves and is strained."""
+    found = by_integral_equation(solid, c, g, 4.0, 20, terms=20)
+    run = ByFiniteElements(solid, c, 4.0, 20).run(g, lambda t: smooth(t, 3.0))
+    work = found.work_of_load + found.work_of_friction
+    assert np.abs(work - run.energy).max() < 1e-4 * np.abs(work).max()
+    assert abs(found.work_of_friction[-1]) > 0.05 * work[-1]
+
+
+def test_without_friction_it_does_no_work():
+    found = by_integral_equation(ISOTROPIC, 0.3, 0.0, 2.0, 10)
+    assert not found.work_of_friction.any()
+    assert np.all(np.diff(found.work_of_load) > 0.0)
+
+
+@pytest.mark.parametrize(("solid", "c", "g"), [(ISOTROPIC, 0.6, -0.4), (random_solid(2), 0.25, 0.4)])
+def test_stress_beside_the_contact_comes_to_that_of_steady_motion(solid, c, g):
+    one, two = (by_integral_equation(solid, c, g, end, 60, 2.0, 16) for end in (40.0, 80.0))
+    expected = FlatPunch(solid.response(c), g).σ_XX(np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
+    for side, exact in zip(("σ_XX_left", "σ_XX_right"), expected):
+        early, late = getattr(one, side)[-1], getattr(two, side)[-1]
+        assert abs(2.0 * late - early - exact) < 5e-3 * np.abs(expected).max()
+
+
+def test_stresses_of_the_mirror_image_change_sides_and_sign():
+    """At rest a surface that is dragged one way is pulled where the other way it is pressed."""
+    one, other = (by_integral_equation(ISOTROPIC, 0.0, g, 2.0, 10) for g in (0.4, -0.4))
+    np.testing.assert_allclose(one.σ_XX_left, other.σ_XX_right, atol=1e-9)
+    np.testing.assert_allclose(one.work_of_friction, other.work_of_friction, atol=1e-9)
+    assert np.abs(one.σ_XX_left - one.σ_XX_right)[-1] > 0.3

@@ -25,13 +25,15 @@ class Reached:
 
     Attributes:
         half_width, depth: over a, at least 3 and 2.
-        size: largest side of a cell over a.
+        size: side over a of the cells that are next to those under the punch.
+        growth: by which a cell further out is longer, over its distance from them.
         innermost: size of the cells at the edges of the punch over a.
     """
 
     half_width: float
     depth: float
     size: float
+    growth: float
     innermost: float
 
     def drawn(self) -> QuadMesh:
@@ -40,9 +42,9 @@ class Reached:
         beside, _ = corner(_SQUARE, Refinement(levels, _RATIO, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
         squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
-        outwards = np.concatenate([[0.0, 1.0], _even(2.0, self.half_width, self.size)])
+        outwards = np.concatenate([[0.0, 1.0], self._outwards(2.0, self.half_width)])
         X = np.concatenate([-outwards[:0:-1], outwards])
-        Y = -np.concatenate([[0.0], _even(1.0, self.depth, self.size)])
+        Y = -np.concatenate([[0.0], self._outwards(1.0, self.depth)])
         boxes = np.array([
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
             for x0, x1 in pairwise(X)
@@ -51,9 +53,12 @@ class Reached:
         ])  # fmt: skip
         return _tagged(np.concatenate([boxes, *squares]), float(X[-1]))
 
-
-def _even(first: float, last: float, size: float) -> NDArray[np.float64]:
-    return np.linspace(first, last, max(ceil((last - first) / size), 1) + 1)
+    def _outwards(self, first: float, last: float) -> NDArray[np.float64]:
+        """Lines from the first distance to the last one."""
+        x = [0.0]
+        while x[-1] < last - first:
+            x.append(x[-1] + self.size + self.growth * x[-1])
+        return first + np.array(x) * ((last - first) / x[-1])
 
 
 def _tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:

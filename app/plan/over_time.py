@@ -18,16 +18,19 @@ from galinx.solvers.solids.isotropic import Isotropic
 MOST, LARGEST = 24, 300_000
 #: Tolerances that can be reached.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
-#: Step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
-_STEP, _OF_RAMP = 0.2, 12
+#: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
+_STEP, _OF_RAMP = 0.4, 6
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
 #: over a.
 _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
 #: Steps by which the end is later for waves.
-_EARLIER = 16
-#: Largest side of a cell over a; and how much slower than the Rayleigh wave a punch has to be for that:
+_EARLIER = 8
+#: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
+#: ones; half of it at a tenth of the tolerance. And how much more where the error is measured.
+_GROWTH, _GROWN = 0.15, 1.75
+#: Side of cells next to the punch over a; and how much slower than the Rayleigh wave a punch has to be for that:
 #: the wave ahead of a faster one is shorter.
 _SIZE, _SLOW = 2.0, 0.25
 
@@ -41,7 +44,7 @@ class Level:
     """What a solution in time is computed with.
 
     Attributes:
-        mesh: as far as waves come that are back at the end.
+        mesh: as far as waves come that are back at the end, if they are not too short for its cells.
         degree: polynomial degree.
         steps: their number.
     """
@@ -96,7 +99,7 @@ class Starts:
                 lines.append(
                     f"finite elements in time at c = {c:g} (over c_s): {what}, {level.steps} steps, "
                     f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
-                    "twice the step measures the error"
+                    "twice the step, on larger cells, measures the error"
                 )
         return lines
 
@@ -113,7 +116,11 @@ class Starts:
         return total
 
     def levels(self, solid: Isotropic, c: float) -> tuple[Level, Level]:
-        """A coarser level with half as many steps, which tells the error, and that which is archived."""
+        """A coarser level, which tells the error, and that which is archived.
+
+        The coarser one has half as many steps, a degree less, and cells that grow faster, so that waves are
+        taken for too short at little more than half the distance.
+        """
         digits = -log10(self.tolerance)
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         fast = 1.0 / sqrt(solid.response(c).k)
@@ -124,8 +131,12 @@ class Starts:
         depth = sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         size = _SIZE * min(1.0, (solid.limit() - c) / _SLOW) ** 0.5
-        mesh = Reached(max(ahead, 3.0), max(depth, 2.0), size, innermost)
-        return Level(mesh, degree - 1, self.steps // 2), Level(mesh, degree, self.steps)
+        growth = _GROWTH * 0.5 ** (digits - 3.0)
+        coarse, fine = (
+            Reached(max(ahead, 3.0), max(depth, 2.0), size, of, innermost)
+            for of in (_GROWN * growth, growth)
+        )
+        return Level(coarse, degree - 1, self.steps // 2), Level(fine, degree, self.steps)
 
 
 def starts(scene: Scene) -> Starts | None:
@@ -154,9 +165,8 @@ def starts(scene: Scene) -> Starts | None:
     g: dict[float, tuple[float, ...]] = {}
     for c, ratio in pairs.tolist():
         g[c] = (*g.get(c, ()), ratio)
-    step = scene.time.step or min(
-        _STEP * (tolerance / 1e-3) ** 0.25, scene.time.load_ramp / _OF_RAMP
-    )  # fmt: skip
+    largest = min(_STEP, scene.time.load_ramp / _OF_RAMP)
+    step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.25
     steps = 2 * ceil(scene.time.end / step / 2.0 - 1e-9)
     found = Starts(g, methods, scene.time.end, scene.time.load_ramp, tolerance, steps)
     if FEM in methods:

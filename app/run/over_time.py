@@ -22,8 +22,9 @@ from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
-#: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
-_STEP, _TERMS = 0.2, 24
+#: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five; steps
+#: within which the load comes on; polynomials.
+_STEP, _OF_RAMP, _TERMS = 0.5, 6, 24
 
 _Found = dict[str, NDArray[np.float64]]
 #: A method and a speed.
@@ -71,7 +72,7 @@ def _computed(
 
 def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -> _Found:
     """Each start a row."""
-    t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
+    t = starts.end / starts.steps * np.arange(1, starts.steps + 1)
     every = []
     for c, of_speed in starts.g.items():
         for i, g in enumerate(of_speed):
@@ -89,11 +90,12 @@ def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -
 
 
 def _integral_equation(starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[_Found]:
-    half = starts.steps // 2
-    finer = int(np.ceil(starts.end / half / _STEP - 1e-9))
+    steps = starts.steps
+    largest = min(_STEP, starts.ramp / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
+    finer = int(np.ceil(starts.end / steps / largest - 1e-9))
     response = solid.response(c)
     with clock("integral equation in time"):
-        punch = StartingPunch(response.k, solid.limit(), response, starts.end, half * finer, _TERMS)
+        punch = StartingPunch(response.k, solid.limit(), response, starts.end, steps * finer, _TERMS)
         found = []
         for g in starts.g[c]:
             course = punch.course(g, lambda t: smooth(t, starts.ramp))
@@ -113,10 +115,10 @@ def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -
     for (before, _, _), (values, _, energies) in zip(coarse, fine):
         every_other = [value[1::2] for value in values]
         found.append(
-            _named(FEM, every_other)
+            _named(FEM, values)
             | {
                 rows.ESTIMATE.path: np.array(largest_change(before, every_other, load)),
-                rows.WORK.path: energies[0][1::2], rows.ENERGY.path: energies[1][1::2],
+                **dict(zip((row.path for row in (rows.WORK, rows.ENERGY, rows.ABSORBED)), energies)),
             }
         )  # fmt: skip
     return found
@@ -137,7 +139,7 @@ def _import(clock: Clock) -> None:
 
 
 def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: Clock) -> list[Any]:
-    """Values, times, and work with energy of each friction at a speed."""
+    """Values, times, and work with energies of each friction at a speed."""
     from mpi4py import MPI
 
     from galinx.solvers.fem.distributed import distribute
@@ -157,6 +159,6 @@ def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: C
             steady = FlatPunch(response, g)
             read = told(motion.X, run.forces, steady.α, steady.β)
             values = run.v0, read.centre, read.K_left, read.K_right
-            found.append((values, run.t, (run.work, run.energy)))
+            found.append((values, run.t, (run.work, run.energy, run.absorbed)))
     solver.destroy()
     return found

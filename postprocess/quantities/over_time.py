@@ -52,6 +52,10 @@ ENERGY = _row(
     "energy of the motion seen from the punch, kinetic and strain less that of being carried along",
     (START, INSTANT), method=FEM,
 )  # fmt: skip
+ABSORBED = _row(
+    "fem/absorbed", "N^2/(4mu)", "energy of waves that cells far away are too large for",
+    (START, INSTANT), method=FEM,
+)  # fmt: skip
 ESTIMATE = _row(
     "fem/estimate", "1",
     "estimated error over time of v0, centre times load, and K_I, over the largest of each",

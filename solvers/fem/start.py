@@ -1,9 +1,9 @@
 """A flat punch that is pressed on and slides from rest: finite elements in time.
 
-In the frame of the punch M ü - 2c B u̇ + K u are the forces of the contact. Velocities w = u̇ are
+In the frame of the punch M ü + (D - 2c B) u̇ + K u are the forces of the contact. Velocities w = u̇ are
 stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order
 (ESDIRK4(3)6L[2]SA of Kennedy and Carpenter), stiffly accurate and L-stable: with the matrix
-S = M - 2cγh B + (γh)² K each stage is S w = b + γh·forces.
+S = M + γh (D - 2c B) + (γh)² K each stage is S w = b + γh·forces.
 Under the punch w = -v̇₀ along Y and the tangential forces are g times the normal ones, r, so that with the
 normal reactions P of unit tangential forces ::
 
@@ -18,9 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import identity, kron
 
 from galinx.clock import Clock
-from galinx.solvers.fem.dynamic import Motion
+from galinx.solvers.fem.dynamic import Motion, of_both
 from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
 
 _γ = 0.25
@@ -44,8 +45,9 @@ class Steps:
         v0: indentation over N/(2μ).
         forces: consistent nodal forces of σ_YY at the contact nodes from left to right, (steps, nodes).
         work: of the contact's forces by velocities seen from the punch, over N²/(4μ).
-        energy: of the motion seen from the punch, (u̇M u̇ + u K u)/2 over N²/(4μ), which is that work: what
-            is carried along is skew, and K has ρ(V u,X)²/2 taken away.
+        energy: of the motion seen from the punch, (u̇M u̇ + u K u)/2 over N²/(4μ), which is that work but
+            for what is absorbed: what is carried along is skew, and K has ρ(V u,X)²/2 taken away.
+        absorbed: that of waves which cells far away are too large for, over N²/(4μ).
     """
 
     t: NDArray[np.float64]
@@ -53,6 +55,7 @@ class Steps:
     forces: NDArray[np.float64]
     work: NDArray[np.float64]
     energy: NDArray[np.float64]
+    absorbed: NDArray[np.float64]
 
 
 class StartFromRest:
@@ -70,8 +73,9 @@ class StartFromRest:
     def __init__(self, motion: Motion, h: float, clock: Clock | None = None) -> None:
         self._motion, self._h = motion, h
         with (clock := clock or Clock())("assembly"):
-            self._K, self._M = motion.K, motion.M
-            S = (self._M - 2.0 * motion.response.c * _γ * h * motion.B + (_γ * h) ** 2 * self._K).tocsr()
+            self._K, self._M, self._D = motion.K, motion.M, motion.D
+            rates = self._D - 2.0 * motion.response.c * motion.B
+            S = (kron(self._M + _γ * h * rates, identity(2)) + (_γ * h) ** 2 * self._K).tocsr()
         self._Y, X = 2 * motion.contact + 1, 2 * motion.contact
         held = np.zeros(motion.size, dtype=bool)
         held[self._Y] = True
@@ -101,8 +105,8 @@ class StartFromRest:
         h, size = self._h, self._motion.size
         u, w, a = (np.zeros(size) for _ in range(3))
         forces = np.zeros((steps, len(self._Y)))
-        v0, done, energy = (np.zeros(steps) for _ in range(3))
-        power = 0.0
+        v0, energy = np.zeros(steps), np.zeros(steps)
+        done, power = np.zeros((steps, 2)), np.zeros(2)
         for n in range(steps):
             velocities, accelerations, powers = [w], [a], [power]
             for weights, time in zip(_A, _TIMES):
@@ -112,19 +116,20 @@ class StartFromRest:
                 now, r = self._stage(before, given, g(at), load(at))
                 velocities.append(now)
                 accelerations.append((now - given) / (_γ * h))
-                powers.append(float(r @ (now[self._Y] + g(at) * now[self._Y - 1])))
+                pushed = r @ (now[self._Y] + g(at) * now[self._Y - 1])
+                powers.append(np.array([pushed, now @ of_both(self._D, now)]))
             u = before + _γ * h * now
             w, a, forces[n] = now, accelerations[-1], r
             v0[n], power = -u[self._Y[0]], powers[-1]
-            done[n] = h * np.dot([*_A[-1], _γ], powers)
-            energy[n] = (w @ (self._M @ w) + u @ (self._K @ u)) / 2.0
-        return Steps(np.arange(1.0, steps + 1.0) * h, v0, forces, np.cumsum(done), energy)
+            done[n] = h * np.array([*_A[-1], _γ]) @ np.array(powers)
+            energy[n] = (w @ of_both(self._M, w) + u @ (self._K @ u)) / 2.0
+        return Steps(np.arange(1.0, steps + 1.0) * h, v0, forces, np.cumsum(done[:, 0]), energy, np.cumsum(done[:, 1]))
 
     def _stage(
         self, before: NDArray, given: NDArray, g: float, load: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Velocities and normal reactions from what earlier stages give."""
-        b = self._M @ given - _γ * self._h * (self._K @ before)
+        b = of_both(self._M, given) - _γ * self._h * (self._K @ before)
         w = np.zeros(self._motion.size)
         w[self._free] = self.factor.solve(b[self._free])
         ρ = self._rows @ w - b[self._Y]

@@ -15,6 +15,8 @@ BOTH, OF_FEM = "over time", "estimate over time"
 
 #: Centre of the pressure over a that is as good as none.
 _NO_LEAN = 1e-2
+#: Indentation over N/(2μ) that is as good as none.
+_NO_SINKING = 1e-2
 
 #: What both methods tell.
 TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
@@ -31,6 +33,7 @@ def largest_change(found: Sequence[NDArray], expected: Sequence[NDArray], load: 
         share = load if n == 1 else np.ones_like(load)
         off.append(np.abs((one - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
+    sizes[0] = np.maximum(sizes[0], _NO_SINKING)
     sizes[1] = np.maximum(sizes[1], _NO_LEAN)
     sizes[2] = sizes[3] = np.maximum(sizes[2], sizes[3])
     return float(np.max(np.array(off) / np.array(sizes)))

@@ -1,4 +1,4 @@
-"""What happens over time where a punch is pressed on and slides from rest, one row for each start."""
+"""What happens over time where a punch is pressed on and slides, one row for each start."""
 
 from galinx.postprocess.quantities.quantity import FEM, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
@@ -19,12 +19,19 @@ def _row(
 
 
 SPEED = _row("c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE)
-RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start", (START,))
+RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
+RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
+DIRECTION = _row("direction", "1", "direction of motion over time, 1 or -1", (INSTANT,))
 TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE)
 STEADY_CENTRE = _row(
     "steady_centre", "1", "centre of the pressure in steady motion over the half-width, closed form",
     (START,),
+)  # fmt: skip
+CENTRES = _row(
+    "steady_centres", "1",
+    "centre of the pressure over the half-width if it were at once that of steady motion",
+    (START, INSTANT),
 )  # fmt: skip
 STEADY_K_I = _row(
     "steady_K_I", "1", "stress intensity factor in steady motion, both ends, closed form", (START,)

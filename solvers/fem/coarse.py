@@ -1,8 +1,8 @@
 """Damping of waves that cells are too large for.
 
-Where cells grow outwards, a wave that comes among cells which cannot hold it would be thrown back by them.
-So it is damped there: of the velocity seen from the punch, the higher Legendre polynomials of each cell
-lose energy (spectral viscosity: Maday, Ould Kaber & Tadmor, SIAM J. Numer. Anal. 30, 321-342, 1993)::
+Where cells grow outwards, a wave that comes among cells which cannot hold it would be thrown back by
+them. So it is damped there: of the velocity seen from the punch, the higher Legendre polynomials of each
+cell lose energy (spectral viscosity: Maday, Ould Kaber & Tadmor, SIAM J. Numer. Anal. 30, 321, 1993)::
 
     w·D w = Σ_cells rate Σ_ij (d_i + d_j) w_ij²,      d_j = exp(-((p - j)/(j - m))²) for j > m
 

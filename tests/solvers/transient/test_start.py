@@ -1,7 +1,5 @@
 """Starts from rest by both methods against what is known, and against each other."""
 
-import os
-
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -33,9 +31,12 @@ class Started:
     """Finite elements of one speed."""
 
     def __init__(self, ν, c, end, steps, degree=7, innermost=1e-5):
+        self.degree = degree
         self.response, self.end, self.steps = solid(ν).response(c), end, steps
         fast, T = self.response.k**-0.5, end * (1.0 + 16.0 / steps)
-        mesh = Reached(1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0, 2.0, innermost).drawn()
+        mesh = Reached(
+            1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0, 2.0, 0.15, innermost
+        ).drawn()
         space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree)
         self.motion = Motion(space, self.response)
         self.solver = StartFromRest(self.motion, end / steps)
@@ -46,7 +47,7 @@ class Started:
 
     def told(self, run, g):
         exact = FlatPunch(self.response, g)
-        return told(self.motion.X, run.forces, exact.α, exact.β)
+        return told(self.motion.X, run.forces, exact.α, exact.β, self.degree)
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +115,7 @@ def test_finite_elements_agree_with_the_integral_equation(at_speed):
 
 def test_energy_is_the_work(at_speed):
     run = at_speed.run(lambda t: -0.4 * np.sin(t))  # friction that changes in time
-    assert off(run.energy, run.work) < 1e-5
+    assert off(run.energy + run.absorbed, run.work) < 1e-5
 
 
 def test_scheme_converges():
@@ -140,18 +141,3 @@ def test_start_becomes_steady():
         left.append(found.centre[-1] - (steady.β - steady.α))
     assert abs(2.0 * left[1] - left[0]) < 1e-3
     assert 0.3 < left[1] / left[0] < 0.7
-
-
-@pytest.mark.skipif("GALINX_THOROUGH" not in os.environ, reason="takes minutes: GALINX_THOROUGH=1")
-@pytest.mark.parametrize("seed", range(6))
-def test_random_starts_agree(seed):
-    random = np.random.default_rng(seed)
-    ν, g, ramp = random.uniform(0.0, 0.4), random.uniform(-0.8, 0.8), random.uniform(2.0, 5.0)
-    c = random.uniform(0.0, 0.9) * solid(ν).limit()
-    started = Started(ν, c, 20.0, 180, degree=9, innermost=1e-6)
-    run = started.run(g, ramp)
-    found, expected = started.told(run, g), integral_equation(ν, c, g, 20.0, 180, ramp, terms=24)
-    assert off(run.v0, expected.v0) < 1e-4
-    assert np.abs((found.centre - expected.centre) * expected.load).max() < 1e-4
-    for one, other in ((found.K_left, expected.K_left), (found.K_right, expected.K_right)):
-        assert off(one, other) < 1e-4

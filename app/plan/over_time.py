@@ -28,12 +28,14 @@ MOST, LARGEST = 24, 300_000
 #: Tolerances that can be reached.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
-_STEP, _OF_RAMP = 0.4, 6
+_STEP, _OF_RAMP = 0.4, 7
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
 #: over a.
 _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
+#: Time over a/c_s within which waves cross the contact.
+_CROSSED = 2.0
 #: Distance over a times tolerance at which steady motion is held.
 _HELD = 5.0
 #: Steps by which the end is later for waves.
@@ -106,8 +108,20 @@ class Starts:
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
-        changing = any(one.constant is None for many in self.frictions.values() for one in many)
-        return min(self.load.shortest, *(way.duration for way in self.ways if changing), np.inf)
+        return min(self.load.shortest, *(way.duration for way in self.ways if self.changing), np.inf)
+
+    @property
+    def changing(self) -> bool:
+        """Does friction change?"""
+        return any(one.constant is None for many in self.frictions.values() for one in many)
+
+    @property
+    def tells_K_I(self) -> bool:
+        """Is the pressure smooth enough but for its exponents?
+
+        What begins at an edge of the punch, suddenly, has to have crossed the contact before.
+        """
+        return not self.changing or self.shortest >= _CROSSED
 
     @property
     def count(self) -> int:
@@ -125,6 +139,9 @@ class Starts:
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{self.count} starts {begin}, to t = {self.end:g} a/c_s"
         lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
+        lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
+            not self.tells_K_I
+        )
         lines += [f"not by the integral equation in time: {self.alone}"] if self.alone else []
         if FEM in self.methods:
             for c in self.frictions:

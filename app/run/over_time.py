@@ -79,12 +79,12 @@ def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -
     for c, of_speed in starts.frictions.items():
         for i, friction in enumerate(of_speed):
             g = np.array([friction(at) for at in t])
-            steady = [FlatPunch(solid.response(c), ratio) for ratio in g]
+            steady = FlatPunch(solid.response(c), g[-1])
             one = {
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
-                rows.STEADY_CENTRE.path: np.array(steady[-1].β - steady[-1].α),
-                rows.STEADY_K_I.path: np.array(steady[-1].K_I),
-                rows.CENTRES.path: np.array([one.β - one.α for one in steady]),
+                rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
+                rows.STEADY_K_I.path: np.array(steady.K_I),
+                rows.CENTRES.path: _leans(solid.response(c), friction, t),
             }  # fmt: skip
             for method in (SIE, FEM):
                 one |= found[method, c][i] if method in starts.methods else {}
@@ -92,6 +92,13 @@ def _joined(starts: Starts, solid: Isotropic, found: dict[_Job, list[_Found]]) -
     joined = {path: np.array([one[path] for one in every]) for path in every[0]}
     directions = np.concatenate([np.full(way.steps, float(way.direction)) for way in starts.ways])
     return {rows.TIMES.path: t, rows.LOAD.path: starts.load(t), rows.DIRECTION.path: directions} | joined
+
+
+def _leans(response: Response, friction: Friction, t: NDArray) -> NDArray[np.float64]:
+    """Centre of the pressure over a if it were at once that of steady motion."""
+    ratios, which = np.unique([friction(at) for at in t], return_inverse=True)
+    steady = [FlatPunch(response, ratio) for ratio in ratios]
+    return np.array([one.β - one.α for one in steady])[which]
 
 
 def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
@@ -138,12 +145,14 @@ def _finite_elements(starts: Starts, solid: Isotropic, c: float, clock: Clock) -
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = starts.load(_times(starts, 2))
     found = []
-    for (before, _), (values, energies) in zip(coarse, fine):
+    for friction, (before, _), (values, energies) in zip(starts.frictions[c], coarse, fine):
         every_other = [value[1::2] for value in values]
+        # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
+        lean = _leans(solid.response(c), friction, _times(starts)) if starts.changing else np.zeros(1)
         found.append(
             _named(FEM, values)
             | {
-                rows.ESTIMATE.path: np.array(largest_change(before, every_other, load)),
+                rows.ESTIMATE.path: np.array(largest_change(before, every_other, load, lean)),
                 **dict(zip((row.path for row in (rows.WORK, rows.ENERGY, rows.ABSORBED)), energies)),
             }
         )  # fmt: skip
@@ -175,18 +184,20 @@ def _at_level(level: Level, starts: Starts, solid: Isotropic, c: float, clock: C
     with clock("steps in time"):
         for g in starts.frictions[c]:
             run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady)
-            values = _read(run, g, motion, level.degree)
+            values = _read(run, g, motion, level.degree, starts.tells_K_I)
             found.append((values, (run.work, run.energy, run.absorbed)))
     solver.destroy()
     return found
 
 
-def _read(run: Any, g: Friction, motion: Any, degree: int) -> tuple[NDArray, ...]:
-    """v₀, centre, and K_I at both ends, by the exponents of the friction at each time."""
+def _read(run: Any, g: Friction, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
+    """v₀, centre, and K_I at both ends, by the exponents of the friction at each time, NaN for untold."""
     ratios = np.array([g(t) for t in run.t])
     read = np.empty((3, len(ratios)))
     for ratio in np.unique(ratios):
         at, steady = ratios == ratio, FlatPunch(motion.response, ratio)
         one = told(motion.X, run.forces[at], steady.α, steady.β, degree)
         read[:, at] = one.centre, one.K_left, one.K_right
+    if not tells_K_I:
+        read[1:] = np.nan
     return run.v0, *read

@@ -1,6 +1,6 @@
 """What happens over time where a punch is pressed on and slides, one row for each start."""
 
-from galinx.postprocess.quantities.quantity import FEM, QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Word of output.quantities.
@@ -38,18 +38,24 @@ STEADY_K_I = _row(
 )
 
 
-def _by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
+def _by_method(name: str, unit: str, about: str, **others: object) -> dict[str, Quantity]:
     how = {FEM: "finite elements", SIE: "integral equation"}
     return {
-        method: _row(f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method)
+        method: _row(
+            f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method, **others
+        )
         for method, told in how.items()
     }
 
 
 V0 = _by_method("v0", "N/(2mu)", "indentation since the punch touched")
 CENTRE = _by_method("centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X")
-K_I_LEFT = _by_method("K_I_left", "1", "stress intensity factor over time at X = -a by the final load")
-K_I_RIGHT = _by_method("K_I_right", "1", "stress intensity factor over time at X = a by the final load")
+K_I_LEFT = _by_method(
+    "K_I_left", "1", "stress intensity factor over time at X = -a by the final load", nan_allowed=ANYWHERE
+)
+K_I_RIGHT = _by_method(
+    "K_I_right", "1", "stress intensity factor over time at X = a by the final load", nan_allowed=ANYWHERE
+)
 WORK = _row(
     "fem/work", "N^2/(4mu)", "work of the contact's forces by velocities seen from the punch",
     (START, INSTANT), method=FEM,

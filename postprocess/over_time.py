@@ -8,7 +8,7 @@ from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
 #: Moments of the pressure that elements of degree p tell, 2p and so many, and how many fewer polynomials
 #: its smooth factor has: a wave that runs little faster than the punch is short under it.
-_MOMENTS, _FEWER = 6, 4
+_MOMENTS, _FEWER = 4, 4
 #: Points that give moments of r log r.
 _POINTS = 400
 

@@ -39,8 +39,8 @@ def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     told = np.isfinite(data[rows.K_I_LEFT[method].path]).any()
     caption = (
         f"From {'steady motion on' if asked.steady else 'rest to steady sliding'}, {METHODS[method]}"
-        f"{f', points: {METHODS.get(other)}' * bool(other)}: centre of the pressure, whose dotted line is "
-        "that of steady motion by the friction of the same time, indentation since the first"
+        f"{f', points: {METHODS.get(other)}' * bool(other)}: centre of the pressure, whose dotted line "
+        "is that of steady motion by the friction of the same time, indentation since the first"
         f"{', and K_I at both ends by the full load' * bool(told)}, over time. {_what(asked)}"
     )
     left = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))

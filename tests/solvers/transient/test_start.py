@@ -171,7 +171,7 @@ def test_the_way_back_is_the_mirror_image(small):
 
 
 def test_the_solid_goes_on_where_the_punch_turns_round():
-    """Its velocity, u̇ - c u,X, stays, so its kinetic energy does, as far as cells tell u,X at the edges."""
+    """Its velocity, u̇ - c u,X, stays, so its kinetic energy does, as far as cells tell u,X at edges."""
     started = Started(0.25, 0.5, 2.0, 10, degree=7, innermost=1e-4)
     solver, motion = started.solver, started.motion
     rest = StillAt(started, 0.0)

@@ -1,7 +1,7 @@
-"""Meshes for waves: straight cells of a bounded size, as far as waves come that are back in time.
+"""Meshes for waves: straight cells that grow outwards, as far as waves come that are back in time.
 
 What waves do farther away nobody under the punch will know before the end, so that the far boundary may
-be held there and nothing has to absorb them.
+be held there. Those that are too short for the cells out there have to be damped.
 """
 
 from dataclasses import dataclass
@@ -15,8 +15,10 @@ from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, Refinement, corner
 
 #: Size of a ring over that of the ring outside it: straight cells ask for gentle ones.
 _RATIO = 0.25
-#: Half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
+#: Largest half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
 _SQUARE = 1.0
+#: How many times as far as one line the next is where only a steady field has to be held.
+_BEYOND = 2.5
 
 
 @dataclass(frozen=True)
@@ -25,35 +27,47 @@ class Reached:
 
     Attributes:
         half_width, depth: over a, at least 3 and 2.
-        size: largest side of a cell over a.
+        size: side over a of the cells that are next to those under the punch.
+        growth: by which a cell further out is longer, over its distance from them.
         innermost: size of the cells at the edges of the punch over a.
+        beyond: half-width and depth of all cells over a, where a steady field is held; 0 for no more than
+            waves need.
     """
 
     half_width: float
     depth: float
     size: float
+    growth: float
     innermost: float
+    beyond: float = 0.0
 
     def drawn(self) -> QuadMesh:
         """The mesh."""
-        levels = max(ceil(log(self.innermost) / log(_RATIO)), 1)
-        beside, _ = corner(_SQUARE, Refinement(levels, _RATIO, 1, ()), fan=True)
+        square = min(_SQUARE, self.size)
+        levels = max(ceil(log(self.innermost / square) / log(_RATIO)), 1)
+        beside, _ = corner(square, Refinement(levels, _RATIO, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
         squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
-        outwards = np.concatenate([[0.0, 1.0], _even(2.0, self.half_width, self.size)])
+        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / self.size) + 1)
+        outwards = np.concatenate([between, [1.0], self._outwards(1.0 + square, self.half_width)])
         X = np.concatenate([-outwards[:0:-1], outwards])
-        Y = -np.concatenate([[0.0], _even(1.0, self.depth, self.size)])
+        Y = -np.concatenate([[0.0], self._outwards(square, self.depth)])
         boxes = np.array([
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
             for x0, x1 in pairwise(X)
             for y1, y0 in pairwise(Y)
-            if y0 < -1.0 or abs(x0 + x1) > 4.0
+            if y0 < -square or abs(abs(x0 + x1) / 2.0 - 1.0) > square
         ])  # fmt: skip
         return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
 
-
-def _even(first: float, last: float, size: float) -> NDArray[np.float64]:
-    return np.linspace(first, last, max(ceil((last - first) / size), 1) + 1)
+    def _outwards(self, first: float, last: float) -> NDArray[np.float64]:
+        """Lines from the first distance to the last one."""
+        x = [0.0]
+        while x[-1] < last - first:
+            x.append(x[-1] + self.size + self.growth * x[-1])
+        lines = first + np.array(x) * ((last - first) / x[-1])
+        more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
+        return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
 
 
 def tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:

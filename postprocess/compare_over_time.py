@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from galinx.postprocess.compare import RULES, Rule
 from galinx.postprocess.quantities import over_time as rows
@@ -15,25 +15,35 @@ BOTH, OF_FEM = "over time", "estimate over time"
 
 #: Centre of the pressure over a that is as good as none.
 _NO_LEAN = 1e-2
+#: Indentation over N/(2μ) that is as good as none.
+_NO_SINKING = 1e-2
 
 #: What both methods tell.
 TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
 
-def largest_change(found: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray) -> float:
+def largest_change(
+    found: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray, lean: ArrayLike = 0.0
+) -> float:
     """How far v₀, centre, K_I left and right (starts, times) are apart, over the largest of a start.
 
     The centre is multiplied by the load: where there is hardly any, it says hardly anything. K_I is over
-    that of the stronger end.
+    that of the stronger end, and left out where it is NaN.
+
+    Args:
+        found, expected: of both methods.
+        load: share of N, (times,).
+        lean: centre of steady motion, which counts among those of which the largest is taken.
     """
     off, sizes = [], []
     for n, (one, other) in enumerate(zip(found, expected)):
         share = load if n == 1 else np.ones_like(load)
         off.append(np.abs((one - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
-    sizes[1] = np.maximum(sizes[1], _NO_LEAN)
+    sizes[0] = np.maximum(sizes[0], _NO_SINKING)
+    sizes[1] = np.maximum(np.maximum(sizes[1], _NO_LEAN), np.abs(lean).max())
     sizes[2] = sizes[3] = np.maximum(sizes[2], sizes[3])
-    return float(np.max(np.array(off) / np.array(sizes)))
+    return float(np.nanmax(np.array(off) / np.array(sizes)))
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float:

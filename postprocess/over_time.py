@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
-#: Moments of the pressure, and polynomials of its smooth factor.
-MOMENTS, POLYNOMIALS = 18, 14
+#: Moments of the pressure that elements of degree p tell, 2p and so many, and how many fewer polynomials
+#: its smooth factor has: a wave that runs little faster than the punch is short under it.
+_MOMENTS, _FEWER = 4, 4
 #: Points that give moments of r log r.
 _POINTS = 400
 
@@ -29,23 +30,26 @@ class Told:
     K_right: NDArray[np.float64]
 
 
-def told(X: NDArray, forces: NDArray, α: float, β: float) -> Told:
+def told(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> Told:
     """What consistent nodal forces of σ_YY say; tested with smooth functions they give its moments.
 
     Args:
         X: contact nodes over a, (nodes,).
         forces: over N/2, (times, nodes), ∫σ_YY = -2 where all of the load is there.
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
+        degree: of the elements.
     """
-    a = forces @ _tests(X, α, β, MOMENTS)
+    moments = 2 * degree + _MOMENTS
+    polynomials = moments - _FEWER
+    a = forces @ _tests(X, α, β, moments)
     with np.errstate(
         invalid="ignore", divide="ignore"
     ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
         r, w = roots_jacobi(_POINTS, α, β)
-    known = np.column_stack([np.eye(MOMENTS, POLYNOMIALS), _tests(r, α, β, MOMENTS).T @ (w * _logs(r)).T])
+    known = np.column_stack([np.eye(moments, polynomials), _tests(r, α, β, moments).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(known, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])
-    left, right = -0.5 * np.column_stack([_tests(ends, α, β, POLYNOMIALS), _logs(ends).T]) @ factors
+    left, right = -0.5 * np.column_stack([_tests(ends, α, β, polynomials), _logs(ends).T]) @ factors
     total = forces.sum(axis=1)
     return Told(-total / 2.0, (forces @ X) / total, left, right)
 

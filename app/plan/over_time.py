@@ -1,4 +1,4 @@
-"""Starts from rest: which there are, and meshes, degrees and steps that reach a tolerance."""
+"""Motions in time: which there are, and meshes, degrees and steps that reach a tolerance."""
 
 from dataclasses import dataclass
 from math import ceil, log10, sqrt
@@ -6,6 +6,15 @@ from math import ceil, log10, sqrt
 import numpy as np
 
 from galinx.app.errors import BadInput
+from galinx.app.plan.driving import (
+    Friction,
+    Load,
+    Way,
+    constant,
+    frictions_at,
+    load_of,
+    ways_at,
+)
 from galinx.app.plan.states import enumerate_states
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
@@ -19,18 +28,26 @@ from galinx.solvers.transient.admittance import Admittance, InPlane
 MOST, LARGEST = 24, 300_000
 #: Tolerances that can be reached.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
-#: Step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
-_STEP, _OF_RAMP = 0.2, 12
+#: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
+_STEP, _OF_RAMP = 0.4, 7
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
 #: over a.
 _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
+#: Time over a/c_s within which waves cross the contact.
+_CROSSED = 2.0
+#: Distance over a times tolerance at which steady motion is held.
+_HELD = 5.0
 #: Steps by which the end is later for waves.
-_EARLIER = 16
-#: Largest side of a cell over a; and how much slower than the Rayleigh wave a punch has to be for that:
-#: the wave ahead of a faster one is shorter.
-_SIZE, _SLOW = 2.0, 0.25
+_EARLIER = 8
+#: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
+#: ones; half of it at a tenth of the tolerance. And how much more where the error is measured.
+_GROWTH, _GROWN = 0.15, 1.75
+#: Side of cells next to the punch over a where things change within so many a/c_s; and how much slower
+#: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
+#: the last of these it asks for a degree more.
+_SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
 
 
 #: Rules by which starts are judged.
@@ -42,14 +59,14 @@ class Level:
     """What a solution in time is computed with.
 
     Attributes:
-        mesh: as far as waves come that are back at the end.
+        mesh: as far as waves come that are back at the end, if they are not too short for its cells.
         degree: polynomial degree.
-        steps: their number.
+        every: how many steps of the finest level are one of this one.
     """
 
     mesh: Reached
     degree: int
-    steps: int
+    every: int
 
     @property
     def unknowns(self) -> int:
@@ -62,24 +79,55 @@ class Starts:
     """All starts of a scene.
 
     Attributes:
-        g: σ_XY/σ_YY by speed over c_s, each pair once.
+        frictions: by speed over c_s.
         methods: that follow them.
-        end, ramp: last time, and that in which the load comes on, over a/c_s.
+        ways: strokes one after the other.
+        load: over time.
+        steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
-        steps: of the finite elements, an even number.
+        alone: why the integral equation does not follow them, though it was asked for; empty if it does.
     """
 
-    g: dict[float, tuple[float, ...]]
+    frictions: dict[float, tuple[Friction, ...]]
     methods: tuple[str, ...]
-    end: float
-    ramp: float
+    ways: tuple[Way, ...]
+    load: Load
+    steady: bool
     tolerance: float
-    steps: int
+    alone: str = ""
+
+    @property
+    def steps(self) -> int:
+        """Steps of the finite elements, an even number."""
+        return sum(way.steps for way in self.ways)
+
+    @property
+    def end(self) -> float:
+        """Last time over a/c_s."""
+        return sum(way.duration for way in self.ways)
+
+    @property
+    def shortest(self) -> float:
+        """Shortest time within which something changes over a/c_s."""
+        return min(self.load.shortest, *(way.duration for way in self.ways if self.changing), np.inf)
+
+    @property
+    def changing(self) -> bool:
+        """Does friction change?"""
+        return any(one.constant is None for many in self.frictions.values() for one in many)
+
+    @property
+    def tells_K_I(self) -> bool:
+        """Is the pressure smooth enough but for its exponents?
+
+        What begins at an edge of the punch, suddenly, has to have crossed the contact before.
+        """
+        return not self.changing or self.shortest >= _CROSSED
 
     @property
     def count(self) -> int:
         """How many."""
-        return sum(map(len, self.g.values()))
+        return sum(map(len, self.frictions.values()))
 
     @property
     def rules(self) -> frozenset[str]:
@@ -89,44 +137,67 @@ class Starts:
 
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
-        what = f"{self.count} starts from rest, to t = {self.end:g} a/c_s"
+        begin = "from steady motion on" if self.steady else "from rest"
+        what = f"{self.count} starts {begin}, to t = {self.end:g} a/c_s"
         lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
+        lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
+            not self.tells_K_I
+        )
+        lines += [f"not by the integral equation in time: {self.alone}"] if self.alone else []
         if FEM in self.methods:
-            for c in self.g:
+            for c in self.frictions:
                 _, level = self.levels(solid, c)
                 lines.append(
-                    f"finite elements in time at c = {c:g} (over c_s): {what}, {level.steps} steps, "
+                    f"finite elements in time at c = {c:g} (over c_s): {what}, {self.steps} steps, "
                     f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
-                    "twice the step measures the error"
+                    "twice the step, on larger cells, measures the error"
                 )
         return lines
 
     def seconds(self, solid: Solid) -> float:
         """About how long all of it takes."""
         total = 0.0
-        for c, of_speed in self.g.items():
+        for c, of_speed in self.frictions.items():
             if FEM in self.methods:
                 for level in self.levels(solid, c):
                     n = level.unknowns
-                    total += _SET_UP * n**1.5 + len(of_speed) * _STAGE * 5 * level.steps * n**1.1
+                    total += (
+                        _SET_UP * n**1.5 + len(of_speed) * _STAGE * 5 * self.steps / level.every * n**1.1
+                    )
             if SIE in self.methods:
-                total += _SYMBOL * max(self.end / 0.2, self.steps / 2)
+                total += _SYMBOL * max(3.0 * self.end, self.steps)
         return total
 
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
-        """A coarser level with half as many steps, which tells the error, and that which is archived."""
-        digits = -log10(self.tolerance)
+        """A coarser level, which tells the error, and that which is archived.
+
+        The coarser one has half as many steps, a degree less, and cells that grow faster, so that
+        waves are taken for too short at little more than half the distance.
+        """
+        digits, gap = -log10(self.tolerance), solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        fast = Admittance.of(solid.response(c)).fastest
-        # A wave that goes out to the far boundary comes back to a punch that has moved. Implicit steps
-        # let it be felt a little earlier.
-        T = self.end * (1.0 + _EARLIER / self.steps)
-        ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
-        depth = sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
+        degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        size = _SIZE * min(1.0, (solid.limit() - c) / _SLOW) ** 0.5
-        mesh = Reached(max(ahead, 3.0), max(depth, 2.0), size, innermost)
-        return Level(mesh, degree - 1, self.steps // 2), Level(mesh, degree, self.steps)
+        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        growth = _GROWTH * 0.5 ** (digits - 3.0)
+        beyond = _HELD / self.tolerance if self.steady else 0.0
+        width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
+        coarse, fine = (
+            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond)
+            for of in (_GROWN * growth, growth)
+        )
+        return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
+
+    def _reach(self, fast: float, c: float) -> tuple[float, float]:
+        """Half-width and depth from which the fastest wave is not back before the end.
+
+        It comes back to a punch that has moved. Implicit steps let it be felt a little earlier.
+        """
+        T = self.end * (1.0 + _EARLIER / self.steps)
+        if len({way.direction for way in self.ways}) > 1:
+            return 1.0 + fast * T / 2.0 + c * max(way.duration for way in self.ways), fast * T / 2.0
+        ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
+        return ahead, sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
 
 
 def starts(scene: Scene) -> Starts | None:
@@ -140,36 +211,67 @@ def starts(scene: Scene) -> Starts | None:
     methods = tuple(name for name in (FEM, SIE) if name in scene.solve.methods)
     tolerance = scene.solve.tolerance
     _check(scene, methods)
+    load = load_of(scene)
+    largest = min(_STEP, load.shortest / _OF_RAMP)
+    step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.25
+    frictions = _frictions(scene)
+    ways = ways_at(scene, next(iter(frictions)), step)
+    alone = ""
+    if SIE in methods and scene.time.by_law:
+        alone = "it knows no way back, and friction that stays as it is"
+        methods = tuple(name for name in methods if name != SIE)
+        if not methods:
+            raise BadInput(f"solve.methods is sie only, but {alone}: expected fem, too")
+    found = Starts(frictions, methods, ways, load, scene.time.steady, tolerance, alone)
+    if FEM in methods:
+        _check_size(found, scene)
+    return found
+
+
+def _frictions(scene: Scene) -> dict[float, tuple[Friction, ...]]:
+    """Friction of all starts by speed.
+
+    Raises:
+        BadInput: there are too many, or their speed has no answer.
+    """
+    assert scene.time
     states = enumerate_states(scene)
-    pairs = np.unique(np.column_stack([states.columns["c"], states.g]), axis=0)
-    if len(pairs) > MOST:
+    c = states.columns["c"]
+    pairs = np.unique(np.column_stack([c, states.g]), axis=0)
+    found: dict[float, tuple[Friction, ...]] = {}
+    if scene.time.by_law:
+        speeds = np.unique(c).tolist()
+        if len(speeds) > 1 or speeds[0] == 0.0:
+            raise BadInput(
+                f'time.friction = "law": found {len(speeds)} speeds, the first {speeds[0]:g} over c_s; '
+                "expected one that is not 0, for strokes of another take another time"
+            )
+        found[speeds[0]] = frictions_at(scene, speeds[0])
+    else:
+        for speed, ratio in pairs.tolist():
+            found[speed] = (*found.get(speed, ()), constant(ratio))
+    if (many := sum(map(len, found.values()))) > MOST:
         raise BadInput(
-            f"time: the scene has {len(pairs)} states of different speed or friction, expected at most "
-            f"{MOST}, each of which starts from rest: shorten its lists"
+            f"time: the scene has {many} states of different speed or friction, expected at most "
+            f"{MOST}, each of which is followed in time: shorten its lists"
         )
     limit = scene.solid.limit()
-    if fast := [f"{c:g}" for c, _ in pairs if c >= limit]:
+    if fast := [f"{speed:g}" for speed in found if speed >= limit]:
         raise BadInput(
             f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)"
         )
-    g: dict[float, tuple[float, ...]] = {}
-    for c, ratio in pairs.tolist():
-        g[c] = (*g.get(c, ()), ratio)
-    step = scene.time.step or min(
-        _STEP * (tolerance / 1e-3) ** 0.25, scene.time.load_ramp / _OF_RAMP
-    )  # fmt: skip
-    steps = 2 * ceil(scene.time.end / step / 2.0 - 1e-9)
-    found = Starts(g, methods, scene.time.end, scene.time.load_ramp, tolerance, steps)
-    if FEM in methods:
-        for c in g:
-            _, level = found.levels(scene.solid, c)
-            if level.unknowns > LARGEST:
-                raise BadInput(
-                    f"time.end = {scene.time.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
-                    f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
-                    "end, a larger solve.tolerance, or a smaller Poisson's ratio"
-                )
     return found
+
+
+def _check_size(found: Starts, scene: Scene) -> None:
+    for c in found.frictions:
+        _, level = found.levels(scene.solid, c)
+        if level.unknowns > LARGEST:
+            raise BadInput(
+                f"time.end = {found.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
+                f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
+                "end, a larger solve.tolerance, or a smaller Poisson's ratio"
+            )
 
 
 def _check(scene: Scene, methods: tuple[str, ...]) -> None:
@@ -187,6 +289,8 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
     if not isinstance(scene.punch.profile, Flat):
         faults.append("a start from rest is known of flat punches")
+    if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
+        faults.append("strokes with a speed or a rest of their own are not followed in time")
     if scene.solve.mode != "contact":
         faults.append('a start from rest needs solve.mode = "contact"')
     if faults:

@@ -1,7 +1,6 @@
-"""Starts from rest of a scene: both methods, one speed after the other."""
+"""Motions in time of a scene: both methods, one speed after the other."""
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.errors import finite_elements_installed
+from galinx.app.plan.driving import Friction
 from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
@@ -21,12 +21,13 @@ from galinx.postprocess.quantities import work_over_time
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.solid import Solid
+from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.approach import approach
-from galinx.solvers.transient.punch import PLACES, StartingPunch, smooth
+from galinx.solvers.transient.punch import PLACES, StartingPunch
 
-#: Largest step of the integral equation's quadrature over a/c_s, of order five; polynomials.
-_STEP, _TERMS = 0.2, 24
+#: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
+#: steps within which the load comes on; polynomials there, and more at a tenth of it.
+_STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 _Found = dict[str, NDArray[np.float64]]
 #: A method and a speed.
@@ -46,7 +47,9 @@ def follow(
     if FEM in starts.methods:
         _import(clock)
     # Finite elements are the dearer ones, and the fastest of them.
-    jobs = [(name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.g)[::-1]]
+    jobs = [
+        (name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.frictions)[::-1]
+    ]
     found: dict[_Job, list[_Found]] = {}
     of = len(starts.methods) * starts.count
     for job, courses in _computed(jobs, lambda job: _courses(job, starts, solid, clock)):
@@ -73,51 +76,77 @@ def _computed(
 
 def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _Found:
     """Each start a row."""
-    t = starts.end / (starts.steps // 2) * np.arange(1, starts.steps // 2 + 1)
+    t = _times(starts)
     every = []
-    for c, of_speed in starts.g.items():
-        for i, g in enumerate(of_speed):
-            steady = FlatPunch(solid.response(c), g)
+    for c, of_speed in starts.frictions.items():
+        for i, friction in enumerate(of_speed):
+            g = np.array([friction(at) for at in t])
+            steady = FlatPunch(solid.response(c), g[-1])
             one = {
-                rows.SPEED.path: np.array(c), rows.RATIO.path: np.array(g),
+                rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
                 rows.STEADY_K_I.path: np.array(steady.K_I),
-                APPROACH.path: np.array(approach(solid, c, g).within(0.01)),
+                rows.CENTRES.path: _leans(solid.response(c), friction, t),
+                APPROACH.path: np.array(approach(solid, c, g[-1]).within(0.01)),
             }  # fmt: skip
             for method in (SIE, FEM):
                 one |= found[method, c][i] if method in starts.methods else {}
             every.append(one)
     joined = {path: np.array([one[path] for one in every]) for path in every[0]}
-    whole = {rows.TIMES.path: t, rows.LOAD.path: smooth(t, starts.ramp)} | joined
-    if SIE in starts.methods:
+    directions = np.concatenate([np.full(way.steps, float(way.direction)) for way in starts.ways])
+    whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t), rows.DIRECTION.path: directions} | joined
+    if SIE in starts.methods and not starts.steady:
         whole[work_over_time.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= to_steady.told(whole, name)
     return whole
 
 
+def _leans(response: Response, friction: Friction, t: NDArray) -> NDArray[np.float64]:
+    """Centre of the pressure over a if it were at once that of steady motion."""
+    ratios, which = np.unique([friction(at) for at in t], return_inverse=True)
+    steady = [FlatPunch(response, ratio) for ratio in ratios]
+    return np.array([one.β - one.α for one in steady])[which]
+
+
+def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
+    """Ends of steps, or of so many together."""
+    h = np.concatenate(
+        [np.full(way.steps // every, every * way.duration / way.steps) for way in starts.ways]
+    )
+    return np.asarray(np.cumsum(h))
+
+
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
-    half = starts.steps // 2
-    finer = int(np.ceil(starts.end / half / _STEP - 1e-9))
+    steps = starts.steps
+    largest = min(_STEP, starts.shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
+    finer = int(np.ceil(starts.end / steps / largest - 1e-9))
     response = solid.response(c)
+    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
+    every = slice(finer - 1, None, finer)
     with clock("integral equation in time"):
-        punch = StartingPunch(response, solid.limit(), starts.end, half * finer, _TERMS)
+        punch = StartingPunch(response, solid.limit(), starts.end, steps * finer, terms)
         found = []
-        for g in starts.g[c]:
-            course = punch.course(g, lambda t: smooth(t, starts.ramp))
-            values = course.v0, course.centre, course.K_left, course.K_right
-            works, sides = (
-                (course.work_of_load, course.work_of_friction),
-                (course.σ_XX_left, course.σ_XX_right),
-            )
-            found.append(
-                _named(SIE, [value[finer - 1 :: finer] for value in values])
-                | {
-                    row.path: value[finer - 1 :: finer]
-                    for row, value in zip(work_over_time.ALL, (*works, course.σ_YY, *sides))
-                }
-            )
+        for friction in starts.frictions[c]:
+            g, first = friction(0.0), float(starts.load(0.0))
+            course = punch.course(g, lambda t: starts.load(t) - first)
+            one = _named(SIE, [value[every] for value in _whole(course, FlatPunch(response, g), first)])
+            if not starts.steady:
+                values = (
+                    course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
+                    course.σ_XX_right,
+                )  # fmt: skip
+                one |= {row.path: value[every] for row, value in zip(work_over_time.ALL, values)}
+            found.append(one)
     return found
+
+
+def _whole(course: Any, steady: FlatPunch, first: float) -> tuple[NDArray, ...]:
+    """v₀, centre, and K_I at both ends: what a load adds to steady motion under a first share of it."""
+    with np.errstate(invalid="ignore"):
+        leaning = np.where(course.load == 0.0, 0.0, course.load * course.centre)
+    centre = (first * (steady.β - steady.α) + leaning) / (first + course.load)
+    return course.v0, centre, first * steady.K_I + course.K_left, first * steady.K_I + course.K_right
 
 
 def _named(method: str, values: Any) -> _Found:
@@ -126,55 +155,61 @@ def _named(method: str, values: Any) -> _Found:
 
 def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
-    load = smooth(coarse[0][1], starts.ramp)
+    load = starts.load(_times(starts, 2))
     found = []
-    for (before, _, _), (values, _, energies) in zip(coarse, fine):
+    for friction, (before, _), (values, energies) in zip(starts.frictions[c], coarse, fine):
         every_other = [value[1::2] for value in values]
+        # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
+        lean = _leans(solid.response(c), friction, _times(starts)) if starts.changing else np.zeros(1)
         found.append(
-            _named(FEM, every_other)
+            _named(FEM, values)
             | {
-                rows.ESTIMATE.path: np.array(largest_change(before, every_other, load)),
-                rows.WORK.path: energies[0][1::2], rows.ENERGY.path: energies[1][1::2],
+                rows.ESTIMATE.path: np.array(largest_change(before, every_other, load, lean)),
+                **dict(zip((row.path for row in (rows.WORK, rows.ENERGY, rows.ABSORBED)), energies)),
             }
         )  # fmt: skip
     return found
 
 
-def _constant(g: float, _: float) -> float:
-    return g
-
-
-def _share(ramp: float, t: float) -> float:
-    return float(smooth(np.array(t), ramp))
-
-
 def _import(clock: Clock) -> None:
     """On every rank, for PETSc begins on all of them or waits for the others for ever."""
     with clock("import of dolfinx"), finite_elements_installed():
-        import galinx.solvers.fem.start  # noqa: F401
+        import galinx.solvers.fem.in_time  # noqa: F401
 
 
 def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
-    """Values, times, and work with energy of each friction at a speed."""
+    """Values, and work with energies of each friction at a speed."""
     from mpi4py import MPI
 
     from galinx.solvers.fem.distributed import distribute
     from galinx.solvers.fem.dynamic import Motion
+    from galinx.solvers.fem.in_time import Phase, SlidingInTime
     from galinx.solvers.fem.space import Space
-    from galinx.solvers.fem.start import StartFromRest
 
     response = solid.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
     motion = Motion(Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock), response)
-    solver = StartFromRest(motion, starts.end / level.steps, clock)
+    solver = SlidingInTime(motion, clock)
+    phases = [Phase(way.direction, way.duration, way.steps // level.every) for way in starts.ways]
     found = []
     with clock("steps in time"):
-        for g in starts.g[c]:
-            run = solver.run(level.steps, partial(_constant, g), partial(_share, starts.ramp))
-            steady = FlatPunch(response, g)
-            read = told(motion.X, run.forces, steady.α, steady.β)
-            values = run.v0, read.centre, read.K_left, read.K_right
-            found.append((values, run.t, (run.work, run.energy)))
+        for g in starts.frictions[c]:
+            run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady)
+            values = _read(run, g, motion, level.degree, starts.tells_K_I)
+            found.append((values, (run.work, run.energy, run.absorbed)))
     solver.destroy()
     return found
+
+
+def _read(run: Any, g: Friction, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
+    """v₀, centre, and K_I at both ends, by the exponents of the friction at each time, NaN for untold."""
+    ratios = np.array([g(t) for t in run.t])
+    read = np.empty((3, len(ratios)))
+    for ratio in np.unique(ratios):
+        at, steady = ratios == ratio, FlatPunch(motion.response, ratio)
+        one = told(motion.X, run.forces[at], steady.α, steady.β, degree)
+        read[:, at] = one.centre, one.K_left, one.K_right
+    if not tells_K_I:
+        read[1:] = np.nan
+    return run.v0, *read

@@ -173,17 +173,23 @@ class Output:
 
 @dataclass(frozen=True)
 class Time:
-    """[time]: a start from rest; times over a/c_s.
+    """[time]: what happens over time; times over a/c_s.
 
     Attributes:
         end: last time.
         step: of the finite elements, None where the tolerance sets it.
         load_ramp: time within which the load comes on.
+        load: times and shares of N instead of that, from t = 0 on, or none.
+        steady: does it begin in steady motion, not at rest?
+        by_law: does friction change by its law along the strokes, or stay that of a state?
     """
 
     end: float
     step: float | None
     load_ramp: float
+    load: tuple[tuple[float, float], ...] = ()
+    steady: bool = False
+    by_law: bool = False
 
 
 @dataclass(frozen=True)
@@ -196,7 +202,7 @@ class Scene:
         half_plane, punch, friction, motion, solve, output: its sections.
         slider: a mass on a spring, None for none.
         layers: on the solid, from the top down.
-        time: of a start from rest, None for none.
+        time: what happens over time, None for none.
     """
 
     title: str

@@ -1,5 +1,6 @@
 """Sections of a scene: every key with its kind, default and meaning."""
 
+from itertools import pairwise
 from typing import Any
 
 from galinx.app.run.methods import METHODS, MODES
@@ -49,10 +50,26 @@ def _slider(damping: float, **given: float | None) -> Slider | None:
     return Slider(damping=damping, **given)  # type: ignore[arg-type]
 
 
-def _time(end: float | None, step: float | str, load_ramp: float) -> Time | None:
+def _time(
+    end: float | None, step: float | str, load_ramp: float,
+    load: tuple[tuple[float, float], ...] | None, start: str, friction: str,
+) -> Time | None:  # fmt: skip
     if end is None:
         return None
-    return Time(end, None if isinstance(step, str) else step, load_ramp)
+    steady = start == "steady"
+    if load:
+        times = [t for t, _ in load]
+        if times[0] != 0.0 or any(later <= t for t, later in pairwise(times)):
+            raise ValueError(f"load: found times {times}, expected 0 first, then ever later ones")
+        if not steady and load[0][1] != 0.0:
+            raise ValueError(
+                f"load: found {load[0][1]:g} of N at t = 0, expected 0 where it starts at rest"
+            )
+        if faults := [f"{share:g}" for _, share in load[not steady :] if share <= 0.0]:
+            raise ValueError(f"load: found {faults[0]} of N, expected more than 0: the punch stays down")
+    return Time(
+        end, None if isinstance(step, str) else step, load_ramp, load or (), steady, friction == "law"
+    )
 
 
 _SOLID_KEYS = {
@@ -167,8 +184,8 @@ _SLIDER_KEYS = {
 
 _TIME_KEYS = {
     "end": Key(
-        Number("", Range(at_least=1.0, at_most=200.0)), "last time over a/c_s", None,
-        "the start from rest of a flat punch at constant speed and friction, of every state",
+        Number("", Range(at_least=0.1, at_most=200.0)), "last time over a/c_s", None,
+        "what a flat punch does until then, of every state, or of every law",
     ),
     "step": Key(
         OrAuto(Number("", Range(at_least=1e-3, at_most=1.0))), "step of the finite elements over a/c_s",
@@ -178,6 +195,18 @@ _TIME_KEYS = {
         Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
         3.0,
         "N times 10s³ - 15s⁴ + 6s⁵, s = t/load_ramp",
+    ),
+    "load": Key(
+        Rows(("", ""), 1), "times over a/c_s and load over N there, instead of load_ramp", None,
+        "from t = 0 on; between two points it changes like that, too",
+    ),
+    "start": Key(
+        Choice(("rest", "steady")), "what there is at t = 0", "rest",
+        '`"steady"`: the steady motion of friction and load at t = 0',
+    ),
+    "friction": Key(
+        Choice(("constant", "law")), "friction over time", "constant",
+        '`"law"`: by the law along motion.strokes, one after the other; `"constant"`: that of each state',
     ),
 }  # fmt: skip
 

@@ -1,8 +1,9 @@
-"""Starts from rest: what a pressure and its punch do over time."""
+"""Motions in time: what a pressure and its punch do over time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -25,18 +26,18 @@ class Start:
         label: names it in a legend.
         curves: of each panel, (times,) each.
         beside: the same by another method, or none.
-        steady: centre of the pressure over a in steady motion.
+        steady: centre of the pressure over a if it were at once that of steady motion, (times,).
     """
 
     label: str
     curves: Sequence[NDArray]
     beside: Sequence[NDArray]
-    steady: float
+    steady: NDArray
 
 
 @styled
 def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -> Figure:
-    """Four panels over time.
+    """A panel over time for each of the curves that is not NaN.
 
     Args:
         t: times over a/c_s.
@@ -48,9 +49,13 @@ def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -
     legend = Legend([handle(look, start.label) for look, start in zip(styles, starts)], size.width)
     wide = size.width > 4.5
     room = Room(0.6, 0.1, 0.42 + legend.height, 0.2, 0.65, 0.5)
-    figure, axes = panels(2 if wide else 4, 2 if wide else 1, size, 0.62, room)
+    shown = [
+        n for n in range(len(_LABELS)) if any(np.isfinite(start.curves[n]).any() for start in starts)
+    ]
+    across = 2 if wide else 1
+    figure, axes = panels(len(shown) // across, across, size, 0.62, room)
     every = max(len(t) // _POINTS, 1)
-    for n, (axis, label) in enumerate(zip(axes.flat, _LABELS)):
+    for axis, n in zip(axes.flat, shown):
         for look, start in zip(styles, starts):
             axis.plot(t, start.curves[n], color=look.colour, linestyle=look.line)
             if start.beside:
@@ -63,8 +68,8 @@ def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -
                     mfc="none",
                 )
             if n == 0:
-                axis.axhline(start.steady, color=look.colour, linewidth=0.4, linestyle=":", zorder=0)
-        axis.set(xlabel="time $t/(a/c_s)$", ylabel=label, xlim=(0.0, t[-1]))
+                axis.plot(t, start.steady, color=look.colour, linewidth=0.7, linestyle=":", zorder=0)
+        axis.set(xlabel="time $t/(a/c_s)$", ylabel=_LABELS[n], xlim=(0.0, t[-1]))
     lettered(axes.flat)
     legend.put(figure)
     return figure

@@ -1,6 +1,8 @@
-"""What happens over time where a punch is pressed on and slides from rest, one row for each start."""
+"""What happens over time where a punch is pressed on and slides, one row for each start."""
 
-from galinx.postprocess.quantities.quantity import FEM, QUANTITIES, SIE, Quantity
+from typing import Any
+
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Word of output.quantities.
@@ -19,30 +21,43 @@ def _row(
 
 
 SPEED = _row("c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE)
-RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start", (START,))
+RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
+RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
+DIRECTION = _row("direction", "1", "direction of motion over time, 1 or -1", (INSTANT,))
 TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE)
 STEADY_CENTRE = _row(
     "steady_centre", "1", "centre of the pressure in steady motion over the half-width, closed form",
     (START,),
 )  # fmt: skip
+CENTRES = _row(
+    "steady_centres", "1",
+    "centre of the pressure over the half-width if it were at once that of steady motion",
+    (START, INSTANT),
+)  # fmt: skip
 STEADY_K_I = _row(
     "steady_K_I", "1", "stress intensity factor in steady motion, both ends, closed form", (START,)
 )
 
 
-def _by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
+def _by_method(name: str, unit: str, about: str, **others: Any) -> dict[str, Quantity]:
     how = {FEM: "finite elements", SIE: "integral equation"}
     return {
-        method: _row(f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method)
+        method: _row(
+            f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method, **others
+        )
         for method, told in how.items()
     }
 
 
 V0 = _by_method("v0", "N/(2mu)", "indentation since the punch touched")
 CENTRE = _by_method("centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X")
-K_I_LEFT = _by_method("K_I_left", "1", "stress intensity factor over time at X = -a by the final load")
-K_I_RIGHT = _by_method("K_I_right", "1", "stress intensity factor over time at X = a by the final load")
+K_I_LEFT = _by_method(
+    "K_I_left", "1", "stress intensity factor over time at X = -a by the final load", nan_allowed=ANYWHERE
+)
+K_I_RIGHT = _by_method(
+    "K_I_right", "1", "stress intensity factor over time at X = a by the final load", nan_allowed=ANYWHERE
+)
 WORK = _row(
     "fem/work", "N^2/(4mu)", "work of the contact's forces by velocities seen from the punch",
     (START, INSTANT), method=FEM,
@@ -50,6 +65,10 @@ WORK = _row(
 ENERGY = _row(
     "fem/energy", "N^2/(4mu)",
     "energy of the motion seen from the punch, kinetic and strain less that of being carried along",
+    (START, INSTANT), method=FEM,
+)  # fmt: skip
+ABSORBED = _row(
+    "fem/absorbed", "N^2/(4mu)", "energy of waves that cells far away are too large for",
     (START, INSTANT), method=FEM,
 )  # fmt: skip
 ESTIMATE = _row(

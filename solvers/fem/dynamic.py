@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from galinx.solvers.fem import adapter, cells
+from galinx.solvers.fem.coarse import damping
 from galinx.solvers.fem.element import Element
 from galinx.solvers.fem.forms import carried_density, momentum_density
 from galinx.solvers.fem.lagrange import lagrange
@@ -21,7 +22,7 @@ from galinx.solvers.solids.solid import Response
 
 @dataclass(frozen=True)
 class Motion:
-    """Equations M ü - 2c B u̇ + K u = forces of a space on one rank, in the physical chart.
+    """Equations M ü + (D - 2c B) u̇ + K u = forces of a space on one rank, in the physical chart.
 
     Node i has the unknowns 2i and 2i + 1.
 
@@ -44,13 +45,18 @@ class Motion:
 
     @cached_property
     def M(self) -> csr_matrix:
-        """Of momentum."""
-        return self._sum(_tensor(self._products[0], momentum_density()))
+        """Of momentum, of one component: the other has the same."""
+        return self._sum(_of_component(self._products[0], momentum_density()))
 
     @cached_property
     def B(self) -> csr_matrix:
-        """Of what is carried along, u,X·w."""
-        return self._sum(_tensor(self._products[1], carried_density()))
+        """Of what is carried along, u,X·w, of one component."""
+        return self._sum(_of_component(self._products[1], carried_density()))
+
+    @cached_property
+    def D(self) -> csr_matrix:
+        """Of waves that far cells are too large for, of one component."""
+        return self._sum(damping(self.space))
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:
@@ -103,21 +109,29 @@ class Motion:
         return np.array(mass), np.array(gradient)
 
     def _sum(self, matrices: NDArray) -> csr_matrix:
-        nodes = adapter.cell_nodes(self.space.V)
-        dofs = (2 * nodes[:, :, None] + np.arange(2, dtype=np.int32)).reshape(len(nodes), -1)
+        dofs = adapter.cell_nodes(self.space.V)
+        components = matrices.shape[1] // dofs.shape[1]
+        dofs = components * dofs[:, :, None] + np.arange(components, dtype=np.int32)
+        dofs = dofs.reshape(len(dofs), -1)
         rows = np.broadcast_to(dofs[:, :, None], matrices.shape)
         columns = np.broadcast_to(dofs[:, None, :], matrices.shape)
+        size = components * self.size // 2
         entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
-        return coo_matrix(entries, shape=(self.size, self.size)).tocsr()
+        return coo_matrix(entries, shape=(size, size)).tocsr()
 
 
-def _tensor(products: NDArray, density: NDArray) -> NDArray[np.float64]:
-    """Element matrices of two components from those of scalars.
+def _of_component(products: NDArray, density: NDArray) -> NDArray[np.float64]:
+    """Element matrices of one component from products of shapes: it meets only itself, both alike.
 
     Args:
         products: (cells, axes, a, b).
         density: by components of the test, and of the trial with its axes, (2, 2·axes).
     """
-    m, axes, n, _ = products.shape
-    by_components = density.reshape(2, 2, axes)
-    return np.einsum("mxab,ijx->maibj", products, by_components, optimize=True).reshape(m, 2 * n, 2 * n)
+    return np.einsum("mxab,x->mab", products, density[0, : products.shape[1]])
+
+
+def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
+    """A @ w, where A is of one component and w has both of each node."""
+    found = np.empty_like(w)
+    found[0::2], found[1::2] = A @ w[0::2], A @ w[1::2]  # SciPy is slow with two columns
+    return found

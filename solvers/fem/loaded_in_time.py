@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import identity, kron
 
 from galinx.clock import Clock
-from galinx.solvers.fem.dynamic import Motion
+from galinx.solvers.fem.dynamic import Motion, of_both
 from galinx.solvers.fem.scheme import TIMES, A, γ
 from galinx.solvers.fem.surface import surface_facets
 from galinx.solvers.fem.traction import Traction, consistent_forces
@@ -48,7 +49,8 @@ class LoadedInTime:
     def __init__(self, motion: Motion, h: float, clock: Clock | None = None) -> None:
         self._motion, self._h = motion, h
         with (clock := clock or Clock())("assembly"):
-            S = motion.M - 2.0 * motion.response.c * γ * h * motion.B + (γ * h) ** 2 * motion.K
+            carried = motion.M - 2.0 * motion.response.c * γ * h * motion.B
+            S = kron(carried, identity(2)) + (γ * h) ** 2 * motion.K
         held = np.zeros(motion.size, dtype=bool)
         held[2 * motion.far] = held[2 * motion.far + 1] = True
         self._free = np.flatnonzero(~held)
@@ -84,7 +86,7 @@ class LoadedInTime:
             for weights, time in zip(A, TIMES):
                 before = u + h * sum(of * one for of, one in zip(weights, velocities))
                 given = w + h * sum(of * one for of, one in zip(weights, accelerations))
-                b = M @ given + γ * h * (load(h * (n + time)) * f - K @ before)
+                b = of_both(M, given) + γ * h * (load(h * (n + time)) * f - K @ before)
                 now = np.zeros(len(f))
                 now[free] = self.factor.solve(b[free])
                 velocities.append(now)
@@ -98,7 +100,8 @@ class LoadedInTime:
         """Accelerations at rest by forces that are there at once."""
         a = np.zeros(len(f))
         if f.any():
-            factor = UnsymmetricFactor(self._motion.M[self._free][:, self._free].tocsr(), Clock())
+            M = kron(self._motion.M, identity(2)).tocsr()
+            factor = UnsymmetricFactor(M[self._free][:, self._free].tocsr(), Clock())
             a[self._free] = factor.solve(f[self._free])
             factor.destroy()
         return a

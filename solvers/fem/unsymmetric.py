@@ -61,13 +61,22 @@ class UnsymmetricFactor:
                 found = np.array(y.array_r)
                 x.destroy(), y.destroy()
             else:
-                found = np.column_stack([self.solve(column) for column in b.T])
+                found = self._many(b)
         if not self._checked or b.ndim == 2:
             left = float(np.linalg.norm(self._A @ found - b)) / max(float(np.linalg.norm(b)), 1e-300)
             if np.any(b) and not left <= _RESIDUAL:
                 raise SolveError(f"a linear solve left |b - Ax|/|b| = {left:.3g}, expected {_RESIDUAL:g}")
             self._checked = True
         return found
+
+    def _many(self, b: NDArray) -> NDArray[np.float64]:
+        given = PETSc.Mat().createDense(b.shape, array=np.asfortranarray(b), comm=PETSc.COMM_SELF)
+        found = PETSc.Mat().createDense(b.shape, comm=PETSc.COMM_SELF)
+        found.setUp()
+        self._mumps.matSolve(given, found)
+        values = np.array(found.getDenseArray())
+        given.destroy(), found.destroy()
+        return values
 
     def destroy(self) -> None:
         """Free the factors' memory now."""

@@ -46,7 +46,7 @@ def found_and_expected(mesh, c, end, steps, degree, ramp, g=0.0):
 def reached(c, end, size, innermost):
     """As far as no wave is back within 2 a."""
     return Reached(
-        (FAST + c) * end / 2.0 + 2.0, max(FAST * end / 2.0 + 0.5, 2.0), size, innermost
+        (FAST + c) * end / 2.0 + 2.0, max(FAST * end / 2.0 + 0.5, 2.0), size, 0.0, innermost
     ).drawn()
 
 

@@ -8,8 +8,8 @@ from galinx.meshes.rings import TAGS
 from galinx.postprocess.over_time import told
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.dynamic import Motion
+from galinx.solvers.fem.in_time import Phase, SlidingInTime
 from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.start import StartFromRest
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
@@ -23,15 +23,17 @@ class ByFiniteElements:
     """Of one speed."""
 
     def __init__(self, solid, c, end, steps, degree=7, innermost=1e-5):
-        self.response, self.steps = solid.response(c), steps
+        self.response, self.end, self.steps, self.degree = solid.response(c), end, steps, degree
         fast, T = Admittance.of(self.response).fastest, end * (1.0 + 16.0 / steps)
-        mesh = Reached(1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0, 2.0, innermost).drawn()
+        width, depth = 1.0 + T * (fast**2 - c**2) / (2.0 * fast), fast * T / 2.0
+        mesh = Reached(width, depth, 2.0, 0.15, innermost).drawn()
         space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
         self.motion = Motion(space, self.response)
-        self.solver = StartFromRest(self.motion, end / steps)
+        self.solver = SlidingInTime(self.motion)
 
     def run(self, g, load):
-        return self.solver.run(self.steps, lambda t: g, lambda t: float(load(t)))
+        way = Phase(1, self.end, self.steps)
+        return self.solver.run([way], lambda t: g, lambda t: float(load(t)))
 
     def told(self, run, α, β):
-        return told(self.motion.X, run.forces, α, β)
+        return told(self.motion.X, run.forces, α, β, self.degree)

@@ -1,0 +1,162 @@
+"""What is done to a punch over time: how its load comes on, which way it goes, what its friction is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import ceil
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from galinx.app.errors import BadInput
+from galinx.app.scene.scene import Scene
+from galinx.solvers.friction.integrate import INTEGRATORS
+from galinx.solvers.friction.strokes import follow
+from galinx.solvers.transient.punch import smooth
+
+#: Places of a stroke between which friction is interpolated; steps of a stroke at least.
+_PLACES, _OF_STROKE = 801, 12
+
+
+@dataclass(frozen=True)
+class Load:
+    """The load over time, smooth from each point to the next.
+
+    Attributes:
+        points: time over a/c_s and share of N, from t = 0 on.
+    """
+
+    points: tuple[tuple[float, float], ...]
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Share of N at times t."""
+        t = np.asarray(t, dtype=float)
+        found = np.full(t.shape, self.points[0][1])
+        for (before, low), (after, high) in pairwise(self.points):
+            found = found + (high - low) * smooth(t - before, after - before)
+        return found
+
+    @property
+    def shortest(self) -> float:
+        """Shortest time within which it changes, infinite if it does not."""
+        return min((after[0] - before[0] for before, after in pairwise(self.points)), default=np.inf)
+
+
+@dataclass(frozen=True)
+class Way:
+    """A stroke, or what there is time for of it.
+
+    Attributes:
+        direction: ±1.
+        duration: over a/c_s.
+        steps: of the finite elements, an even number.
+    """
+
+    direction: int
+    duration: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Friction:
+    """σ_XY/σ_YY under the punch over time.
+
+    Attributes:
+        starts: times at which strokes begin over a/c_s.
+        along: of each, by the time since then.
+    """
+
+    starts: tuple[float, ...]
+    along: tuple[Callable[[float], float], ...]
+
+    def __call__(self, t: float) -> float:
+        """At a time over a/c_s; where a stroke ends, that at its end."""
+        at = max(int(np.searchsorted(self.starts, t - 1e-9 * (1.0 + t), side="left")) - 1, 0)
+        return float(self.along[at](t - self.starts[at]))
+
+    @cached_property
+    def constant(self) -> float | None:
+        """Its value, None where it changes."""
+        return self.along[0](0.0) if isinstance(self.along[0], _Constant) else None
+
+
+@dataclass(frozen=True)
+class _Constant:
+    value: float
+
+    def __call__(self, _: float) -> float:
+        return self.value
+
+
+def constant(g: float) -> Friction:
+    """Friction that does not change."""
+    return Friction((0.0,), (_Constant(g),))
+
+
+def load_of(scene: Scene) -> Load:
+    """The load that a scene asks for."""
+    assert scene.time
+    if scene.time.load:
+        return Load(scene.time.load)
+    return Load(((0.0, 1.0),) if scene.time.steady else ((0.0, 0.0), (scene.time.load_ramp, 1.0)))
+
+
+def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
+    """Strokes one after the other at a speed until the end, in steps of at most so much.
+
+    Raises:
+        BadInput: they are over before.
+    """
+    assert scene.time
+    end = scene.time.end
+    if not scene.time.by_law:
+        return (_way(1, end, largest),)
+    ways, t = [], 0.0
+    for leg in scene.legs:
+        duration = leg.length * _whole(scene) / c
+        # A step less than a millionth of a stroke is rounding.
+        if (left := min(duration, end - t)) > 1e-6 * duration:
+            ways.append(_way(leg.s, left, min(largest, duration / _OF_STROKE)))
+            t += left
+    if end - t > 1e-6 * end:
+        raise BadInput(
+            f"time.end = {end:g} a/c_s: the strokes are over at {t:.6g} a/c_s at c = {c:g}, expected no "
+            'later end, more strokes, or time.friction = "constant"'
+        )
+    return tuple(ways)
+
+
+def _way(direction: int, duration: float, largest: float) -> Way:
+    return Way(direction, duration, 2 * ceil(duration / largest / 2.0 - 1e-9))
+
+
+def _whole(scene: Scene) -> float:
+    """Length of a stroke over a."""
+    return scene.friction.pre_sliding / scene.body.half_width
+
+
+def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
+    """Friction by each law of a scene along its strokes at a speed, from rest at X = 0.
+
+    Raises:
+        BadInput: the law refuses its parameters.
+    """
+    friction, length, V = scene.friction, scene.friction.pre_sliding, c * scene.solid.c_s
+    shares = np.linspace(0.0, 1.0, _PLACES)
+    places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]
+    durations = np.array([leg.length * _whole(scene) / c for leg in scene.legs])
+    starts = (0.0, *np.cumsum(durations)[:-1].tolist())
+    found = []
+    try:
+        for law in friction.laws():
+            strokes = follow(law, scene.legs, length, places, V, INTEGRATORS[friction.integrator])
+            along = [
+                PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
+                for stroke, duration in zip(strokes, durations)
+            ]
+            found.append(Friction(starts, tuple(along)))
+    except ValueError as error:
+        raise BadInput(f"friction: {error}") from None
+    return tuple(found)

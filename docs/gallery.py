@@ -13,6 +13,7 @@ SHOWN = {
     "fig6": ("friction", "μ_C sets the height, σ₀l/N how soon it comes, δ how round the corner is."),
     "fig5": ("surface", "Pressure and tension lead at the trailing edge, X = -a in forward motion."),
     "fig7": ("surface", "The same at 0.6 of the shear wave speed: tension beside the punch is larger."),
+    "study_in_time": ("time", "The same stroke in time: over before the pressure has begun to lean."),
     "high_speed": ("surface", "From rest to c = 0.9: what σ_XX does where the pressure hardly changes."),
     "fig8": ("surface", "A larger μ_C leans the pressure to one end and raises the tension there."),
     "fig9": ("surface", "A stiffer contact comes nearer to full slip at the same place of the stroke."),

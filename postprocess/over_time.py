@@ -1,14 +1,16 @@
 """What is read off contact forces that change in time: centre of the pressure, and K_I at both ends."""
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
-#: Moments of the pressure that elements of degree p tell, 2p and so many, and how many fewer polynomials
-#: its smooth factor has: a wave that runs little faster than the punch is short under it.
-_MOMENTS, _FEWER = 4, 4
+#: Moments of the pressure that elements tell, over their degree: what they are tested with has to be held
+#: by them, too. And how many fewer polynomials the smooth factor has: a wave that runs little faster than
+#: the punch is short under it.
+_MOMENTS, _FEWER = 2.5, 4
 #: Points that give moments of r log r.
 _POINTS = 400
 
@@ -39,7 +41,7 @@ def told(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> Told
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
         degree: of the elements.
     """
-    moments = 2 * degree + _MOMENTS
+    moments = ceil(_MOMENTS * degree)
     polynomials = moments - _FEWER
     a = forces @ _tests(X, α, β, moments)
     with np.errstate(

@@ -29,7 +29,7 @@ MOST, LARGEST = 24, 300_000
 #: Tolerances that can be reached.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
-_STEP, _OF_RAMP = 0.4, 7
+_STEP, _OF_RAMP = 0.4, 8
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
@@ -213,7 +213,7 @@ def starts(scene: Scene) -> Starts | None:
     _check(scene, methods)
     load = load_of(scene)
     largest = min(_STEP, load.shortest / _OF_RAMP)
-    step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.25
+    step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     frictions = _frictions(scene)
     ways = ways_at(scene, next(iter(frictions)), step)
     alone = ""

@@ -65,7 +65,7 @@ def test_a_step_may_be_given_and_states_of_one_friction_start_once():
     more = {"motion.strokes": ["forward", "forward"], "time.step": 0.25, "solve.methods": ["sie"]}
     data = computed("start_from_rest", QUICK | more).data
     assert len(data["states/f"]) == 2
-    assert data["time/sie/v0"].shape == (1, 6)
+    assert data["time/sie/v0"].shape == (1, 12)
     assert "time/fem/v0" not in data
 
 
@@ -83,17 +83,56 @@ def test_fibres_start_by_both_methods():
     assert result.attributes["verdict"] == "PASS"
 
 
+def test_unloading_from_steady_motion_by_both_methods():
+    changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [2.0, 0.5]]}
+    result = computed("start_from_rest", changes)
+    data = result.data
+    assert result.attributes["verdict"] == "PASS"
+    assert data["time/load"][-1] == 0.5
+    # The punch rises, and what leaned to the trailing side leans more: half of it is as it was.
+    assert data["time/fem/v0"][0, -1] < -0.1
+    assert data["time/fem/centre_of_pressure"][0, -1] < 1.5 * data["time/steady_centre"][0] < 0.0
+
+
+def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
+    """Friction grows as along the strokes of the states; where they turn the direction does."""
+    changes = {
+        "solve.tolerance": 1e-2, "time.end": 0.9, "friction.pre_sliding": 3e-4, "time.step": 0.05,
+        "motion.X_over_L": [0.0, 0.5],
+    }  # fmt: skip
+    data = computed("study_in_time", changes).data
+    t, ratio = data["time/t"], data["time/ratio"][0]
+    np.testing.assert_array_equal(data["time/direction"], np.where(t < 0.5 + 1e-9, 1.0, -1.0))
+    middle = np.argmin(np.abs(t - 0.25))
+    assert t[middle] == pytest.approx(0.25)
+    assert ratio[middle] == pytest.approx(data["states/g"][1], rel=1e-6)
+    lean = data["time/fem/centre_of_pressure"][0, : len(t) // 2]
+    assert np.abs(lean).max() < 0.3 * np.abs(data["time/steady_centres"][0, : len(t) // 2]).max()
+    assert np.isnan(data["time/fem/K_I_left"]).all()
+    assert data["time/fem/estimate"][0] > 0.0
+
+
 @pytest.mark.parametrize(
     "changes, said",
     [
         ({"solve.tolerance": 1e-7}, "found 1e-07, expected 1e-05 to 0.01"),
         ({"solve.methods": ["closed_form"]}, "neither fem nor sie"),
         ({"motion.c": 0.95}, "is not below the Rayleigh speed"),
-        ({"time.end": 200.0}, "unknowns"),
+        ({"time.end": 200.0, "solve.tolerance": 1e-5}, "unknowns"),
         ({"solid.nu": 0.495}, "ν is not near 1/2"),
         ({"friction.mu_c": [0.01 * i for i in range(1, 30)]}, "expected at most 24"),
         ({"output.quantities": ["friction"]}, "go together"),
         ({"time.step": "coarse"}, "time.step"),
+        ({"time.load": [[0.0, 0.5], [1.0, 1.0]]}, "expected 0 where it starts at rest"),
+        ({"time.load": [[0.0, 0.0], [1.0, -1.0]]}, "the punch stays down"),
+        ({"time.load": [[1.0, 0.0], [0.5, 1.0]]}, "expected 0 first, then ever later ones"),
+        ({"time.friction": "law"}, "the strokes are over at"),
+        ({"time.friction": "law", "motion.c": [0.1, 0.2]}, "found 2 speeds"),
+        (
+            {"time.friction": "law", "motion.rest": 1.0, "motion.strokes": ["forward", "backward"]},
+            "a rest of their own",
+        ),
+        ({"time.friction": "law", "solve.methods": ["sie"], "time.end": 0.1}, "sie only"),
     ],
 )
 def test_what_has_no_answer_is_refused(changes, said):

@@ -34,9 +34,9 @@ def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         starts.append(Start(label, curves, beside, float(steady[i])))
     caption = (
         f"From rest to steady sliding, {METHODS[method]}"
-        f"{f', points: {METHODS[other]}' * bool(other)}: centre of the pressure, whose dotted line is "
-        "that of steady motion, indentation since the punch touched, and K_I at both ends by the final "
-        f"load, over time. The load comes on within {scene.time.load_ramp:g} a/c_s."  # type: ignore[union-attr]
+        f"{f', points: {METHODS.get(other)}' * bool(other)}: centre of the pressure, whose dotted line "
+        "is that of steady motion, indentation since the punch touched, and K_I at both ends by the "
+        f"final load, over time. The load comes on within {scene.time.load_ramp:g} a/c_s."  # type: ignore[union-attr]
     )
     left = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
     return Drawing(

@@ -86,6 +86,7 @@ def test_integral_equation_knows_the_mirror_image():
     class Backwards:
         c, n, q, n12 = -response.c, response.n, response.q, 0.0
         c11, c12, c16, c22, c26 = response.c11, response.c12, 0.0, response.c22, 0.0
+        σ_XX = response.σ_XX
 
     forward = integral_equation(0.25, 0.5, -0.6, 4.0, 20)
     punch = StartingPunch(Backwards, solid().limit(), 4.0, 20, 16)

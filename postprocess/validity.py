@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -33,9 +34,17 @@ class Steady:
     within: Callable[[float, float], float]
     unit: float
 
-    def words(self, c: float, g: float, crossings: float) -> str:
-        """Against a stroke in which a wave crosses the contact so often."""
+    def words(self, c: float, g: float, crossings: float, too_short: bool = False) -> str:
+        """Against a stroke in which a wave crosses the contact so often; "" where it never is steady.
+
+        Args:
+            c, g: speed over c_s and σ_XY/σ_YY.
+            crossings: of the stroke.
+            too_short: "" where it is not, too.
+        """
         needed, lasts = self.within(c, g), 2.0 * crossings
+        if not isfinite(needed) or (too_short and lasts >= needed):
+            return ""
         return (
             f"from rest it takes {needed:.3g} a/c_s ({needed * self.unit:.3g} s) to come within 1 % of "
             f"it, at c = {c:.4g}, and the stroke lasts {lasts:.3g} a/c_s ({lasts * self.unit:.3g} s)"
@@ -104,19 +113,19 @@ class Validity:
         told = {name: f"{self._worst[name]:.3g}" for name in self._worst}
         some = {name: f"{n} state{'s' * (n > 1)}" for name, n in self._states.items()}
         if "crossings" in told:
+            text = self._steady.words(*self._shortest) if self._steady and self._shortest else ""
             yield (
                 "in a stroke a shear wave crosses the contact "
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
                 f"{some['crossings']}: the steady state that is told is a limit which such a stroke does "
-                "not reach"
-                + (f"; {self._steady.words(*self._shortest)}" if self._steady and self._shortest else "")
+                "not reach" + f"; {text}" * bool(text)
             )
         if (
             self._steady
             and self._fastest
-            and 2.0 * self._fastest[2] < self._steady.within(*self._fastest[:2])
+            and (text := self._steady.words(*self._fastest, too_short=True))
         ):
-            yield f"the steady state is told, but {self._steady.words(*self._fastest)}"
+            yield f"the steady state is told, but {text}"
         if "ratio" in told:
             yield (
                 f"|σ_XY/σ_YY| is up to {told['ratio']}, and at least {STEEP:g} in {some['ratio']}: such "

@@ -75,7 +75,10 @@ _FIGURES = {
     "angles": _Figure(set(), lambda data, scene, _: angles.has(scene), angles.angles),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
-    FILM: _Figure({"states", "quantities", "method"}, film.has, _no_figure),
+    FILM: _Figure(
+        {"states", "quantities", "method"},
+        lambda data, scene, choice: film.has(data, scene, choice) or pressures.has(data), _no_figure,
+    ),
 }  # fmt: skip
 
 
@@ -105,7 +108,8 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
         choice = replace(choice, figures=(FILM,))
     wanted = names(data, scene, choice)
     files.check(wanted)
-    made = (lambda: film.film(data, scene, choice)) if FILM in wanted else None
+    of = pressures if pressures.has(data) and not film.has(data, scene, choice) else film
+    made = (lambda: of.film(data, scene, choice)) if FILM in wanted else None
     return files.write(of_archive(data, scene, choice), made)
 
 

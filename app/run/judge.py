@@ -66,11 +66,12 @@ class Judge:
 def _steady(scene: Scene) -> Steady | None:
     """Known of flat punches on uniform solids, below the speed of the wave along the surface."""
     solid = scene.solid
-    if not isinstance(scene.punch.profile, Flat) or not isinstance(solid.response(0.0), InPlane):
+    if scene.layers or not isinstance(scene.punch.profile, Flat):
         return None
-    limit = solid.limit()
+    if not isinstance(solid.response(0.0), InPlane):
+        return None  # a user's own
 
     def within(c: float, g: float) -> float:
-        return approach(solid, c, g).within(0.01) if c < limit else inf
+        return approach(solid, c, g).within(0.01) if c < solid.limit() else inf
 
     return Steady(within, scene.body.half_width / solid.c_s)

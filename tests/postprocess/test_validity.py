@@ -141,3 +141,9 @@ def test_strokes_are_held_against_the_time_that_steady_motion_takes():
         "at c = 0.9, and the stroke lasts 80 a/c_s (8e-05 s)"
     ]
     assert slow.words() == []
+
+
+def test_where_motion_never_is_steady_no_time_is_told():
+    """The closed form is formal beyond the speed of the wave along the surface."""
+    never = Steady(lambda c, g: np.inf, 1e-6)
+    assert never.words(0.95, 0.0, 1.0) == never.words(0.95, 0.0, 1e9, too_short=True) == ""

@@ -49,6 +49,9 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert result.attributes["verdict"] == "PASS"
     assert len(json.loads(result.attributes["comparisons"])) == 2
     assert [drawing.name for drawing in result.drawings()] == ["friction", "time", "pressures"]
+    words = ["--figure", "film", "--format", "gif", "-o", tmp_path / "film.gif"]
+    assert command("plot", tmp_path / "s.h5", *words).returncode == 0
+    assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = command("show", tmp_path / "s.h5").stdout
     assert "Starts from rest" in shown
 
@@ -63,7 +66,9 @@ def test_two_ranks_end_as_one_does(tmp_path):
 
 def test_a_step_may_be_given_and_states_of_one_friction_start_once():
     more = {"motion.strokes": ["forward", "forward"], "time.step": 0.25, "solve.methods": ["sie"]}
-    data = computed("start_from_rest", QUICK | more).data
+    result = computed("start_from_rest", QUICK | more)
+    data = result.data
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "time", "pressures"]
     assert len(data["states/f"]) == 2
     assert data["time/sie/v0"].shape == (1, 12)
     assert "time/fem/v0" not in data

@@ -1,5 +1,8 @@
 """Starts from rest of any solid by both methods."""
 
+import os
+
+import pytest
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
@@ -12,6 +15,9 @@ from galinx.solvers.fem.in_time import Phase, SlidingInTime
 from galinx.solvers.fem.space import Space
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.punch import StartingPunch, smooth
+
+#: Of what takes longer than the ordinary tests may.
+THOROUGH = pytest.mark.skipif("GALINX_THOROUGH" not in os.environ, reason="takes long: GALINX_THOROUGH=1")
 
 
 def by_integral_equation(solid, c, g, end, steps, ramp=3.0, terms=16):

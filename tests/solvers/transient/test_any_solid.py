@@ -1,11 +1,9 @@
 """Starts from rest on solids of every kind by both methods."""
 
-import os
-
 import numpy as np
 import pytest
 from random_solids import isotropic_as, random_solid
-from started import ByFiniteElements, by_integral_equation
+from started import THOROUGH, ByFiniteElements, by_integral_equation
 
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
@@ -42,7 +40,7 @@ def test_both_methods_agree_on_a_rotated_solid():
     assert max(differences(random_solid(1), 0.6, -0.4, 3.0, 20)) < 5e-4
 
 
-@pytest.mark.skipif("GALINX_THOROUGH" not in os.environ, reason="takes minutes: GALINX_THOROUGH=1")
+@THOROUGH
 @pytest.mark.parametrize("seed", range(8))
 def test_both_methods_agree_on_random_solids(seed):
     """What is left is K_I of the finite elements at strongly singular ends."""

@@ -46,9 +46,10 @@ _FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
-#: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
-#: tolerance that is left to each.
-_MOMENT, _CUBED, _OF_FAR = 0.5, 0.1, 0.1
+#: own moment moves there, and over the cube of the layers' length over it, less where that is so long
+#: that what is left of the displacement there strains little; measured, with a factor of 2. The share of
+#: the tolerance that is left to each.
+_MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
 #: How much smaller that has to be for stresses.
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
@@ -79,7 +80,7 @@ class OnLayers(MeshKind):
         if wanted.nearest is not None:
             # Stresses far away are small beside what the boundary adds.
             left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
-        far = max((_MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
+        far = max((_MOMENT / left) ** 0.5, self.far_length * (self._cubed / left) ** (1.0 / 3.0))
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:
@@ -88,7 +89,11 @@ class OnLayers(MeshKind):
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Relative error of K_I by the far boundary, which moves as far below line loads."""
         R = self.radius(wanted)
-        return _MOMENT / R**2 + _CUBED * (self.far_length / R) ** 3
+        return _MOMENT / R**2 + self._cubed * (self.far_length / R) ** 3
+
+    @property
+    def _cubed(self) -> float:
+        return _CUBED * min(1.0, _LONG / self.far_length)
 
     @property
     def length(self) -> float:
@@ -147,7 +152,7 @@ class OnLayers(MeshKind):
         return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
     def _lines(self, wanted: Wanted, b: float) -> list[NDArray[np.float64]]:
-        """Distances of columns from an edge, beside the punch and under it, and depths of rows below b."""
+        """Distances of columns from an edge, beside the punch and under it; depths of rows below b."""
         R, wide = self.radius(wanted), self.wide * b
         if wanted.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
@@ -209,7 +214,10 @@ def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
 
 
 def on_layers(
-    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0,
+    depths: Sequence[float],
+    drawn_together: float = 1.0,
+    wide: float = 1.0,
+    far_length: float = 1.0,
     roots: tuple[tuple[complex, ...], ...] = (),
 ) -> OnLayers:
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""

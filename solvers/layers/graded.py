@@ -107,9 +107,7 @@ class Graded:
     def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
         depth = np.linspace(0.0, self.H, _LOOKED_AT)
-        decay = [
-            min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()
-        ]
+        decay = [min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()]
         return depth, cumulative_trapezoid(decay, depth, initial=0.0)
 
     def _reach(self, k: NDArray) -> NDArray[np.float64]:

@@ -74,9 +74,7 @@ def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> fl
     raise SolveError("no speed was found at which the layers stand; are their constants as meant?")
 
 
-def _where_it_falls(
-    stack: Callable[[float], Stack], k: float, high: float, accuracy: float
-) -> float:
+def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accuracy: float) -> float:
     """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
 
     def stands(speed: float) -> float:

@@ -104,7 +104,7 @@ class OnLayers(MeshKind):
         """Of the pressure, that tell it to a tenth of the tolerance; measured on thirty stacks."""
         share, of_length = _MOMENTS
         count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / wanted.tolerance)
-        return max(ceil(count), _FEWEST)
+        return max(ceil(count), _FEWEST) + 2 * self._one_more(wanted)
 
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
@@ -124,7 +124,11 @@ class OnLayers(MeshKind):
         degree = super().degree(wanted, margin)
         if wanted.nearest is None:
             return max(degree - 1, DEGREES[0] + 1)
-        return min(degree + (wanted.tolerance < _TIGHT), DEGREES[1])
+        return min(degree + self._one_more(wanted), DEGREES[1])
+
+    def _one_more(self, wanted: Wanted) -> bool:
+        """Is a degree more asked for from the first, with its moments?"""
+        return wanted.nearest is not None and wanted.tolerance < _TIGHT
 
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""

@@ -5,7 +5,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures import angles, film, friction, inside, numerics, slider, surface, sweep
+from galinx.app.pictures import (
+    angles,
+    film,
+    friction,
+    inside,
+    interfaces,
+    numerics,
+    slider,
+    surface,
+    sweep,
+)
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
 from galinx.app.pictures.files import FILM, Files, Written
@@ -56,6 +66,10 @@ _FIGURES = {
     "surface": _Figure(
         {"states", "quantities", "method"}, lambda data, scene, choice: _on_surface(data, choice),
         surface.surface,
+    ),
+    "interfaces": _Figure(
+        {"states", "quantities", "method"}, lambda data, scene, choice: interfaces.has(data, choice),
+        interfaces.interfaces,
     ),
     "inside": _Figure({"states", "quantities", "method"}, _below, inside.inside),
     "slider": _Figure(set(), lambda data, scene, _: slider.has(data), slider.slider),
@@ -127,7 +141,7 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
 
 def _quantities(data: _Data, scene: Scene) -> list[str]:
     below = inside.Fields(data, scene, _PLAIN).names if inside.has_map(data) else []
-    return [*surface.quantities(data), *below]
+    return [*surface.quantities(data), *interfaces.quantities(data), *below]
 
 
 def _options(names: set[str]) -> str:

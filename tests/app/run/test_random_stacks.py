@@ -21,14 +21,20 @@ TOLERANCE = 1e-6
 VANISHING = 0.1
 
 
+def of_pressure(data):
+    """Relative difference of the pressure, which fixes its moments."""
+    under = under_punch(data["surface/X_over_a"])
+    fem, sie = (data[f"surface/{by}/sigma_YY"][:, under] for by in ("fem", "sie"))
+    return float((np.abs(fem - sie) / np.maximum(np.abs(sie), VANISHING)).max())
+
+
 def differences(data):
-    """Relative, of K_I, the pressure, σ_XX on the surface and stresses at interfaces."""
+    """Relative, of K_I, σ_XX on the surface and stresses at interfaces, by the estimate's name."""
     X = data["surface/X_over_a"]
-    p, σ = ([data[f"surface/{by}/sigma_{what}"] for by in ("fem", "sie")] for what in ("YY", "XX"))
-    fem, sie = (one[:, under_punch(X)] for one in p)
+    σ = [data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie")]
     both = [np.array([data[f"interfaces/{by}/{name}"] for name in PARTS]) for by in ("fem", "sie")]
     return {
-        "": max(off(data), float((np.abs(fem - sie) / np.maximum(np.abs(sie), VANISHING)).max())),
+        "": off(data),
         "_sigma_XX": float((np.abs(σ[0] - σ[1]) / scale.of_in_plane(σ[1], X)).max()),
         "_interfaces": float((np.abs(both[0] - both[1]) / scale.of_interfaces(both[1])).max()),
     }
@@ -37,17 +43,19 @@ def differences(data):
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("graded", [False, True])
 def test_all_is_within_the_tolerance_and_the_estimate(seed, graded):
-    """The pressure fixes its moments. A punch that would have to pull is none the less solved."""
+    """A punch that would have to pull is none the less solved."""
     start = process_time()
     data = galinx.compute(random_scene(seed, graded, ("sif", "surface", "interfaces"))).data
     row = [f"seed {seed}, {'graded' if graded else 'uniform'}: {process_time() - start:.0f} s"]
+    row.append(f"pressure {of_pressure(data):.1e}")
     found = differences(data)
     estimated = {
         what: [data[f"states/{by}/estimate{what}"][0] for by in ("fem", "sie")] for what in found
     }
     for what, difference in found.items():
-        row.append(f"{what.strip('_') or 'K_I, pressure'} {difference:.1e} of {estimated[what][0]:.1e}")
+        row.append(f"{what.strip('_') or 'K_I'} {difference:.1e} of {estimated[what][0]:.1e}")
     print(", ".join(row))  # the table of docs/verification.md, by pytest -s
+    assert of_pressure(data) <= TOLERANCE
     for what, difference in found.items():
         estimates = estimated[what]
         assert difference <= sum(estimates)

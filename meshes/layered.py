@@ -8,7 +8,7 @@ rings go on towards it: their lines do not run through the whole mesh.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, log
+from math import asinh, ceil, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +24,11 @@ _GROWTH = 4.0
 _UNDER = 1.8
 #: The same over an uppermost layer that is thinner than so many a.
 _GENTLE_GROWTH, _THIN = 2.5, 0.4
-#: Where stresses are wanted: size of a cell over the length on which fields change there, and how much
-#: beyond the last place, or the last interface, that holds; then lines grow by a factor.
-_RESOLVED, _BEYOND, _DEEPER, _FAR_GROWTH = 1.2, 1.1, 3.0, 3.0
+#: Where stresses are wanted: size of a cell over the length on which fields change there, at 1e-6, and how
+#: much less it is for each digit more.
+_RESOLVED, _A_DIGIT = 1.2, 0.15
+#: How much beyond the last place, or the last interface, that holds; then lines grow by a factor.
+_BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
 #: Share of the tolerance of stresses that the innermost cells take half of.
 _OF_INNERMOST = 0.3
 #: Tolerance of stresses below which one degree more is always asked for.
@@ -165,11 +167,12 @@ class OnLayers(MeshKind):
             below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
         else:
             strata = Strata(self.depths, self.roots or ((1j,),) * (len(self.depths) + 1))
-            growth = max(1.0 + _RESOLVED * strata.aside, _LEAST_GROWTH)
+            share = _RESOLVED + _A_DIGIT * (6.0 + log10(wanted.tolerance))
+            growth = max(1.0 + share * strata.aside, _LEAST_GROWTH)
             far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * wanted.farthest), R)
             beyond = between(far, R, _FAR_GROWTH)
             beside = np.append(between(wide, far, growth), beyond)
-            below = np.append(strata.rows(b, far, _RESOLVED), beyond)
+            below = np.append(strata.rows(b, far, share), beyond)
         under = between(wide, 1.0, min(_UNDER, growth))
         return [np.append(beside, R), np.append(under, 1.0), below]
 

@@ -32,6 +32,8 @@ def weakest(stack: Stack) -> tuple[float, float]:
         lowest, at = float(values[i]), float(k[i])
         if not lowest > 0.0 or i in (0, len(k) - 1):
             break
+        if lowest > np.ptp(values[i - 1 : i + 2]):  # between these a smooth one stays positive
+            break
         k = np.geomspace(k[i - 1], k[i + 1], _THERE)
     return lowest, at
 

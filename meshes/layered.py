@@ -8,7 +8,7 @@ rings go on towards it: their lines do not run through the whole mesh.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, log
+from math import asinh, ceil, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +24,11 @@ _GROWTH = 4.0
 _UNDER = 1.8
 #: The same over an uppermost layer that is thinner than so many a.
 _GENTLE_GROWTH, _THIN = 2.5, 0.4
-#: Where stresses are wanted: size of a cell over the length on which fields change there, and how much
-#: beyond the last place, or the last interface, that holds; then lines grow by a factor.
-_RESOLVED, _BEYOND, _DEEPER, _FAR_GROWTH = 1.2, 1.1, 3.0, 3.0
+#: Where stresses are wanted: size of a cell over the length on which fields change there, at 1e-6, and how
+#: much less it is for each digit more.
+_RESOLVED, _A_DIGIT = 1.2, 0.15
+#: How much beyond the last place, or the last interface, that holds; then lines grow by a factor.
+_BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
 #: Share of the tolerance of stresses that the innermost cells take half of.
 _OF_INNERMOST = 0.3
 #: Tolerance of stresses below which one degree more is always asked for.
@@ -46,9 +48,10 @@ _FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
-#: own moment moves there, and over the cube of the layers' length over it; measured. The share of the
-#: tolerance that is left to each.
-_MOMENT, _CUBED, _OF_FAR = 0.5, 0.1, 0.1
+#: own moment moves there, and over the cube of the layers' length over it, less where that is so long
+#: that what is left of the displacement there strains little; measured, with a factor of 2. The share of
+#: the tolerance that is left to each.
+_MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
 #: How much smaller that has to be for stresses.
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
@@ -79,7 +82,7 @@ class OnLayers(MeshKind):
         if wanted.nearest is not None:
             # Stresses far away are small beside what the boundary adds.
             left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
-        far = max((_MOMENT / left) ** 0.5, self.far_length * (_CUBED / left) ** (1.0 / 3.0))
+        far = max((_MOMENT / left) ** 0.5, self.far_length * (self._cubed / left) ** (1.0 / 3.0))
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:
@@ -88,7 +91,11 @@ class OnLayers(MeshKind):
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Relative error of K_I by the far boundary, which moves as far below line loads."""
         R = self.radius(wanted)
-        return _MOMENT / R**2 + _CUBED * (self.far_length / R) ** 3
+        return _MOMENT / R**2 + self._cubed * (self.far_length / R) ** 3
+
+    @property
+    def _cubed(self) -> float:
+        return _CUBED * min(1.0, _LONG / self.far_length)
 
     @property
     def length(self) -> float:
@@ -99,7 +106,7 @@ class OnLayers(MeshKind):
         """Of the pressure, that tell it to a tenth of the tolerance; measured on thirty stacks."""
         share, of_length = _MOMENTS
         count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / wanted.tolerance)
-        return max(ceil(count), _FEWEST)
+        return max(ceil(count), _FEWEST) + 2 * self._one_more(wanted)
 
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
@@ -119,7 +126,11 @@ class OnLayers(MeshKind):
         degree = super().degree(wanted, margin)
         if wanted.nearest is None:
             return max(degree - 1, DEGREES[0] + 1)
-        return min(degree + (wanted.tolerance < _TIGHT), DEGREES[1])
+        return min(degree + self._one_more(wanted), DEGREES[1])
+
+    def _one_more(self, wanted: Wanted) -> bool:
+        """Is a degree more asked for from the first, with its moments?"""
+        return wanted.nearest is not None and wanted.tolerance < _TIGHT
 
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
@@ -147,7 +158,7 @@ class OnLayers(MeshKind):
         return _tagged(np.concatenate([np.array(cells), *squares]), R)
 
     def _lines(self, wanted: Wanted, b: float) -> list[NDArray[np.float64]]:
-        """Distances of columns from an edge, beside the punch and under it, and depths of rows below b."""
+        """Distances of columns from an edge, beside the punch and under it; depths of rows below b."""
         R, wide = self.radius(wanted), self.wide * b
         if wanted.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
@@ -156,11 +167,12 @@ class OnLayers(MeshKind):
             below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
         else:
             strata = Strata(self.depths, self.roots or ((1j,),) * (len(self.depths) + 1))
-            growth = max(1.0 + _RESOLVED * strata.aside, _LEAST_GROWTH)
+            share = _RESOLVED + _A_DIGIT * (6.0 + log10(wanted.tolerance))
+            growth = max(1.0 + share * strata.aside, _LEAST_GROWTH)
             far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * wanted.farthest), R)
             beyond = between(far, R, _FAR_GROWTH)
             beside = np.append(between(wide, far, growth), beyond)
-            below = np.append(strata.rows(b, far, _RESOLVED), beyond)
+            below = np.append(strata.rows(b, far, share), beyond)
         under = between(wide, 1.0, min(_UNDER, growth))
         return [np.append(beside, R), np.append(under, 1.0), below]
 
@@ -209,7 +221,10 @@ def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
 
 
 def on_layers(
-    depths: Sequence[float], drawn_together: float = 1.0, wide: float = 1.0, far_length: float = 1.0,
+    depths: Sequence[float],
+    drawn_together: float = 1.0,
+    wide: float = 1.0,
+    far_length: float = 1.0,
     roots: tuple[tuple[complex, ...], ...] = (),
 ) -> OnLayers:
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""

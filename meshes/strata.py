@@ -1,9 +1,9 @@
 """Over which lengths fields change in layers under a punch: what rows and columns have to follow.
 
-Fields of a solid are functions of X + pY. The punch's edges, where these are singular, are seen from a depth
-at the complex distance Σ p H of the solids that lie between; with S the least of its imaginary parts,
-fields change over S along X and over S/|p| along Y. From a place at the side an edge is at least as far as
-the distance times Im p/|p|.
+Fields of a solid are functions of X + pY. The punch's edges, where these are singular, are seen from a
+depth at the complex distance Σ p H of the solids that lie between; with S the least of its imaginary
+parts, fields change over S along X and over S/|p| along Y. From a place at the side an edge is at least
+as far as the distance times Im p/|p|.
 """
 
 from collections.abc import Callable
@@ -46,7 +46,7 @@ class Strata:
         return S
 
     def rows(self, first: float, last: float, share: float) -> NDArray[np.float64]:
-        """Depths from the first to before the last: rows as high as a share of what fields change over."""
+        """Depths from the first to before the last: rows no higher than a share of the length there."""
         lines = [first, *(depth for depth in self.depths if first * (1.0 + 1e-9) < depth < last), last]
         return np.concatenate([fitted(self.length, *ends, share) for ends in pairwise(lines)])
 
@@ -59,7 +59,9 @@ def fitted(
     low, high = 0.0, share
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
-        low, high = (middle, high) if len(_marched(length, first, last, middle)) > count else (low, middle)
+        low, high = (
+            (middle, high) if len(_marched(length, first, last, middle)) > count else (low, middle)
+        )
     return np.array(_marched(length, first, last, high))
 
 

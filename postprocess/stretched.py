@@ -7,10 +7,11 @@ end farther away. In
 
 it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
 graded from the surface on it has terms d log d, d² log d and d² log² d of the distance d from an end
-besides, which no polynomial follows; they stand beside these.
+besides, which no polynomial follows; they stand before these.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,20 +44,35 @@ class Stretch:
         return np.asarray(np.clip(found / np.arcsinh(2.0 / self.h), -1.0, 1.0))
 
     def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """So many polynomials of ζ, then what belongs to the ends, (len(r), functions)."""
-        polynomials = chebyshev(self(r), count)
+        """So many polynomials of ζ, after what belongs to the ends, (len(r), functions)."""
         if not self.graded:
-            return polynomials
-        of_ends = []
+            return chebyshev(self(r), count)
+        return np.asarray(self.of_ends(r, count) @ _to_orthonormal(self, count))
+
+    def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """What belongs to the ends, then polynomials: nearly dependent."""
+        found = []
         for d in ((1.0 - r) / 2.0, (1.0 + r) / 2.0):
             d = np.clip(d, 0.0, 1.0)
             log = np.log(np.maximum(d, np.finfo(float).tiny))
-            of_ends += [d * log, d**2 * log, d**2 * log**2]
-        return np.column_stack([polynomials, *of_ends])
+            found += [d * log, d**2 * log, d**2 * log**2]
+        return np.column_stack([*found, chebyshev(self(r), count)])
 
     def polynomials(self, functions: int) -> int:
         """How many of these functions are polynomials."""
         return functions - 6 * self.graded
+
+
+@cache
+def _to_orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
+
+    Moments are taken with these: the functions themselves depend on one another so nearly that what
+    rounds their moments would be seen in the pressure.
+    """
+    rule = Panels(-0.5, -0.5, _FINE * min(1.0, stretch.h))
+    f = stretch.of_ends(rule.t, count) * np.sqrt(rule.weights)[:, None]
+    return np.asarray(np.linalg.inv(np.linalg.qr(f, mode="r")))
 
 
 @dataclass(frozen=True)
@@ -72,8 +88,7 @@ class StretchedPressure(JacobiPressure):
     @property
     def unresolved(self) -> NDArray[np.float64]:
         """The last polynomials' share, relative to the largest of the factor at the ends, (states,)."""
-        count = self.stretch.polynomials(self.c.shape[1])
-        last = np.abs(self.c[:, count - _LAST : count]).sum(axis=1)
+        last = np.abs(self.c[:, -_LAST:]).sum(axis=1)
         return np.asarray(last / np.abs(self.factor(np.array([-1.0, 1.0]))).max(axis=1))
 
 

@@ -18,7 +18,7 @@ from galinx.app.console.terminal import say
     "--figure",
     default="",
     metavar="NAMES",
-    help="friction, parameters, surface, inside, angles, degrees, mesh, film; several as in "
+    help="friction, parameters, surface, interfaces, inside, angles, degrees, mesh, film; several as in "
     "surface,inside.",
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")

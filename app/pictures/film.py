@@ -75,7 +75,8 @@ def _shown(
     made = []
     for name in names:
         values = np.array([fields.values(name, fields.methods[0], int(i)) for i in frames])
-        made.append(Map(fields.label(name, True), values, bool(values.min() < 0.0)))
+        signed = bool(values.min() < 0.0)
+        made.append(Map(fields.label(name, True), values, signed, fields.interfaces))
     return [], made
 
 

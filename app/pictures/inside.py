@@ -16,6 +16,7 @@ from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import INSIDE, STATE
 from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.solvers.layers.layered import Layered
 
 #: Name and symbol of what maps show unasked.
 _SHOWN = {
@@ -50,6 +51,12 @@ class Fields:
         return list(
             dict.fromkeys([*self._known, *(name for name in _SHOWN if self._of_components(name))])
         )
+
+    @property
+    def interfaces(self) -> tuple[float, ...]:
+        """Depths over a of the lower faces of layers."""
+        body, solid = self._scene.body, self._scene.solid
+        return tuple((solid.depths / body.half_width).tolist()) if isinstance(solid, Layered) else ()
 
     def grid(self) -> tuple[NDArray, NDArray]:
         """Positions over a along both axes."""
@@ -107,7 +114,7 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         differences, columns = [], len(some)
     titles = [folded(told.label(i, apart), int((width - 1.0) / columns / 0.062)) for i in some]
     figure = maps_figure(X, Y, shown, titles, differences, choice.size, choice.frames(some))
-    caption = _caption(told, some, METHODS[fields.methods[0]], largest)
+    caption = _caption(told, some, fields, largest)
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
     return Drawing("inside", caption, figure, True, not_shown(told, some, how, choice.states))
 
@@ -119,17 +126,21 @@ def _maps(fields: Fields, names: list[str], some: list[int]) -> tuple[list[Map],
         values, *others = (
             np.array([fields.values(name, method, i) for i in some]) for method in fields.methods
         )
-        shown.append(Map(fields.label(name, len(names) == 1), values, bool(values.min() < 0.0)))
+        label = fields.label(name, len(names) == 1)
+        shown.append(Map(label, values, bool(values.min() < 0.0), fields.interfaces))
         differences += [(other - values) / np.abs(values).max() for other in others]
     return shown, differences
 
 
-def _caption(told: Told, some: list[int], method: str, largest: float) -> str:
+def _caption(told: Told, some: list[int], fields: Fields, largest: float) -> str:
     fixed = [name for name in told.parameters if name not in told.varied(some)]
+    method = METHODS[fields.methods[0]]
     text = (
         f"Stresses inside below the punch (black bar), {method}, at {told.text(some[0], fixed)}. They "
         "spread from the edges; beyond an arrow at the end of a bar its colours are clipped."
     )
+    if fields.interfaces:
+        text += " Dashed lines are the interfaces."
     if largest:
         text += (
             f" Finite elements differ by at most {plain(f'${number(largest, 2)}$')} of the largest value."

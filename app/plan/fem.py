@@ -184,7 +184,7 @@ def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
     return Tests(Stretch(kind.length, graded), kind.moments(wanted))
 
 
-def _seen_by_layers(responses: Sequence[Any]) -> dict[str, float]:
+def _seen_by_layers(responses: Sequence[Any]) -> dict[str, Any]:
     """What :class:`galinx.meshes.layered.OnLayers` asks of layered solids at some speeds."""
     roots = [[p.imag for p in response.surface.roots.each] for response in responses]
     # Fields that live far apart have no middle.

@@ -10,6 +10,7 @@ from galinx.app.pictures import (
     film,
     friction,
     inside,
+    interfaces,
     numerics,
     over_time,
     pressures,
@@ -67,6 +68,10 @@ _FIGURES = {
     "surface": _Figure(
         {"states", "quantities", "method"}, lambda data, scene, choice: _on_surface(data, choice),
         surface.surface,
+    ),
+    "interfaces": _Figure(
+        {"states", "quantities", "method"}, lambda data, scene, choice: interfaces.has(data, choice),
+        interfaces.interfaces,
     ),
     "inside": _Figure({"states", "quantities", "method"}, _below, inside.inside),
     "slider": _Figure(set(), lambda data, scene, _: slider.has(data), slider.slider),
@@ -144,7 +149,7 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
 
 def _quantities(data: _Data, scene: Scene) -> list[str]:
     below = inside.Fields(data, scene, _PLAIN).names if inside.has_map(data) else []
-    return [*surface.quantities(data), *below]
+    return [*surface.quantities(data), *interfaces.quantities(data), *below]
 
 
 def _options(names: set[str]) -> str:

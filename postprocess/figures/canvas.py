@@ -139,12 +139,12 @@ def handle(look: Look, label: str, **style: Any) -> Line2D:
     return Line2D([], [], **({"color": look.colour, "linestyle": look.line, "label": label} | style))
 
 
-def of_methods(exact: bool, found: bool) -> list[Line2D]:
+def of_methods(exact: bool, found: bool, lines: str = "closed form") -> list[Line2D]:
     """What lines and markers stand for, where there are both."""
     if not (exact and found):
         return []
     return [
-        Line2D([], [], color=GREY, label="lines: closed form"),
+        Line2D([], [], color=GREY, label=f"lines: {lines}"),
         Line2D(
             [], [], color=GREY, linestyle="none", marker="o", markerfacecolor="none",
             label="markers: finite elements",

@@ -32,11 +32,13 @@ class Map:
         values: by column, (columns, rows of the grid, columns of the grid).
         label: of its colours.
         signed: zero is in the middle of them.
+        interfaces: depths of layers' lower faces over a.
     """
 
     label: str
     values: NDArray
     signed: bool
+    interfaces: tuple[float, ...] = ()
 
 
 @styled
@@ -76,6 +78,7 @@ def maps_figure(
         limit, extend = _limits(shown)
         for grid, axis, values in zip(grids, row, shown.values):
             grid.draw(axis, values, limit, signed=shown.signed, lines=alone)
+            grid.layers(axis, shown.interfaces)
         grids[0].bar(row[len(titles) - 1], limit, extend, shown)
     if len(differences):
         _differences(grids, axes[:, len(titles) :], np.asarray(differences))
@@ -121,6 +124,7 @@ def moving(axis: Axes, X: NDArray, Y: NDArray, shown: Map) -> Callable[[int], No
     limit, extend = _limits(shown)
     grid = _Grid(X, Y)
     grid.draw(axis, shown.values[0], limit, shown.signed, lines=False)
+    grid.layers(axis, shown.interfaces)
     axis.set(xlabel="$X/a$", ylabel="$Y/a$")
     grid.bar(axis, limit, extend, shown)
     return lambda frame: axis.images[0].set_data(shown.values[frame])
@@ -156,6 +160,12 @@ class _Grid:
         axis.set(xlim=(self._X[0], self._X[-1]), ylim=(self._Y[0], 0.0))
         axis.locator_params(axis="x", nbins=6 if self._contact == [-1.0, 1.0] else 3)
         axis.locator_params(axis="y", nbins=4)
+
+    def layers(self, axis: Axes, depths: Sequence[float]) -> None:
+        """A line along each interface that is in the picture."""
+        for depth in depths:
+            if -depth > self._Y[0]:
+                axis.axhline(-depth, color="black", linewidth=0.6, linestyle=(0, (5.0, 2.5)))
 
     def bar(self, axis: Axes, limit: float, extend: str, shown: Map) -> None:
         figure, place = axis.figure, axis.get_position()

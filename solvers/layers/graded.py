@@ -26,9 +26,9 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.medium import Medium
 from galinx.solvers.layers.uniform import Uniform
 
-#: Coefficients of the polynomials in which properties are expanded, at first and at most, and what of
-#: them is rounding.
-_FEW, _MANY, _ROUNDING = 17, 513, 2e-15
+#: Coefficients of the polynomials in which properties are expanded, at first and at most; what is small
+#: enough at their end, and what of them is rounding.
+_FEW, _MANY, _SMALL, _ROUNDING = 17, 513, 1e-12, 2e-15
 #: Twice k Im p times the depth below which nothing is felt on top.
 _FELT = 78.0
 #: Depths at which it is looked at how fast fields fall.
@@ -97,19 +97,26 @@ class Graded:
             c = np.linalg.solve(chebyshev.chebvander(x, count - 1), values.reshape(count, -1))
             size = np.abs(c).max(axis=0)
             size = np.maximum(size, size.reshape(3, 4).max(axis=1).repeat(4))
-            if np.all(np.abs(c[-3:]) <= 1e-12 * size):
+            if count > _FEW and not _hopeful(np.abs(c / size).max(axis=1)):
+                break
+            if np.all(np.abs(c[-3:]) <= _SMALL * size):
                 keep = np.flatnonzero((np.abs(c) > _ROUNDING * size).any(axis=1))[-1] + 1
                 return np.asarray(c[: max(keep, 2)].reshape(-1, 3, 2, 2))
             count = 2 * count - 1
         raise SolveError("the solid of a graded layer changes too much to be followed at this speed")
 
+    def check(self) -> None:
+        """
+        Raises:
+            SolveError: its solid changes too much to be followed.
+        """
+        self._series  # noqa: B018 - cached
+
     @cached_property
     def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
         depth = np.linspace(0.0, self.H, _LOOKED_AT)
-        decay = [
-            min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()
-        ]
+        decay = [min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()]
         return depth, cumulative_trapezoid(decay, depth, initial=0.0)
 
     def _reach(self, k: NDArray) -> NDArray[np.float64]:
@@ -213,3 +220,11 @@ class Graded:
             found.append(slice_.stands(k, below))
             below = slice_.top.down + slice_.excess(k, below)
         return np.min(np.where(np.isnan(found), -np.inf, found), axis=0)
+
+
+def _hopeful(c: NDArray) -> bool:
+    """Will coefficients that fall as these do be small before they are too many?"""
+    half = len(c) // 2
+    first, last = c[half // 2 : half].max(), c[-half // 2 :].max()
+    rate = np.log(max(last, _ROUNDING) / max(first, _ROUNDING)) / (len(c) - half)
+    return bool(last <= _SMALL or np.log(last) + rate * (_MANY - len(c)) <= np.log(_SMALL))

@@ -159,6 +159,11 @@ class Layered:
             top += layer.thickness
         return self.substrate
 
+    def beside(self, interface: int) -> tuple[Solid, Solid]:
+        """The solids above and below an interface, from 0."""
+        layer, rest = self.layers[interface], self.layers[interface + 1 :]
+        return layer.bottom or layer.solid, rest[0].solid if rest else self.substrate
+
     @cached_property
     def _limit(self) -> float:
         graded = any(layer.bottom for layer in self.layers)

@@ -32,6 +32,8 @@ def weakest(stack: Stack) -> tuple[float, float]:
         lowest, at = float(values[i]), float(k[i])
         if not lowest > 0.0 or i in (0, len(k) - 1):
             break
+        if lowest > np.ptp(values[i - 1 : i + 2]):  # between these a smooth one stays positive
+            break
         k = np.geomspace(k[i - 1], k[i + 1], _THERE)
     return lowest, at
 
@@ -74,9 +76,7 @@ def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> fl
     raise SolveError("no speed was found at which the layers stand; are their constants as meant?")
 
 
-def _where_it_falls(
-    stack: Callable[[float], Stack], k: float, high: float, accuracy: float
-) -> float:
+def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accuracy: float) -> float:
     """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
 
     def stands(speed: float) -> float:

@@ -71,6 +71,8 @@ class Stack:
         It falls with speed; where it is 0 that wave runs with the load, freely. Of waves that something
         below gives way to no more is asked.
         """
+        for layer in self.layers:
+            layer.check()
         found, going = np.full(len(k), np.inf), np.arange(len(k))
         Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
         for layer in self.layers[::-1]:

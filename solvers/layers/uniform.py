@@ -40,6 +40,9 @@ class Uniform:
         """The solid at its lower face."""
         return self.medium
 
+    def check(self) -> None:
+        """There is nothing in it that could not be followed."""
+
     def _reflected(self, below: NDArray) -> NDArray:
         """r, (n, 2, 2)."""
         return inverse(self.medium.up - below) @ (below - self.medium.down)

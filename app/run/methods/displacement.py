@@ -114,13 +114,16 @@ class Displacement:
     def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).
 
-        Tractions, which both sides share, are the mean of theirs.
+        Tractions, which both sides share, are told by the softer one rather than by the stiffer, whose
+        other stresses may be large beside them: weights are as the other side's modulus.
         """
         found = []
-        for points, above, below in self._interfaces:
+        for i, (points, above, below) in enumerate(self._interfaces):
             one = self._stresses(points, above.of(weights))
             other = self._stresses(points, below.of(weights), -1)
-            tractions = (one[1:] + other[1:]) / 2.0
+            upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
+            share = lower.μ / (upper.μ + lower.μ)
+            tractions = share * one[1:] + (1.0 - share) * other[1:]
             found.append([*tractions, one[0], other[0]])
         return np.moveaxis(np.array(found), 0, 2)
 

@@ -11,9 +11,10 @@ from layers_reference import plane_strain, punch
 from galinx.solvers.layers.contact import found
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.panelled import solved as panelled
+from galinx.solvers.layers.pressure import Polynomial
 from galinx.solvers.layers.states import Speed
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.collocation import solve
+from galinx.solvers.sie.collocation import Expansion, solve, weights_hilbert
 from galinx.solvers.solids.isotropic import Isotropic
 
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
@@ -138,3 +139,19 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
     for i in (3, 150):
         exact = found(equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11).pressure.series(ENDS)
         assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8
+
+
+@pytest.mark.parametrize("terms", [20, 60, 300])
+def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch(terms):
+    """Many polynomials grow fast beyond the edges: how far they are taken there depends on how many."""
+    c = np.exp(-0.4 * np.arange(terms)) + 1e-15
+    pressure = Polynomial(Expansion(-0.45, -0.55, c))
+    X = np.array([-1.3, -1.1, -1.05, -1.001, 1.0005, 1.02, 1.1, 1.4])
+    known = np.abs(X) <= pressure.near
+    whole = pressure.rest(X, pressure.near)
+    weights = weights_hilbert(-0.45, -0.55, X)
+    whole[known] += pressure.series(X[known]) * weights[known]
+    fine = pressure.points(1e-3)
+    exact = (fine[1] / (fine[0] - X[:, None])).sum(axis=1) / np.pi
+    assert known.any()
+    assert np.abs(whole - exact).max() <= 1e-10 * np.abs(exact).max()

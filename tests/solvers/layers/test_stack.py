@@ -191,3 +191,24 @@ def test_spherical_bessel_functions():
     z = np.concatenate([[0.0, 1e-10, 1e-4], np.linspace(0.05, 60.0, 400)])
     exact = np.stack([spherical_jn(n, z) for n in range(16)], axis=-1)
     assert np.abs(spherical_bessel(16, z) - exact).max() <= 1e-14
+
+
+@pytest.mark.parametrize("E", [1.2, 6.0])
+def test_a_graded_layer_is_no_faster_than_its_slowest_face(E):
+    """Waves much shorter than the layer run along its softer face, here inside, with its shear speed."""
+    soft, hard = Isotropic(E, 0.3, 1.0), Isotropic(20.0, 0.3, 1.0)
+    solid = Layered((Layer(0.5, hard), Layer(1.0, soft, Isotropic(2.0 * E, 0.3, 1.0))), hard)
+    limit = solid.limit() * solid.c_s / soft.c_s
+    assert 1.0 - 2e-3 < limit < 1.0
+    assert weakest(solid.response(0.9999 * solid.limit()).stack(1.0))[0] > 0.0
+
+
+def test_what_gives_way_below_is_not_followed_further():
+    """The stiffness is that of all waves that stand, and says which do not."""
+    solid = heavy()
+    k = np.geomspace(0.01, 30.0, 60)
+    stack = solid.response(1.02 * solid.limit()).stack(1.0)
+    found = stack.stands(k)
+    alone = np.array([stack.stands(one)[0] for one in k[:, None]])
+    assert np.array_equal(found, alone)
+    assert (found > 0.0).any() and (found < 0.0).any()

@@ -1,0 +1,120 @@
+"""Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
+
+import sys
+
+import numpy as np
+import pytest
+from support import HOME, computed
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.pictures.choice import Choice, size
+from galinx.app.results.drawings import names, of_archive
+from galinx.app.scene.read import parse
+
+sys.path.insert(0, str(HOME / "tests" / "postprocess" / "figures"))
+from legible import faults
+
+MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
+QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
+
+
+@pytest.fixture(scope="module")
+def coated():
+    """Three frictions on one coating."""
+    return computed("coating", MAP | QUANTITIES)
+
+
+def drawn(run, name, **options):
+    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
+    return drawing
+
+
+def curves(axis):
+    return [line for line in axis.lines if len(line.get_xdata()) > 2]
+
+
+def test_curves_are_what_the_archive_holds_on_both_sides(coated):
+    drawing = drawn(coated, "interfaces")
+    normal, shear, in_plane = drawing.figure.axes
+    X = coated.data["interfaces/X_over_a"]
+    rows = [(normal, "sigma_YY"), (shear, "sigma_XY"), (in_plane, "sigma_XX_above")]
+    for axis, name in rows:
+        half = axis.get_xlim()[1]
+        seen = np.abs(X) <= half
+        for state, line in enumerate(curves(axis)[:3]):
+            held = coated.data[f"interfaces/sie/{name}"][state, 0]
+            assert np.array_equal(line.get_ydata(), held[seen])
+            assert np.array_equal(line.get_xdata(), X[seen])
+    below = curves(in_plane)[3:]
+    assert len(below) == 3
+    assert all(
+        one.get_color() == other.get_color() and one.get_linestyle() != other.get_linestyle()
+        for one, other in zip(curves(in_plane), below)
+    )
+    assert len({line.get_color() for line in below}) == 3
+    assert "jumps" in drawing.caption and not drawing.left_out
+
+
+def test_what_is_chosen_is_drawn(coated):
+    drawing = drawn(coated, "interfaces", states=(1,), quantities=("sigma_XX_below",), size=size("3.5in"))
+    (axis,) = drawing.figure.axes
+    (line,) = curves(axis)
+    held = coated.data["interfaces/sie/sigma_XX_below"][1, 0]
+    assert set(line.get_ydata()) <= set(held)
+    assert drawing.left_out == ""
+    with pytest.raises(BadInput, match="sigma_ZZZ"):
+        drawn(coated, "interfaces", quantities=("sigma_ZZZ",))
+
+
+def test_in_megapascals_curves_have_the_unit(coated):
+    plain, scaled = (
+        curves(drawn(coated, "interfaces", unit=unit).figure.axes[1])[0].get_ydata()
+        for unit in (0.0, 7.0)
+    )
+    assert scaled == pytest.approx(7.0 * plain)
+    assert "MPa" in drawn(coated, "interfaces", unit=7.0).figure.axes[1].get_ylabel()
+
+
+def test_interfaces_are_lines_in_maps(coated):
+    drawing = drawn(coated, "inside", quantities=("von_mises",))
+    maps = [axis for axis in drawing.figure.axes if axis.images]
+    for axis in maps:
+        heights = {tuple(line.get_ydata()) for line in axis.lines}
+        assert (-1.0, -1.0) in heights
+    assert "interfaces" in drawing.caption
+
+
+def test_finite_elements_are_markers_and_only_some_of_many_interfaces_are_shown():
+    text = (HOME / "scenes" / "coating.toml").read_text()
+    first, rest = text.split("[[layer]]")
+    layer, rest = rest.split("[friction]")
+    layers = "".join(f"[[layer]]{layer}".replace("7.5", E) for E in ("7.5", "5", "4", "6"))
+    text = f"{first}{layers}[friction]{rest}".replace("[0.1, 0.4, 0.8]", "0.4")
+    text = text.replace('["sie"]', '["sie", "fem"]\ntolerance = 1e-3')
+    quantities = '["friction", "sif", "surface", "interfaces"]'
+    run = galinx.compute(parse(text.replace("1 mm", "0.3 mm").replace(quantities, '["interfaces"]')))
+    drawing = drawn(run, "interfaces")
+    axes = np.reshape(drawing.figure.axes, (3, -1))
+    assert axes.shape[1] == 3
+    assert "3 of 4 interfaces" in drawing.caption
+    line, *rest = axes[0, 0].lines[1:]
+    markers = next(one for one in rest if one.get_marker() != "None")
+    at = np.searchsorted(line.get_xdata(), markers.get_xdata())
+    inside = np.abs(markers.get_xdata()) < line.get_xdata()[-1]
+    off = np.abs(markers.get_ydata() - line.get_ydata()[np.minimum(at, len(line.get_xdata()) - 1)])
+    assert inside.any() and off[inside].max() < 1e-2
+    wide = drawn(run, "interfaces", size=size("10in"))
+    assert np.reshape(wide.figure.axes, (3, -1)).shape[1] == 4
+
+
+def test_they_can_be_read_in_print(coated):
+    for name in ("interfaces", "inside"):
+        for width in ("3.5in", "7in"):
+            if name == "interfaces" or width == "7in":
+                assert not [*faults(drawn(coated, name, size=size(width)).figure)]
+
+
+def test_uniform_solids_have_no_such_figure():
+    run = computed(changes={"solve.methods": ["closed_form"]})
+    assert "interfaces" not in names(run.data, run.scene)

@@ -24,8 +24,8 @@ _GROWTH = 4.0
 _UNDER = 1.8
 #: The same over an uppermost layer that is thinner than so many a.
 _GENTLE_GROWTH, _THIN = 2.5, 0.4
-#: Where stresses are wanted: size of a cell over the length on which fields change there, at 1e-6, and how
-#: much less it is for each digit more.
+#: Where stresses are wanted: size of a cell over the length on which fields change there, at 1e-6, and
+#: how much less it is for each digit more.
 _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: How much beyond the last place, or the last interface, that holds; then lines grow by a factor.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0

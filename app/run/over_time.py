@@ -123,12 +123,12 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     finer = int(np.ceil(starts.end / steps / largest - 1e-9))
     response = solid.response(c)
     terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
-    every = slice(finer - 1, None, finer)
+    every, first = slice(finer - 1, None, finer), float(starts.load(0.0))
     with clock("integral equation in time"):
         punch = StartingPunch(response, solid.limit(), starts.end, steps * finer, terms)
         found = []
         for friction in starts.frictions[c]:
-            g, first = friction(0.0), float(starts.load(0.0))
+            g = friction(0.0)
             course = punch.course(g, lambda t: starts.load(t) - first)
             one = _named(SIE, [value[every] for value in _whole(course, FlatPunch(response, g), first)])
             if not starts.steady:

@@ -1,6 +1,6 @@
 """What happens over time where a punch is pressed on and slides, one row for each start."""
 
-from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Word of output.quantities.
@@ -38,7 +38,7 @@ STEADY_K_I = _row(
 )
 
 
-def _by_method(name: str, unit: str, about: str, **others: object) -> dict[str, Quantity]:
+def _by_method(name: str, unit: str, about: str, nan_allowed: str = NEVER) -> dict[str, Quantity]:
     how = {FEM: "finite elements", SIE: "integral equation"}
     return {
         method: _row(

@@ -42,7 +42,12 @@ def _by_method(name: str, unit: str, about: str, nan_allowed: str = NEVER) -> di
     how = {FEM: "finite elements", SIE: "integral equation"}
     return {
         method: _row(
-            f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method, **others
+            f"{method}/{name}",
+            unit,
+            f"{about}, {told}",
+            (START, INSTANT),
+            method=method,
+            nan_allowed=nan_allowed,
         )
         for method, told in how.items()
     }

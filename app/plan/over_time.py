@@ -42,8 +42,8 @@ _HELD = 5.0
 #: Steps by which the end is later for waves.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
-#: ones; half of it at a tenth of the tolerance. And how much more where the error is measured.
-_GROWTH, _GROWN = 0.15, 1.75
+#: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
+_GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
 #: Side of cells next to the punch over a where things change within so many a/c_s; and how much slower
 #: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
 #: the last of these it asks for a degree more.
@@ -179,7 +179,7 @@ class Starts:
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
-        growth = _GROWTH * 0.5 ** (digits - 3.0)
+        growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
         coarse, fine = (

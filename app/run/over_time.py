@@ -26,7 +26,8 @@ from galinx.solvers.transient.approach import approach
 from galinx.solvers.transient.punch import PLACES, StartingPunch
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
-#: steps within which the load comes on; polynomials there, and more at a tenth of it.
+#: steps within which the load comes on; polynomials there, and more at a tenth of it: of still more, K_I
+#: has the rounding of the quadrature.
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 _Found = dict[str, NDArray[np.float64]]
@@ -122,7 +123,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     largest = min(_STEP, starts.shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(starts.end / steps / largest - 1e-9))
     response = solid.response(c)
-    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
+    terms = _TERMS + round(_MORE * min(max(-3.0 - np.log10(starts.tolerance), 0.0), 1.0))
     every, first = slice(finer - 1, None, finer), float(starts.load(0.0))
     with clock("integral equation in time"):
         punch = StartingPunch(response, solid.limit(), starts.end, steps * finer, terms)

@@ -1,8 +1,6 @@
 """What happens over time where a punch is pressed on and slides, one row for each start."""
 
-from typing import Any
-
-from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Word of output.quantities.
@@ -40,11 +38,16 @@ STEADY_K_I = _row(
 )
 
 
-def _by_method(name: str, unit: str, about: str, **others: Any) -> dict[str, Quantity]:
+def _by_method(name: str, unit: str, about: str, nan_allowed: str = NEVER) -> dict[str, Quantity]:
     how = {FEM: "finite elements", SIE: "integral equation"}
     return {
         method: _row(
-            f"{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), method=method, **others
+            f"{method}/{name}",
+            unit,
+            f"{about}, {told}",
+            (START, INSTANT),
+            method=method,
+            nan_allowed=nan_allowed,
         )
         for method, told in how.items()
     }

@@ -1,18 +1,14 @@
 """Works, and stresses on the surface, over time of starts from rest, one row for each."""
 
 from galinx.postprocess.quantities.over_time import INSTANT, START, TIME
-from galinx.postprocess.quantities.quantity import QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, QUANTITIES, SIE, Quantity
 
 
 def _row(name: str, unit: str, about: str) -> Quantity:
     return Quantity(
-        f"time/sie/{name}",
-        unit,
-        f"{about}, integral equation",
-        (START, INSTANT),
-        asked_by=TIME,
-        method=SIE,
-    )
+        f"time/sie/{name}", unit, f"{about}, integral equation", (START, INSTANT), asked_by=TIME,
+        method=SIE, nan_allowed=ANYWHERE,
+    )  # fmt: skip
 
 
 OF_LOAD = _row("work_of_load", "N^2/(4mu)", "work of the load")

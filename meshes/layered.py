@@ -68,6 +68,7 @@ class OnLayers(MeshKind):
         wide: Im p midway between both: width over height of what its fields take for a square.
         far_length: over which the layers are seen from far, over a.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
+        changes: of :class:`galinx.meshes.strata.Strata`.
     """
 
     depths: tuple[float, ...] = ()
@@ -75,6 +76,7 @@ class OnLayers(MeshKind):
     wide: float = 1.0
     far_length: float = 1.0
     roots: tuple[tuple[complex, ...], ...] = ()
+    changes: tuple[float, ...] = ()
 
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
@@ -166,7 +168,8 @@ class OnLayers(MeshKind):
             fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
             below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
         else:
-            strata = Strata(self.depths, self.roots or ((1j,),) * (len(self.depths) + 1))
+            roots = self.roots or ((1j,),) * (len(self.depths) + 1)
+            strata = Strata(self.depths, roots, self.changes)
             share = _RESOLVED + _A_DIGIT * (6.0 + log10(wanted.tolerance))
             growth = max(1.0 + share * strata.aside, _LEAST_GROWTH)
             far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * wanted.farthest), R)
@@ -226,11 +229,12 @@ def on_layers(
     wide: float = 1.0,
     far_length: float = 1.0,
     roots: tuple[tuple[complex, ...], ...] = (),
+    changes: tuple[float, ...] = (),
 ) -> OnLayers:
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, roots=roots,
+        far_length=far_length, roots=roots, changes=changes,
     )  # fmt: skip

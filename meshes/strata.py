@@ -25,10 +25,13 @@ class Strata:
     Attributes:
         depths: of the interfaces, rising.
         roots: p of every solid from the top down, those of the substrate last.
+        changes: length over which each layer's own constants change, infinite where it is uniform; none
+            where all are.
     """
 
     depths: tuple[float, ...]
     roots: tuple[tuple[complex, ...], ...]
+    changes: tuple[float, ...] = ()
 
     @property
     def aside(self) -> float:
@@ -38,9 +41,10 @@ class Strata:
     def length(self, depth: float) -> float:
         """Over which fields change along Y just below a depth."""
         S, top = 0.0, 0.0
-        for bottom, roots in zip((*self.depths, np.inf), self.roots):
+        changes = (*(self.changes or (np.inf,) * len(self.depths)), np.inf)
+        for bottom, roots, change in zip((*self.depths, np.inf), self.roots, changes):
             if depth < bottom:
-                return min((S + p.imag * (depth - top)) / abs(p) for p in roots)
+                return min(change, *((S + p.imag * (depth - top)) / abs(p) for p in roots))
             S += min(p.imag for p in roots) * (bottom - top)
             top = bottom
         return S

@@ -57,12 +57,17 @@ class Tests:
 
     Attributes:
         stretch: variable in which it is smooth.
-        count: moments at the first degree; each degree more takes two more, so that what they leave
-            shows in the measured error.
+        count: moments at the first degree; each degree more takes more, so that what they leave shows in
+            the measured error.
     """
 
     stretch: Stretch
     count: int
+
+    @property
+    def a_degree(self) -> int:
+        """Moments more for each degree more; those over graded solids depend on one another nearly."""
+        return 1 if self.stretch.graded else 2
 
 
 @dataclass(frozen=True)
@@ -194,6 +199,7 @@ def _seen_by_layers(responses: Sequence[Any]) -> dict[str, Any]:
         "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         "far_length": max(response.far_field.length for response in responses),
         "roots": _roots(responses),
+        "changes": tuple(length / responses[0].a for length in responses[0].solid.changes),
     }
 
 

@@ -159,6 +159,15 @@ class Layered:
             top += layer.thickness
         return self.substrate
 
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """Length over which each layer's modulus changes by itself [m], infinite where it does not."""
+        found = []
+        for layer in self.layers:
+            one, other = sorted((layer.solid.μ, (layer.bottom or layer.solid).μ))
+            found.append(layer.thickness / (other / one - 1.0) if other > one else float("inf"))
+        return tuple(found)
+
     def beside(self, interface: int) -> tuple[Solid, Solid]:
         """The solids above and below an interface, from 0."""
         layer, rest = self.layers[interface], self.layers[interface + 1 :]

@@ -50,6 +50,14 @@ def test_rows_are_no_higher_than_their_share_and_stop_at_interfaces(seed):
         assert fewer == inside.sum()
 
 
+def test_graded_layers_have_rows_as_their_constants_change():
+    plain, graded = (Strata((4.0, 5.0), (ISOTROPIC,) * 3, changes) for changes in ((), (np.inf, 0.25)))
+    assert [graded.length(depth) for depth in (2.0, 4.5, 6.0)] == pytest.approx([2.0, 0.25, 6.0])
+    assert plain.length(4.5) == pytest.approx(4.5)
+    rows = graded.rows(1.0, 8.0, 1.2)
+    assert np.diff(rows[(rows >= 4.0) & (rows <= 5.0)]).max() <= 0.3 + 1e-6
+
+
 def test_lines_grow_by_no_more_than_the_factor():
     lines = np.append(between(0.2, 31.0, 2.5), 31.0)
     growth = lines[1:] / lines[:-1]

@@ -98,7 +98,7 @@ class PunchLevel:
         left = 0.0 if work.stresses else least
         solved = SlidingPunch(space, task.response, plan.solver, least, self.heights(), left)
         self.punch, self.factor = solved, solved.factor
-        more = 2 * (space.degree - plan.degrees[task.number])
+        more = space.degree - plan.degrees[task.number]
         self.recovery = contact_recovery(
             space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)
         )
@@ -183,11 +183,11 @@ class PunchLevel:
 
 
 def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Functions of r with which nodal forces are tested, so many more than planned over layers."""
+    """Functions of r with which nodal forces are tested; over layers at so many degrees more."""
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: tests.stretch.functions(r, tests.count + more)
+    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:

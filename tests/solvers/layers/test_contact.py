@@ -141,12 +141,15 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
         assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8
 
 
-@pytest.mark.parametrize("terms", [20, 60, 300])
-def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch(terms):
-    """Many polynomials grow fast beyond the edges: how far they are taken there depends on how many."""
+@pytest.mark.parametrize("terms, limit", [(20, 1e-10), (60, 1e-10), (150, 1e-10), (300, 1e-9)])
+def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch(terms, limit):
+    """Many polynomials grow fast beyond the edges: how far they are taken there depends on how many.
+
+    SciPy's rule of 600 points keeps nine digits.
+    """
     c = np.exp(-0.4 * np.arange(terms)) + 1e-15
     pressure = Polynomial(Expansion(-0.45, -0.55, c))
-    X = np.array([-1.3, -1.1, -1.05, -1.001, 1.0005, 1.02, 1.1, 1.4])
+    X = np.array([-1.3, -1.1, -1.05, -1.001, 1.0002, 1.02, 1.1, 1.4])
     known = np.abs(X) <= pressure.near
     whole = pressure.rest(X, pressure.near)
     weights = weights_hilbert(-0.45, -0.55, X)
@@ -154,4 +157,4 @@ def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch
     fine = pressure.points(1e-3)
     exact = (fine[1] / (fine[0] - X[:, None])).sum(axis=1) / np.pi
     assert known.any()
-    assert np.abs(whole - exact).max() <= 1e-10 * np.abs(exact).max()
+    assert np.abs(whole - exact).max() <= limit * np.abs(exact).max()

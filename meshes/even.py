@@ -6,8 +6,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.reached import tagged
-from galinx.meshes.rings import QuadMesh
+from galinx.meshes.rings import QuadMesh, tagged
 
 
 @dataclass(frozen=True)

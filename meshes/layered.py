@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from galinx.meshes.charts import Physical
 from galinx.meshes.kind import DEGREES, MeshKind, Wanted
-from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, joined
+from galinx.meshes.rings import QuadMesh, tagged
 from galinx.meshes.strata import Strata, between
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
@@ -157,7 +157,7 @@ class OnLayers(MeshKind):
             for edge in (-1.0, 1.0)
             for side in (-1.0, 1.0)
         ]
-        return _tagged(np.concatenate([np.array(cells), *squares]), R)
+        return tagged(np.concatenate([np.array(cells), *squares]), 1.0 + R)
 
     def _lines(self, wanted: Wanted, b: float) -> list[NDArray[np.float64]]:
         """Distances of columns from an edge, beside the punch and under it; depths of rows below b."""
@@ -209,18 +209,6 @@ def _rings(
     # Clockwise as they are.
     found = np.array(cells) * size + [edge, 0.0]
     return found[:, ::-1] if size[0] > 0.0 else found
-
-
-def _tagged(quads: NDArray[np.float64], R: float) -> QuadMesh:
-    mesh = joined(quads.reshape(-1, 2), 1.0 + R)
-    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-    boundary = sides[index[count == 1]]
-    X, Y = mesh.points[boundary].mean(axis=1).T
-    top = Y == 0.0
-    edges = {CONTACT: boundary[top & (np.abs(X) < 1.0)], FREE: boundary[top & (np.abs(X) > 1.0)],
-             FAR: boundary[~top]}  # fmt: skip
-    return QuadMesh(mesh.points, mesh.cells, edges)
 
 
 def on_layers(

@@ -11,7 +11,7 @@ from math import ceil, log
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.rings import CONTACT, FAR, FREE, QuadMesh, Refinement, corner, joined
+from galinx.meshes.rings import QuadMesh, Refinement, corner, tagged
 
 #: Size of a ring over that of the ring outside it: straight cells ask for gentle ones.
 _RATIO = 0.25
@@ -68,16 +68,3 @@ class Reached:
         lines = first + np.array(x) * ((last - first) / x[-1])
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
         return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
-
-
-def tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:
-    """A mesh of quadrilaterals (n, 4, 2) below the surface whose far corners are at X = ±last."""
-    mesh = joined(quads.reshape(-1, 2), last)
-    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-    boundary = sides[index[count == 1]]
-    X, Y = mesh.points[boundary].mean(axis=1).T
-    top = Y == 0.0
-    edges = {CONTACT: boundary[top & (np.abs(X) < 1.0)], FREE: boundary[top & (np.abs(X) > 1.0)],
-             FAR: boundary[~top]}  # fmt: skip
-    return QuadMesh(mesh.points, mesh.cells, edges)

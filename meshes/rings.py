@@ -117,6 +117,19 @@ def joined(corners: NDArray[np.float64], Ξ: float) -> QuadMesh:
     return QuadMesh(points, cells, tagged_edges(points, cells, Ξ))
 
 
+def tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:
+    """A mesh of quadrilaterals (n, 4, 2) below the surface whose far corners are at X = ±last."""
+    mesh = joined(quads.reshape(-1, 2), last)
+    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
+    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+    boundary = sides[index[count == 1]]
+    X, Y = mesh.points[boundary].mean(axis=1).T
+    top = Y == 0.0
+    edges = {CONTACT: boundary[top & (np.abs(X) < 1.0)], FREE: boundary[top & (np.abs(X) > 1.0)],
+             FAR: boundary[~top]}  # fmt: skip
+    return QuadMesh(mesh.points, mesh.cells, edges)
+
+
 def labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
     """Whole numbers that are equal where values are, but for rounding.
 

@@ -17,6 +17,9 @@ except ImportError:  # elements were UFL's own
 
 _CELL = "quadrilateral"
 
+#: What FFCx made of an element, that dolfinx would look for again with each space.
+_compiled: dict[Any, Any] = {}
+
 
 def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1) -> Any:
     """A mesh shared out over the ranks; nodes of cells evenly spaced, in the order of Lagrange's."""
@@ -49,11 +52,24 @@ def vector_element(degree: int) -> Any:
     return ufl.VectorElement("Lagrange", _CELL, degree)
 
 
+def is_compiled(element: Any) -> bool:
+    """Has this process loaded what was compiled of an element?"""
+    return element in _compiled
+
+
 def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
-    """The functions on a mesh; ``options`` are the compiler's."""
+    """The functions on a mesh; ``options`` are the compiler's, where the element is not compiled yet."""
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, element)
-    return fem.FunctionSpace(mesh, element, jit_params=options)
+    if element not in _compiled:
+        _compiled[element] = dolfinx.jit.ffcx_jit(mesh.comm, element, jit_params=options)
+    (shape, layout), module, _ = _compiled[element]
+    address = module.ffi.addressof
+    known, dofs = (int(module.ffi.cast("uintptr_t", address(part))) for part in (shape, layout))
+    own = dolfinx.cpp.fem.FiniteElement(known)
+    dofmap = dolfinx.cpp.fem.create_dofmap(mesh.comm, dofs, mesh.topology, own)
+    made = dolfinx.cpp.fem.FunctionSpace(getattr(mesh, "_mesh", mesh), own, dofmap)
+    return fem.FunctionSpace(mesh, element, made)
 
 
 def reference_nodes(V: Any) -> NDArray[np.float64]:

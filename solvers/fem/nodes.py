@@ -1,6 +1,7 @@
 """Nodes of a part of the surface."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,4 +23,8 @@ class SurfaceNodes:
 
     def dofs(self, component: int) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
-        return 2 * self.blocks + component
+        return self._dofs[component]
+
+    @cached_property
+    def _dofs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return 2 * self.blocks, 2 * self.blocks + 1

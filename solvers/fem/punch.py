@@ -8,6 +8,7 @@ the normal reactions caused by tangential forces r, friction asks for
     (I - g T) R = R₀.
 
 The Krylov space of (T, R₀) serves every g at that speed; a profile P that is not flat has one of its own.
+For few nodes T is there as a matrix.
 Of a contact whose ends are found P is a combination of some shapes, each with a space of its own.
 """
 
@@ -28,6 +29,9 @@ from galinx.solvers.solids.solid import ByCells, Response
 
 #: Frictions for which a basis is completed at most.
 _SPREAD = 33
+
+#: Nodes of a contact up to which loads at all of them at once cost less than one after the other.
+_FEW_NODES = 64
 
 
 class SlidingPunch(Punch):
@@ -75,6 +79,7 @@ class SlidingPunch(Punch):
             self.factor = Factor(A, space.clock, definite=not space.mixed)
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
+        self._nodal: tuple[NDArray, NDArray] | None = None
         #: Of the flat punch, and of each shape.
         self._spaces = self._krylov_spaces([b, *shaped], negligible)
 
@@ -108,6 +113,7 @@ class SlidingPunch(Punch):
         self.destroy()
 
     def destroy(self) -> None:
+        self._nodal = None
         for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
 
@@ -173,18 +179,47 @@ class SlidingPunch(Punch):
 
     def _extend(self, spaces: Sequence[KrylovSpace]) -> None:
         """The displacement and the forces of one more tangential load of each."""
+        if len(self.space.contact.s) <= _FEW_NODES and isinstance(self.factor, Factor):
+            fields, forces = self._of_nodes(any(space.refines for space in self._spaces))
+            for space in spaces:
+                field = self.factor.A.createVecRight()
+                field.setArray(fields @ space.last)
+                space.take(field, forces @ space.last)
+            return
+        loads = self._tangential([space.last for space in spaces])
+        found = self._answers(loads, [space.refines for space in spaces])
+        for space, field in zip(spaces, found):
+            space.take(field, self._reactions(field))
+
+    def _of_nodes(self, refines: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Displacements (rows, n) and forces (2, n, n) that a tangential load at each node causes."""
+        if self._nodal is None:
+            n = len(self.space.contact.s)
+            found = self._answers(self._tangential(np.eye(n)), [refines] * n)
+            forces = np.array([self._reactions(field) for field in found])
+            self._nodal = np.array([field.array_r for field in found]).T, np.moveaxis(forces, 0, 2)
+            for field in found:
+                field.destroy()
+        return self._nodal
+
+    def _answers(self, loads: Sequence[PETSc.Vec], refines: Sequence[bool]) -> list[PETSc.Vec]:
+        """Displacements that loads cause, which are no longer needed, refined where that is wanted."""
+        found = self._displacements(loads)
+        refined = [i for i, wanted in enumerate(refines) if wanted]
+        self._refine([found[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
+        for b in loads:
+            b.destroy()
+        return found
+
+    def _tangential(self, forces: Sequence[NDArray]) -> list[PETSc.Vec]:
+        """Loads of tangential forces at the contact nodes, (n,) each."""
         nodes, loads = self.space.contact, []
-        for space in spaces:
+        for force in forces:
             b = self.factor.A.createVecLeft()
-            b.setValues(nodes.dofs(0), space.last[nodes.owned])
+            b.setValues(nodes.dofs(0), force[nodes.owned])
             b.assemble()
             loads.append(b)
-        fields = self._displacements(loads)
-        refined = [i for i, space in enumerate(spaces) if space.refines]
-        self._refine([fields[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
-        for space, field, b in zip(spaces, fields, loads):
-            b.destroy()
-            space.take(field, self._reactions(field))
+        return loads
 
     def _displacements(self, forces: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
         """The displacements for nodal forces, with what the held displacements cause."""

@@ -129,8 +129,11 @@ class Space:
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
 
     def _functions(self, element: Any) -> Any:
-        with self.clock("forms"), compiling(self.comm, repr(element), self._say) as options:
-            return adapter.space(self.mesh, element, options)
+        with self.clock("forms"):
+            if self.comm.allreduce(adapter.is_compiled(element), MPI.LAND):
+                return adapter.space(self.mesh, element, {})
+            with compiling(self.comm, repr(element), self._say) as options:
+                return adapter.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.

@@ -6,6 +6,7 @@ from scipy.special import eval_chebyt
 from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
+from galinx.solvers.fem import punch as punches
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -63,3 +64,23 @@ def test_solutions_are_refined_where_that_changes_forces(c, refines):
     assert where_needed.factor.solves == (2 * fields if refines else fields + 1)
     scale = np.linalg.norm(wanted.normal)
     assert np.linalg.norm(found.normal - wanted.normal) <= 2e-10 * scale
+
+
+@pytest.mark.parametrize("c", [0.0, 0.6, 0.91])
+@pytest.mark.parametrize("frictions", [3, 60])
+def test_loads_at_every_node_find_what_steps_from_load_to_load_find(c, frictions, monkeypatch):
+    g = np.linspace(-0.9, 0.8, frictions)
+    by_steps, by_nodes = small_punch(c), small_punch(c)
+    wanted = by_steps.states(g)
+    monkeypatch.setattr(punches, "_FEW_NODES", len(by_nodes.space.contact.s))
+    found = by_nodes.states(g)
+    assert by_nodes.factor.solves > len(by_nodes.space.contact.s) > by_steps.factor.solves
+    assert len(by_nodes.fields) == len(by_steps.fields)
+    scale = np.abs(wanted.normal).max()
+    np.testing.assert_allclose(found.normal, wanted.normal, rtol=0.0, atol=1e-10 * scale)
+    np.testing.assert_allclose(found.v0, wanted.v0, rtol=1e-9)
+    fields = [
+        sum(w * field.array for w, field in zip(state.weights[0], punch.fields))
+        for state, punch in ((wanted, by_steps), (found, by_nodes))
+    ]
+    assert np.linalg.norm(fields[1] - fields[0]) <= 1e-9 * np.linalg.norm(fields[0])

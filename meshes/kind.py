@@ -23,9 +23,17 @@ def as_drawn(points: NDArray, _: Refinement) -> NDArray:
 #: Exponent of a pressure that is still resolved: with a stronger one rings would never end.
 _STRONGEST = -0.95
 
-#: How far apart fields may live before cells finer in angle are needed; from what on, and by how much, a
-#: sector more stands for each step.
-_APART, _FROM, _STEP = 1.2, 0.9, 0.8
+#: How far apart fields may live before cells finer in angle are needed, from what on, and by how much, a
+#: sector more stands for each step: for K_I and moments alone, for stresses on the surface that rings of
+#: their own tell, for stresses inside, and for all others.
+_ALONE, _BESIDE, _INSIDE, _AROUND = (1.0, 0.65, 0.8), (1.9, 1.9, 0.8), (0.5, 0.5, 0.65), (1.2, 0.9, 0.8)
+
+#: How far apart they may live before the outermost ring is cut, and before stresses on the surface ask
+#: for a degree more, or at a tight tolerance for gentler rings.
+_TURNED, _HIGHER = 0.5, 0.7
+
+#: Tolerance from which on rings of stresses have a ratio of their own.
+_LOOSE = 2e-4
 
 #: Sectors up to which, being more than isotropic solids need, they spare a degree.
 _SPARING = 3
@@ -55,6 +63,7 @@ class Wanted:
         farthest: largest coordinate over a of such a place.
         exponent: of the strongest singularity of the pressure, in (-1, -1/2]; 1/2 where it has none.
         around: are such places all round the edges?
+        inside: are some of them below the surface?
         spread: how far apart the planes are in which the solid's fields are analytic, see
             :class:`galinx.solvers.solids.solid.Response`.
         bends: is the surface under the punch not straight, nor the pressure that of a flat one?
@@ -65,6 +74,7 @@ class Wanted:
     farthest: float = 0.0
     exponent: float = -0.5
     around: bool = False
+    inside: bool = False
     spread: float = 0.0
     bends: bool = False
 
@@ -81,6 +91,8 @@ class MeshKind:
         column: largest width in ξ of a column outside the rings.
         alone: the same where K_I and the pressure's moments are wanted alone, for isotropic solids; see
             ``column`` if None.
+        stressed: ratio of rings for stresses, at a degree less on the surface; 0 for ``ratio``.
+        tight: the same on the surface below the tolerance ``gentle``, of solids that need more.
         place: puts points (n, 2) of the pattern with a refinement into that chart.
         fan: what fills the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
@@ -102,6 +114,8 @@ class MeshKind:
     ratio: float
     column: float
     alone: float | None = None
+    stressed: float = 0.0
+    tight: float = 0.0
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
     fan: bool = False
     rings: bool = True
@@ -129,6 +143,10 @@ class MeshKind:
         if self._gentler(wanted):
             # An even number puts a vertex into the corners of walls.
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
+            if not self._in_angle(wanted) and self._apart(wanted) > _HIGHER:
+                ratio = max(ratio, self.tight)
+        elif self._own_rings(wanted):
+            ratio = self.stressed
         finer = self._finer(wanted)
         sectors += finer
         if finer and wanted.nearest is None:
@@ -144,7 +162,7 @@ class MeshKind:
         columns = (first, *((reach - first) / count,) * count)
         if not self.rings:
             levels, columns = 0, (reach / (count + 1),) * (count + 1)
-        parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > 0.5)
+        parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > _TURNED)
         pieces = 1 + parts + self._cuts_middle(wanted)
         crowding = _CROWDING if finer and wanted.nearest is None else 0.0
         return Refinement(levels, ratio, sectors, columns, pieces, crowding)
@@ -153,6 +171,25 @@ class MeshKind:
         """Do stresses ask for gentler rings, and more cells in angle?"""
         tight = wanted.around or self._of_cells(wanted) < self.gentle
         return wanted.nearest is not None and tight
+
+    def _own_rings(self, wanted: Wanted) -> bool:
+        """Have stresses rings of a ratio of their own, that is not gentler still?"""
+        if not self.stressed or wanted.nearest is None or self._gentler(wanted):
+            return False
+        turned = not wanted.inside or self._apart(wanted) > _TURNED
+        return turned and self._of_cells(wanted) < _LOOSE
+
+    def _in_angle(self, wanted: Wanted) -> bool:
+        """Are stresses wanted off the surface, or is it a mesh whose rings do not tell those on it?"""
+        return wanted.inside or wanted.around or not self.stressed
+
+    def _turning(self, wanted: Wanted) -> tuple[float, float, float]:
+        """How far apart fields may live, see ``_ALONE`` and those after it."""
+        if wanted.nearest is None:
+            return _ALONE
+        if not self._in_angle(wanted) and self._of_cells(wanted) < _LOOSE:
+            return _BESIDE
+        return _INSIDE if wanted.inside and self._own_rings(wanted) else _AROUND
 
     def _cuts_middle(self, wanted: Wanted) -> bool:
         """Is the outermost ring cut, which meets in the middle of the contact?
@@ -174,7 +211,8 @@ class MeshKind:
         can, whose outermost ring is cut before that. Measured, see docs/verification.md.
         """
         apart = self._apart(wanted)
-        more = ceil((apart - _FROM) / _STEP) if apart > _APART else 0
+        least, start, step = self._turning(wanted)
+        more = ceil((apart - start) / step) if apart > least else 0
         return more + more % 2 if self.walls else more
 
     def _innermost(self, wanted: Wanted) -> float:
@@ -200,7 +238,10 @@ class MeshKind:
         if wanted.nearest is not None:
             more = 1.0 if self._gentler(wanted) else 0.6 + 0.15 * digits
         degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits + more)
-        degree -= 0 < self._finer(wanted) <= _SPARING or self._cuts_middle(wanted)
+        spared = 0 < self._finer(wanted) <= _SPARING
+        if self._own_rings(wanted) and not wanted.inside:
+            spared = self._finer(wanted) == 1 or self._apart(wanted) <= _HIGHER
+        degree -= spared or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
     def reach(self, wanted: Wanted) -> float:

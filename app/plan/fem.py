@@ -224,8 +224,8 @@ def wanted_for(tolerance: float, places: Places, exponent: float, spread: float)
         return Wanted(tolerance, exponent=exponent, spread=spread)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = float(np.hypot(X, Y).max())
-    around = bool(len(places.around))
-    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, spread)
+    around, inside = bool(len(places.around)), bool(len(places.points))
+    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread)
 
 
 def wanted_of_free_ends(wanted: Wanted) -> Wanted:

@@ -26,7 +26,7 @@ _STRONGEST = -0.95
 #: How far apart fields may live before cells finer in angle are needed, from what on, and by how much, a
 #: sector more stands for each step: for K_I and moments alone, for stresses on the surface that rings of
 #: their own tell, for stresses inside, and for all others.
-_ALONE, _BESIDE, _INSIDE, _AROUND = (1.0, 0.65, 0.8), (1.9, 1.9, 0.8), (0.5, 0.5, 0.65), (1.2, 0.9, 0.8)
+_ALONE, _BESIDE, _INSIDE, _AROUND = (1.0, 0.65, 0.8), (1.9, 1.9, 0.8), (0.5, 0.55, 0.65), (1.2, 0.9, 0.8)
 
 #: How far apart they may live before the outermost ring is cut, and before stresses on the surface ask
 #: for a degree more, or at a tight tolerance for gentler rings.

@@ -105,7 +105,7 @@ def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     scene = template("tables4_5", LARGE)
     monkeypatch.setattr(cost, "free_memory", lambda: 64e9)
     assert make_plan(scene).fem.solver == "direct"
-    monkeypatch.setattr(cost, "free_memory", lambda: 6e9)
+    monkeypatch.setattr(cost, "free_memory", lambda: 8e9)
     plan = make_plan(scene)
     assert plan.fem.solver == "multigrid" and not plan.warnings
     assert any(

@@ -24,12 +24,10 @@ FAST = (
 #: Fixtures that compute; what asks for one is not fast wherever it is.
 SLOW = {"tables_run", "map_run", "inside_run", "archives"}
 #: Tests of what dolfinx and PETSc do, each way to use them once: meshes, spaces, factors, and every kind
-#: of scene on one rank and on two. What a result is made of then does not depend on their version.
+#: of scene on one rank and on two (mpi/). What a result is made of then does not depend on their version.
 FEM = (
     "app/commands/test_compute.py", "app/results/test_paraview.py", "app/run/test_fixed_degree.py",
-    "app/run/test_found_ends.py", "app/run/test_inside.py", "app/run/test_layers_fem.py",
-    "app/run/test_over_time.py", "app/run/test_own_pressure.py", "app/run/test_sweeps.py", "meshes/",
-    "mpi/", "solvers/fem/",
+    "meshes/", "mpi/", "solvers/fem/",
 )  # fmt: skip
 
 

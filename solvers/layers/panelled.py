@@ -9,7 +9,7 @@ smooth. With p the pressure without its weight w the dominant part of the equati
 for what p(r) alone contributes is what the exponents make vanish.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -207,6 +207,14 @@ def _x(r: NDArray) -> NDArray[np.float64]:
 
 def solved(equation: Any, finest: float) -> PanelledPressure:
     """The pressure of an :class:`galinx.solvers.layers.contact.Equation` on such panels."""
+    panels, p = parts(equation, finest, [equation.slope], [-2.0])
+    return PanelledPressure(panels, p[:, 0])
+
+
+def parts(
+    equation: Any, finest: float, slopes: Sequence[Callable[[NDArray], NDArray]], loads: Sequence[float]
+) -> tuple[Panels, NDArray[np.float64]]:
+    """Pressures under several slopes with several resultants, by values at points of panels, (n, slopes)."""
     panels = Panels(equation.α, equation.β, finest)
     n, count = equation.n, len(panels.x)
     apart = panels.apart(panels.x[:, None], panels.x - panels.x[:, None])
@@ -221,7 +229,7 @@ def solved(equation: Any, finest: float) -> PanelledPressure:
         A[i] += by_kernel[:, 3] + equation.g * by_kernel[:, 2]
     scale = 1.0 / panels.weight(panels.x)
     A = np.vstack([A * scale[:, None], panels.weights])
-    b = np.append(equation.slope(panels.t) * scale, -2.0)
+    b = np.vstack([np.stack([slope(panels.t) * scale for slope in slopes], axis=-1), loads])
     p, *_ = np.linalg.lstsq(A, b, rcond=None)
     assert len(p) == count
-    return PanelledPressure(panels, p)
+    return panels, p

@@ -13,6 +13,7 @@ from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.rule import Comparison, Rule, largest_of
+from galinx.postprocess.rules_of_ends import OF_ENDS
 from galinx.postprocess.rules_of_layers import ON_LAYERS
 from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
@@ -121,18 +122,6 @@ def _depth(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None
 
 
-def _ends(data: dict[str, Any], _: float) -> float:
-    size = data[of.HALF_WIDTH[CLOSED_FORM].path]
-    off = [data[row[FEM].path] - data[row[CLOSED_FORM].path] for row in (of.HALF_WIDTH, of.CENTRE)]
-    return float((np.abs(off) / size).max())
-
-
-def _largest_pressure(data: dict[str, Any], _: float) -> float | None:
-    fem, exact = (data[of.LARGEST[method].path] for method in (FEM, CLOSED_FORM))
-    off = np.abs(fem / exact - 1.0)
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
-
-
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -176,14 +165,7 @@ RULES: Registry[Rule] = Registry(
             (of.ESTIMATE,), largest_of(of.ESTIMATE), tolerances=1.0,
         ),
         **ON_LAYERS,
-        "ends": Rule(
-            "ends of the contact, over its half-width",
-            (*of.HALF_WIDTH.values(), *of.CENTRE.values()), _ends, tolerances=1.0,
-        ),
-        "largest pressure": Rule(
-            "largest contact pressure, relative", (*of.LARGEST.values(),), _largest_pressure,
-            tolerances=1.0,
-        ),
+        **OF_ENDS,
         "exponents": Rule(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,

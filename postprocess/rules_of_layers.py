@@ -17,9 +17,12 @@ from galinx.solvers.contact import under_punch
 _VANISHING = 0.1
 
 
-def _intensities_of_layers(data: dict[str, Any], _: float) -> float:
+def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
+    """Ends that are found have none."""
     sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
     fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
+    if not sie.any():
+        return None
     size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
     return float((np.abs(fem - sie) / size).max())
 

@@ -34,7 +34,7 @@ _ALWAYS = (
 #: What says where values of these dimensions are.
 _POSITIONS = {
     POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y),
-    INTERFACE: (layers.INTERFACE_DEPTH,), ALONG: (layers.ALONG_X,),
+    ALONG: (layers.ALONG_X,),
 }  # fmt: skip
 
 

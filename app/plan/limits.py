@@ -17,6 +17,7 @@ from galinx.meshes import MESHES, Wanted
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
@@ -151,7 +152,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
     if scene.solve.mode != "contact":
         faults.append(f'solve.mode is "{scene.solve.mode}"')
-    if body.found:
+    if body.found and not isinstance(body.profile, Parabolic):
         faults.append(f"the punch is a {body.profile.words()}, whose contact ends are found")
     if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}")

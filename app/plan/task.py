@@ -135,7 +135,10 @@ class Plan:
             X, Y = self.places.points.T
             found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
         if self.asks(layers.AT_INTERFACES):
-            found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            if self.body.found:
+                found[layers.INTERFACE_DEPTH_IN_M.path] = self.body.solid.depths  # type: ignore[attr-defined]
+            else:
+                found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
             found[layers.ALONG_X.path] = self.places.along
         return found
 

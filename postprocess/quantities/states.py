@@ -16,6 +16,7 @@ from galinx.postprocess.quantities.quantity import (
     LOCAL,
     OWN_PRESSURE,
     QUANTITIES,
+    SIE,
     STATE,
     SWEPT,
     Quantity,
@@ -123,13 +124,14 @@ FITTED = Quantity(
 def _found(
     name: str, unit: str, about: str, of: Callable[[Any], NDArray], compared: str = "", **options: Any
 ) -> dict[str, Quantity]:
-    """A quantity of contacts whose ends are found, by both methods."""
+    """A quantity of contacts whose ends are found, by all methods."""
+    rules = (compared, f"{compared} over layers") if compared else ()
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), lambda s, _: of(s), method, FOUND,
-            compared=(compared,) * (method == FEM and bool(compared)), **options,
+            compared=rules * (method == FEM), **options,
         )
-        for method in (CLOSED_FORM, FEM)
+        for method in (CLOSED_FORM, SIE, FEM)
     }  # fmt: skip
 
 

@@ -8,7 +8,7 @@ half-width h. It grows with h, which is found for the load that is wanted.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,9 +27,10 @@ from galinx.solvers.layers.contact import (
     not_met,
 )
 from galinx.solvers.layers.kernel import REACH, Kernel, Scaled
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.layers.pressure import Pressure
-from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.states import Frictions, Speed
+from galinx.solvers.profiles.parabolic import Parabolic
 
 #: Slopes under a parabola, the flat punch's first.
 _SHAPES = (np.zeros_like, np.ones_like, np.asarray)
@@ -37,6 +38,8 @@ _SHAPES = (np.zeros_like, np.ones_like, np.asarray)
 _STEPS, _LARGEST, _ROUNDING = 60, 1.5, 1e-13
 #: By how much the load's logarithm grows with that of the half-width, before it is known.
 _GROWTH = 2.0
+#: Accuracy of a half-width that others are told over.
+_AT_REST = 1e-5
 #: How much farther kernels are tabulated than the largest contact so far asks for.
 _FARTHER = 1.5
 
@@ -186,8 +189,8 @@ def balanced(at: Callable[[float], tuple[float, Any, float]], x: float) -> tuple
             return x, more[0], more[1]
         before, x = (x, off), x + step
     raise SolveError(
-        f"no contact over the layers was found that carries the load: {before} is what was tried last (the "
-        "half-width's logarithm, and the load's that it takes over the wanted one), expected 0"
+        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width came "
+        f"to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the limit"
     )
 
 
@@ -225,14 +228,19 @@ class Contacts(Frictions):
         return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
 
-def at_rest(stack: Stack, response: Any, punch: Parabola, tolerance: float) -> float:
-    """Half-width of the contact at rest without friction.
+@lru_cache(maxsize=256)
+def half_width_at_rest(solid: Layered, punch: Parabolic, compression: float) -> float:
+    """Half-width [m] of a contact at rest without friction, to some digits: what others are told over.
 
     Args:
-        stack: layers at rest, lengths over a shared one.
-        response: of the surface's solid at rest.
-        punch: the punch.
-        tolerance: relative.
+        solid: the layers.
+        punch: the parabola.
+        compression: N/μ [m].
     """
-    speed = FoundSpeed(response, stack, np.zeros_like, tolerance, punch)
-    return speed.contact(0.0).half_width
+    response = solid.response(0.0)
+    # That on the surface's solid alone is near enough to measure lengths by.
+    unit = float((2.0 * compression * punch.radius * response.n / np.pi) ** 0.5)
+    parabola = Parabola(punch.radius / unit, compression / unit)
+    stack = response.stack(unit, _AT_REST)
+    speed = FoundSpeed(response, stack, np.zeros_like, _AT_REST, parabola)
+    return unit * speed.contact(0.0).half_width

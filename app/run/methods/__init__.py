@@ -38,9 +38,9 @@ def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _layers_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if not body.layered:
         return "the solid has no layers, and closed_form knows the solution"
-    if body.found:
-        return "of layered solids, punches with two sharp edges are known"
-    return "the pressure is given" if body.pressure else ""
+    if body.pressure:
+        return "the pressure is given"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
@@ -103,7 +103,9 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
         return ""
     if quantity is states.INDENTATION:
         return "the far boundary moves with the load"
-    return _without_σ_ZZ(body, quantity)
+    if body.found and quantity is stresses.RAW_PRESSURE:
+        return "σ_YY itself is that of the nodal forces there"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:

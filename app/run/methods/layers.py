@@ -37,6 +37,11 @@ class Layers:
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         body, response = task.body, task.response
         stack = response.stack(body.half_width)  # type: ignore[attr-defined]
+        if body.found:
+            from galinx.app.run.methods.found_layers import at_speed
+
+            yield at_speed(task, stack, self.tolerance, g)
+            return
         speed = Speed(response, stack, body.slope, self.tolerance)
         yield AtSpeed(task, speed, *speed.solved(g))
 
@@ -107,7 +112,7 @@ class AtSpeed:
         places, found, errors = self.task.places, [], []
         for depth in places.interfaces.tolist():
             level, (u_X, σ_YY, σ_XY) = self.level(depth, places.along)
-            both = [_in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
+            both = [in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
             found.append([σ_YY, σ_XY, *both])
             errors.append(level.error * max(1.0, *(medium.modulus for medium in level.media)))
         return np.moveaxis(np.array(found), 0, 3), np.array(errors)
@@ -123,7 +128,7 @@ class AtSpeed:
         for Y in np.unique(points[:, 1]).tolist():
             some = points[:, 1] == Y
             level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[some, 0])
-            found[..., some] = _in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+            found[..., some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
             errors[some] = level.error * max(1.0, level.media[0].modulus)
         return found, errors
 
@@ -148,9 +153,14 @@ class Punches:
     g: NDArray[np.float64]
 
     @cached_property
-    def local(self) -> FlatPunch:
-        """The edges, like those on a half-plane of the surface's solid."""
+    def edges(self) -> FlatPunch:
+        """Sharp edges, like those on a half-plane of the surface's solid."""
         return FlatPunch(self.at.task.response, self.g)
+
+    @property
+    def local(self) -> Any:
+        """Exponents at the ends."""
+        return self.edges
 
     @cached_property
     def _by_nodes(self) -> NDArray[np.float64]:
@@ -205,7 +215,7 @@ class Punches:
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_YY, 0 beside the punch, and σ_XX; each with fewer unknowns besides, (2, states, n)."""
         at, places, response = self.at, self.at.task.places, self.at.task.response
-        X, g, local = places.X, self.g[:, None], self.local
+        X, g, local = places.X, self.g[:, None], self.edges
         α, β = local.α[:, None], local.β[:, None]
         p = np.zeros((2, len(self.g), len(X)))
         p[..., at.near] = self._of_both(at.series)
@@ -276,7 +286,7 @@ _ESTIMATES: dict[str, Callable[[Estimates], NDArray[np.float64]]] = {
 }
 
 
-def _in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
     """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
     M = medium.modulus
     return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))

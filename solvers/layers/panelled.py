@@ -50,7 +50,7 @@ class Panels:
     """A rule for what has the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
-        α, β: exponents, their sum -1.
+        α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
         finest: longest panel in t.
     """
 
@@ -87,12 +87,12 @@ class Panels:
     def density(self, x: NDArray) -> NDArray[np.float64]:
         """Weight times dt/dx; 1 - t = 2/(1 + e^x), and dt/dx is half the product of 1 - t and 1 + t."""
         log = -(1.0 + self.α) * np.logaddexp(0.0, x) - (1.0 + self.β) * np.logaddexp(0.0, -x)
-        return np.asarray(np.exp(log))
+        return np.asarray(2.0 ** (self.α + self.β + 1.0) * np.exp(log))
 
     def weight(self, x: NDArray) -> NDArray[np.float64]:
         """(1 - t)^α (1 + t)^β."""
         log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
-        return np.asarray(np.exp(log) / 2.0)
+        return np.asarray(2.0 ** (self.α + self.β) * np.exp(log))
 
     def apart(self, x: Any, δ: NDArray) -> NDArray[np.float64]:
         """t(x + δ) - t(x), to all digits."""

@@ -1,6 +1,6 @@
 """How far finite elements and closed form agree, and whether the forces balance."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -43,11 +43,14 @@ def _imbalance(data: dict[str, Any], load: Any) -> float:
     return off.max()
 
 
-def _resultant(data: dict[str, Any], load: Any) -> float:
-    rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO)
-    normal, tangential, exact, g = (data[row.path] for row in rows)
-    off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
-    return (off / np.maximum(np.abs(exact), load)).max()
+def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
+    def measure(data: dict[str, Any], load: Any) -> float:
+        rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT[other], of.RATIO)
+        normal, tangential, exact, g = (data[row.path] for row in rows)
+        off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
+        return float((off / np.maximum(np.abs(exact), load)).max())
+
+    return measure
 
 
 def _intensities(data: dict[str, Any], _: float) -> float | None:
@@ -146,11 +149,14 @@ RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
-        "resultant": Rule(
-            "nodal forces against the resultant of the pressure, over it or N",
-            (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO), _resultant,
-            limit=BALANCE.limit, own_pressure=True,
-        ),
+        **{
+            next(iter(row.compared)): Rule(
+                f"nodal forces against the resultant of the pressure{name}, over it or N",
+                (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, row, of.RATIO), _resultant(method),
+                limit=BALANCE.limit, own_pressure=True,
+            )
+            for (method, row), name in zip(of.RESULTANT.items(), ("", " over layers"))
+        },
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,

@@ -153,11 +153,14 @@ LARGEST_X = _found(
     lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0),
 )  # fmt: skip
 
-RESULTANT = Quantity(
-    "states/closed_form/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
-    lambda s, body: s.normal_force * body.force, CLOSED_FORM, OWN_PRESSURE, compared=("resultant",),
-    accuracy=True,
-)  # fmt: skip
+#: By method.
+RESULTANT = {
+    method: Quantity(
+        f"states/{method}/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
+        lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,), accuracy=True,
+    )
+    for method, rule in ((CLOSED_FORM, "resultant"), (SIE, "resultant over layers"))
+}  # fmt: skip
 
 
 #: Share of the larger intensity below which the other is not measured against itself.

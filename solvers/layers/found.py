@@ -241,6 +241,5 @@ def half_width_at_rest(solid: Layered, punch: Parabolic, compression: float) -> 
     # That on the surface's solid alone is near enough to measure lengths by.
     unit = float((2.0 * compression * punch.radius * response.n / np.pi) ** 0.5)
     parabola = Parabola(punch.radius / unit, compression / unit)
-    stack = response.stack(unit, _AT_REST)
-    speed = FoundSpeed(response, stack, np.zeros_like, _AT_REST, parabola)
+    speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, parabola)
     return unit * speed.contact(0.0).half_width

@@ -131,6 +131,8 @@ class FollowedLevel:
         self, work: FollowingMesh, task: Task, space: Space, g: float, punch: Parabolic
     ) -> None:
         self.space, self._g, self._task, plan = space, np.array([g]), task, work.plan
+        assert plan.tests
+        stretch = plan.tests.stretch
         r = space.chart.surface_position(space.contact.s)
         solved = SlidingPunch(
             space, task.response, plan.solver, negligible(work), np.stack([r, r**2])  # type: ignore[arg-type]
@@ -141,9 +143,7 @@ class FollowedLevel:
         )
         local = FlatPunch(task.response, self._g)
         try:
-            self.factor, assert_tests = solved.factor, plan.tests
-            assert assert_tests
-            stretch = assert_tests.stretch
+            self.factor = solved.factor
 
             def K_I(part: Part) -> NDArray[np.float64]:
                 moments = part.tested(recovery.moments)

@@ -24,6 +24,8 @@ _MESHES, _LARGEST, _SLOPES = 40, 1.2, (0.5, 15.0)
 #: How near the half-width has to be before a degree is high, by how much it is lower until then, and how
 #: near, over the tolerance, before nothing is moved any more.
 _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.1
+#: Least difference of the half-width's logarithm by which loads of two meshes tell how these grow.
+_APART = 1e-3
 #: Share of the tolerance that may be left of it once all is solved; a mesh more is drawn otherwise.
 _LEFT = 0.3
 
@@ -110,7 +112,7 @@ class _Contact:
 
     def moved(self, x: float, off: float) -> float:
         """The half-width's logarithm by a secant, or by how the load grew with it before."""
-        if self._before is not None and x != self._before[0]:
+        if self._before is not None and abs(x - self._before[0]) > _APART:
             low, high = _SLOPES
             self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
         self._before = x, off

@@ -37,6 +37,11 @@ class Layers:
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         body, response = task.body, task.response
         stack = response.stack(body.half_width)  # type: ignore[attr-defined]
+        if body.pressure:
+            from galinx.app.run.methods.given_layers import at_speed as of_given
+
+            yield of_given(task, stack, self.tolerance)
+            return
         if body.found:
             from galinx.app.run.methods.found_layers import at_speed
 

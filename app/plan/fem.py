@@ -38,6 +38,8 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 _FARTHER = 1e3
 #: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
 FOLLOWED = "meshes that follow the contact"
+#: And that in which a pressure is put in over layers.
+LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
 
@@ -61,8 +63,8 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         wanted: what the mesh has to be good for.
-        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES`` or
-            ``FOLLOWED``.
+        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES``,
+            ``FOLLOWED`` or ``LOADS``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
@@ -125,7 +127,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
         depths = scene.solid.depths / scene.body.half_width
-        kind, name = layers.kind_of(depths, responses), "layered"
+        knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
+        kind, name = layers.kind_of(depths, responses, knots), "layered"
     _check_degree_and_solver(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
@@ -139,7 +142,9 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         wanted = replace(wanted, bends=_mode(scene) == FOUND)
     if _mode(scene) == OWN_MESHES:
         wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
-    if solve.own_pressure:
+    if solve.own_pressure and scene.layers:
+        wanted = layers.wanted_of_loads(wanted)
+    elif solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     refinement = kind.refinement(wanted)
     degrees = tuple(
@@ -164,7 +169,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
 
 def _mode(scene: Scene) -> str:
     if not scene.body.found:
-        return scene.solve.modes[-1]
+        return LOADS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
     if scene.layers:
         return FOLLOWED
     return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES

@@ -11,6 +11,7 @@ from galinx.meshes import MeshKind, Wanted
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.postprocess.stretched import Stretch
 from galinx.solvers.layers.layered import Layered
+from galinx.solvers.rays import NEAR
 from galinx.solvers.solids import Solid
 
 #: How far apart a surface's fields may live so that cells are drawn together for both.
@@ -56,8 +57,24 @@ def wanted_of_free_ends(wanted: Wanted) -> Wanted:
     return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END))
 
 
-def kind_of(depths: NDArray, responses: Sequence[Any]) -> OnLayers:
-    """The kind of mesh of layered solids with interfaces at depths over a, at some speeds."""
+def wanted_of_loads(wanted: Wanted) -> Wanted:
+    """What a mesh has to be good for under a pressure that is put in, stresses next to whose knots are
+    continued from farther away."""
+    if wanted.nearest is None:
+        return wanted
+    return replace(wanted, nearest=max(wanted.nearest, NEAR))
+
+
+def kind_of(
+    depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)
+) -> OnLayers:
+    """The kind of mesh of layered solids, at some speeds.
+
+    Args:
+        depths: of the interfaces over a.
+        responses: of the half-plane, one a speed.
+        places: over a towards which cells are graded.
+    """
     roots = [[p.imag for p in response.surface.roots.each] for response in responses]
     # Fields that live far apart have no middle.
     apart = max(response.spread for response in responses) > _APART
@@ -68,6 +85,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any]) -> OnLayers:
         far_length=max(response.far_field.length for response in responses),
         roots=_roots(responses),
         changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
+        places=tuple(places),
     )
 
 

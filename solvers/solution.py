@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from galinx.solvers.contact import under_punch
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.solid import Response
@@ -138,6 +138,7 @@ class Body:
         """Half-width over layers under a load [m]."""
         from galinx.solvers.layers.found import half_width_at_rest
 
+        assert isinstance(self.solid, Layered) and isinstance(self.profile, Parabolic)
         return half_width_at_rest(self.solid, self.profile, load / self.solid.μ)
 
     @property

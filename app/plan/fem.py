@@ -133,19 +133,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
-    wanted = wanted_for(solve.tolerance, places, exponent, spread)
-    if scene.layers and scene.body.free:
-        wanted = layers.wanted_of_free_ends(wanted)
-    elif scene.body.free:
-        wanted = wanted_of_free_ends(wanted)
-        # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
-        wanted = replace(wanted, bends=_mode(scene) == FOUND)
-    if _mode(scene) == OWN_MESHES:
-        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
-    if solve.own_pressure and scene.layers:
-        wanted = layers.wanted_of_loads(wanted)
-    elif solve.own_pressure:
-        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
+    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread))
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -165,6 +153,24 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         tests=layers.tests_of(scene.solid, kind, wanted),
         sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
     )  # fmt: skip
+
+
+def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
+    """What a mesh has to be good for, by what is pressed on."""
+    solve = scene.solve
+    if scene.layers:
+        if scene.body.free:
+            return layers.wanted_of_free_ends(wanted)
+        return layers.wanted_of_loads(wanted) if solve.own_pressure else wanted
+    if scene.body.free:
+        wanted = wanted_of_free_ends(wanted)
+        # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
+        wanted = replace(wanted, bends=_mode(scene) == FOUND)
+    if _mode(scene) == OWN_MESHES:
+        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
+    if solve.own_pressure:
+        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
+    return wanted
 
 
 def _mode(scene: Scene) -> str:

@@ -1,4 +1,4 @@
-"""What finite elements over layers need: meshes along interfaces, and what the pressure is read off by."""
+"""What finite elements over layers need: meshes along interfaces, and how pressures are read off them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -65,9 +65,7 @@ def wanted_of_loads(wanted: Wanted) -> Wanted:
     return replace(wanted, nearest=max(wanted.nearest, NEAR))
 
 
-def kind_of(
-    depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)
-) -> OnLayers:
+def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
     """The kind of mesh of layered solids, at some speeds.
 
     Args:

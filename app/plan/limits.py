@@ -155,7 +155,9 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
     faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
     if scene.solve.mode == "traction" and not scene.solve.own_pressure:
-        faults.append('solve.mode is "traction" with the pressure of a closed form, which layers do not have')
+        faults.append(
+            'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
+        )
     if body.found and not isinstance(body.profile, Parabolic):
         faults.append(f"the punch is a {body.profile.words()}, whose contact ends are found")
     if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
@@ -205,9 +207,9 @@ def _check_knots(knots: NDArray) -> None:
     width = float(np.diff(knots).min())
     if len(knots) > _KNOTS or width < _APART:
         raise BadInput(
-            f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, expected at "
-            f"most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose cells are graded towards "
-            'each; take methods = ["sie"]'
+            f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, expected "
+            f"at most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose cells are "
+            'graded towards each; take methods = ["sie"]'
         )
 
 

@@ -48,9 +48,9 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
         ]
     if fem.mode == FOLLOWED:
         return [
-            f"finite elements: {plan.different} states, each on meshes along the interfaces that follow its "
-            f"contact until this carries the load, degree {max(fem.degrees)} or what the measured error "
-            "asks for"
+            f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
+            f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
+            "error asks for"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2

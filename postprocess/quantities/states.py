@@ -157,7 +157,8 @@ LARGEST_X = _found(
 RESULTANT = {
     method: Quantity(
         f"states/{method}/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
-        lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,), accuracy=True,
+        lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,),
+        accuracy=True,
     )
     for method, rule in ((CLOSED_FORM, "resultant"), (SIE, "resultant over layers"))
 }  # fmt: skip

@@ -1,9 +1,9 @@
 """Contacts over layers whose ends are found, by the singular integral equation.
 
-The equation of a contact from m - h to m + h whose ends were sharp edges is linear in the slope there: under
-a parabola, of (m + h r)/R. The intensities at both ends vanish for one sum of three pressures, that of a
-flat punch and those under the slopes 1 and r; their shares tell m and the load that makes a contact of the
-half-width h. It grows with h, which is found for the load that is wanted.
+The equation of a contact from m - h to m + h whose ends were sharp edges is linear in the slope there:
+under a parabola, of (m + h r)/R. The intensities at both ends vanish for one sum of three pressures, that
+of a flat punch and those under the slopes 1 and r; their shares tell m and the load that makes a contact
+of the half-width h. It grows with h, which is found for the load that is wanted.
 """
 
 from collections.abc import Callable
@@ -70,7 +70,11 @@ class Parabola:
         shift, bend = np.linalg.solve(K[:, 1:], -K[:, 0])
         # The slope over N/(2h) is (2h/(N/μ)) (m + h r)/R.
         taken = 2.0 * h**2 / (self.radius * bend) if bend > 0.0 else np.inf
-        return np.array([1.0, shift, bend]), float(h * shift / bend), float(np.log(taken / self.compression))
+        return (
+            np.array([1.0, shift, bend]),
+            float(h * shift / bend),
+            float(np.log(taken / self.compression)),
+        )
 
 
 @dataclass(frozen=True)
@@ -185,12 +189,15 @@ def balanced(at: Callable[[float], tuple[float, Any, float]], x: float) -> tuple
             growth = secant if 0.3 < secant < 20.0 else growth
         step = -off / growth if np.isfinite(off) else -_LARGEST
         step = float(np.clip(step, -_LARGEST, _LARGEST))
-        if abs(step) <= _ROUNDING or (before is not None and abs(off) <= 1e-12 and abs(off) >= abs(before[1])):
+        if abs(step) <= _ROUNDING or (
+            before is not None and abs(off) <= 1e-12 and abs(off) >= abs(before[1])
+        ):
             return x, more[0], more[1]
         before, x = (x, off), x + step
     raise SolveError(
-        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width came "
-        f"to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the limit"
+        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
+        f"came to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the "
+        "limit"
     )
 
 

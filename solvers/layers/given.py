@@ -1,7 +1,7 @@
 """A pressure that is put in on layers, linear between knots, as what is read off a found one.
 
-Gauss's rule on pieces between knots, cut as short as the kernel asks for; where the kernel has a logarithm,
-graded towards it. What the half-plane of the surface's solid does is known exactly.
+Gauss's rule on pieces between knots, cut as short as the kernel asks for; where the kernel has a
+logarithm, graded towards it. What the half-plane of the surface's solid does is known exactly.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,8 @@ from galinx.solvers.sie.linear import LinearPressure
 
 #: Points of a panel, and of the coarser rule that measures the error of that.
 FINE, COARSE = 20, 14
-#: Longest panel over what kernels vary over; towards a logarithm lengths of panels fall by a factor so often.
+#: Longest panel over what kernels vary over; by what factor, and how often, lengths of panels fall
+#: towards a logarithm.
 _SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
 #: Panels at most.
 _MOST = 200_000
@@ -40,9 +41,7 @@ class Given:
         """t and weights times σ_YY for integrals with what varies over ``finest``, (n,) each."""
         return self._weighted(self._cut(self.pressure.knots, finest))
 
-    def integral(
-        self, kernel: Callable[[NDArray], NDArray], r: NDArray
-    ) -> NDArray[np.float64]:
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
         whole = self.points(self.length)
         found = []

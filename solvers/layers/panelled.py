@@ -214,7 +214,17 @@ def solved(equation: Any, finest: float) -> PanelledPressure:
 def parts(
     equation: Any, finest: float, slopes: Sequence[Callable[[NDArray], NDArray]], loads: Sequence[float]
 ) -> tuple[Panels, NDArray[np.float64]]:
-    """Pressures under several slopes with several resultants, by values at points of panels, (n, slopes)."""
+    """Panels, and values at their points of pressures under several slopes with several resultants.
+
+    Args:
+        equation: an :class:`galinx.solvers.layers.contact.Equation`.
+        finest: longest panel in t.
+        slopes: μ v,X under the punch over N/(2a) at given t.
+        loads: ∫ σ_YY dr of each.
+
+    Returns:
+        The panels, and the values, (n, slopes).
+    """
     panels = Panels(equation.α, equation.β, finest)
     n, count = equation.n, len(panels.x)
     apart = panels.apart(panels.x[:, None], panels.x - panels.x[:, None])

@@ -30,7 +30,7 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from galinx.app.run.methods.layers import Layers
+    from galinx.app.run.methods.on_layers import Layers
 
     return Layers(plan.tolerance)
 

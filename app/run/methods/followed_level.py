@@ -1,7 +1,7 @@
-"""A contact over layers at one degree, on a mesh drawn for its half-width, and what its error is measured on.
+"""A contact over layers at one degree on a mesh drawn for its half-width; what its error is measured on.
 
-Held under the punch are the shapes 1, s and s²; what they carry and the intensities at both ends are linear
-in their amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left.
+Held under the punch are the shapes 1, s and s²; what they carry and the intensities at both ends are
+linear in their amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left.
 """
 
 from dataclasses import dataclass, replace
@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from galinx.app.plan import layers
 from galinx.app.plan.fem import FemPlan, wanted_for
 from galinx.app.plan.task import Task
-from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.kinked_displacement import KinkedDisplacement
 from galinx.app.run.methods.punch import negligible, tests_of
+from galinx.postprocess import scale
 from galinx.postprocess.pressure import contact_recovery
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.strata import AT_INTERFACES
@@ -33,6 +33,8 @@ from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Places
 
+#: Places under the punch at which the pressure is measured.
+_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 #: Weights of a single field.
 ONE = np.ones((1, 1))
 #: Of the load's logarithm, by how much it grows with that of the half-width; of a half-plane it is 2.
@@ -84,8 +86,8 @@ class Sized:
         wanted = layers.wanted_of_free_ends(wanted)
         degree = kind.degree(wanted, seen.response.margin)
         return replace(
-            plan, kind=kind, wanted=wanted, drawn=kind.drawn(wanted), degrees=(degree,) * len(plan.degrees),
-            tests=layers.tests_of(seen.body.solid, kind, wanted),
+            plan, kind=kind, wanted=wanted, drawn=kind.drawn(wanted),
+            degrees=(degree,) * len(plan.degrees), tests=layers.tests_of(seen.body.solid, kind, wanted),
         )  # fmt: skip
 
 
@@ -127,15 +129,17 @@ class FollowedLevel:
         factor: of the linear system, freed, with numbers of its work.
     """
 
-    def __init__(
-        self, work: FollowingMesh, task: Task, space: Space, g: float, punch: Parabolic
-    ) -> None:
+    def __init__(self, work: FollowingMesh, task: Task, space: Space, g: float, punch: Parabolic) -> None:
         self.space, self._g, self._task, plan = space, np.array([g]), task, work.plan
         assert plan.tests
         stretch = plan.tests.stretch
         r = space.chart.surface_position(space.contact.s)
         solved = SlidingPunch(
-            space, task.response, plan.solver, negligible(work), np.stack([r, r**2])  # type: ignore[arg-type]
+            space,
+            task.response,
+            plan.solver,
+            negligible(work),
+            np.stack([r, r**2]),  # type: ignore[arg-type]
         )
         more = space.degree - plan.degrees[task.number]
         recovery = contact_recovery(
@@ -169,16 +173,20 @@ class FollowedLevel:
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Of the one state there is."""
-        found = gauge.of_pressure(self.pressure, self._moments)
-        lengths = np.array([[self.off / GROWTH, self.centre]])
-        of_ends = Gauge(
-            INTENSITIES,
-            np.concatenate([found.values, lengths], axis=1),
-            np.concatenate([found.scale, np.ones_like(lengths)], axis=1),
-            found.left,
-        )
         σ_YY = self.pressure.σ_YY(self._task.places.X)
-        return [of_ends, *self._gauges.of(self._g, ONE, σ_YY)]
+        return [self._of_forces(), *self._gauges.of(self._g, ONE, σ_YY)]
+
+    def _of_forces(self) -> Gauge:
+        """The pressure all over the contact, its moments over the load, and where the contact ends."""
+        σ = self.pressure.σ_YY(_ACROSS)
+        moments, lengths = self._moments[:, 1:6], np.array([[self.off / GROWTH, self.centre]])
+        values = np.concatenate([σ, moments, lengths], axis=1)
+        of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
+        # What the last functions add is largest where they are multiplied by most.
+        factor = np.abs(self.pressure.factor(_ACROSS)).max(axis=1)
+        ends = np.abs(self.pressure.factor(np.array([-1.0, 1.0]))).max(axis=1)
+        left = self.pressure.unresolved * ends / factor
+        return Gauge(INTENSITIES, values, np.concatenate([scale.of_factor(σ), *of_others], axis=1), left)
 
     @property
     def mirrored(self) -> bool:

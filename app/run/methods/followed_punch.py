@@ -1,8 +1,8 @@
 """Punches over layers whose contact ends where the pressure says, by finite elements.
 
-Layers have a length, so each contact has a mesh drawn for its half-width. That is found by solving on a few
-of them, at a lower degree at first, until the load that makes a contact of that size is the one wanted; then
-the degree rises until the measured error is within tolerance.
+Layers have a length, so each contact has a mesh drawn for its half-width. That is found by solving on a
+few of them, at a lower degree at first, until the load that makes a contact of that size is the one
+wanted; then the degree rises until the measured error is within tolerance.
 """
 
 from collections.abc import Iterator
@@ -78,7 +78,9 @@ class FollowedAtSpeed:
 
     def _near(self, g: float, load: float, task: Task) -> float:
         """Half-width [m] to begin with: of the nearest state, or that at rest."""
-        same = [(abs(other - g), state.half_width) for (other, N), state in self._known.items() if N == load]
+        same = [
+            (abs(other - g), state.half_width) for (other, N), state in self._known.items() if load == N
+        ]
         return min(same)[1] if same else float(task.body.half_width)
 
 
@@ -128,9 +130,7 @@ class FollowedPunches:
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, (states,)."""
         each = [state.level.pressure.σ_YY for state in self.found]
-        return largest(
-            lambda x: np.concatenate([-σ_YY(x) for σ_YY in each]), lambda i, x: -each[i](x)[0]
-        )
+        return largest(lambda x: np.concatenate([-σ_YY(x) for σ_YY in each]), lambda i, x: -each[i](x)[0])
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
@@ -172,8 +172,5 @@ class FollowedPunches:
         """Normal stress out of the plane at points inside, (states, m)."""
         Y = self.places.points[:, 1]
         return np.array(
-            [
-                state.task.body.σ_ZZ(self.inside[:, i], Y)
-                for i, state in enumerate(self.found)
-            ]
+            [state.task.body.σ_ZZ(self.inside[:, i], Y) for i, state in enumerate(self.found)]
         )

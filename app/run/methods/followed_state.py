@@ -1,4 +1,4 @@
-"""One contact over layers: its half-width found, its degree raised until the error is within tolerance."""
+"""One contact over layers: its half-width found, the degree raised until the error is small enough."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,7 +25,7 @@ _MESHES, _LARGEST, _SLOPES = 40, 1.2, (0.5, 15.0)
 #: near, over the tolerance, before nothing is moved any more.
 _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.1
 #: Least difference of the half-width's logarithm by which loads of two meshes tell how these grow.
-_APART = 1e-3
+_APART = 1e-5
 #: Share of the tolerance that may be left of it once all is solved; a mesh more is drawn otherwise.
 _LEFT = 0.3
 
@@ -97,6 +97,7 @@ class _Contact:
         x, tolerance, rough = float(np.log(h)), self.work.plan.tolerance, True
         for _ in range(_MESHES):
             off = self._off(float(np.exp(x)), rough)
+            self._learn(x, off)
             x_next = self.moved(x, off)
             step = abs(x_next - x)
             if not rough and step <= _SETTLED * tolerance:
@@ -106,17 +107,20 @@ class _Contact:
                 rough, self._before = False, None
             x = x_next
         raise SolveError(
-            f"finite elements did not find the half-width of the contact: after {_MESHES} meshes it is near "
-            f"{np.exp(x):.6g} m and still moves"
+            f"finite elements did not find the half-width of the contact: after {_MESHES} meshes it is "
+            f"near {np.exp(x):.6g} m and still moves; take a speed farther from the limit"
         )
 
     def moved(self, x: float, off: float) -> float:
-        """The half-width's logarithm by a secant, or by how the load grew with it before."""
+        """The half-width's logarithm, by how the load grows with it."""
+        return x - float(np.clip(off / self._growth, -_LARGEST, _LARGEST))
+
+    def _learn(self, x: float, off: float) -> None:
+        """How the load grows, by two half-widths of one degree."""
         if self._before is not None and abs(x - self._before[0]) > _APART:
             low, high = _SLOPES
             self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
         self._before = x, off
-        return x - float(np.clip(off / self._growth, -_LARGEST, _LARGEST))
 
     def _off(self, h: float, rough: bool) -> float:
         """Logarithm of the load that makes a contact of this half-width, over the one that is wanted."""
@@ -139,7 +143,9 @@ class _Contact:
         """On a mesh drawn for a half-width [m], as good as it has to be; and relative errors by word."""
         sized = Sized(self.task, h)
         words = self.work.stresses
-        mesh = FollowingMesh(self.work, sized.plan(self.work.plan, words, self.work.plan.tolerance), words)
+        mesh = FollowingMesh(
+            self.work, sized.plan(self.work.plan, words, self.work.plan.tolerance), words
+        )
         ladder = Ladder(mesh, sized.seen, lambda space, _: self.level(mesh, sized.seen, space))
         g = np.array([self.g])
         error = climb(ladder, g)

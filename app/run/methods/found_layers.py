@@ -1,7 +1,7 @@
 """The singular integral equation of layers under punches whose contact ends where the pressure says.
 
-Every friction has a contact of its own, and lengths are over its half-width; kernels and depths are those of
-all of them, over one length.
+Every friction has a contact of its own, and lengths are over its half-width; kernels and depths are
+those of all of them, over one length.
 """
 
 from dataclasses import dataclass
@@ -37,7 +37,9 @@ def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAt
     # A place inside is in one layer with one friction and in another with the next.
     every = bool(len(task.places.points))
     speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
-    return FoundAtSpeed(task, speed, *speed.solved(g))
+    nodes, left = speed.solved(g)
+    assert isinstance(nodes, Contacts)
+    return FoundAtSpeed(task, speed, nodes, left)
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ class FoundAtSpeed(AtSpeed):
             level = self._level(depth, largest * (1.0 + float(np.abs(X).max())))
 
             def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
-                u_X, σ_YY, σ_XY = level.read(*pressure.points(depth / h), g, X, h)  # noqa: B023
+                t, σ = pressure.points(depth / h)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
                 return np.array([σ_YY, σ_XY, *(in_plane(one, u_X, σ_YY, σ_XY) for one in level.media)])  # noqa: B023
 
             found.append(self.nodes.of_each(read))
@@ -80,7 +83,8 @@ class FoundAtSpeed(AtSpeed):
                 level = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))
                 for j, pressure in enumerate((one.pressure, one.before)):
                     g = float(self.nodes.g[i])
-                    u_X, σ_YY, σ_XY = level.read(*pressure.points(-Y), g, X, h)
+                    t, σ = pressure.points(-Y)
+                    u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)
                     found[:, j, i, some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
                 errors[some] = np.maximum(errors[some], h * _error(level))
         return found, errors

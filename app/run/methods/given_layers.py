@@ -23,13 +23,14 @@ from galinx.solvers.sie.linear import LinearPressure
 _NODES = np.array([0.0, 1.0])
 
 
-def at_speed(task: Task, stack: Stack, tolerance: float) -> "GivenAtSpeed":
+def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "GivenAtSpeed":
     """The pressure at one speed.
 
     Args:
         task: the speed.
         stack: layers with lengths over the body's half-width.
         tolerance: relative.
+        g: σ_XY/σ_YY, of which all is a linear function.
     """
     pressure = task.body.pressure
     assert pressure

@@ -1,7 +1,6 @@
 """The singular integral equation of layered and graded half-planes."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,45 +9,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
-from galinx.app.run.methods.method import Solver
 from galinx.postprocess import scale
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.layers.inside import Level
 from galinx.solvers.layers.medium import Medium
+from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import weights_hilbert
 from galinx.solvers.solution import Places, Surface
 
 
-@dataclass(frozen=True)
-class Layers:
-    """Kernels are found once a speed, pressures for some frictions, from which all others follow.
+def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "AtSpeed":
+    """Punches with two sharp edges at one speed, with frictions from which all others follow.
 
-    Attributes:
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
         tolerance: relative.
+        g: all values of σ_XY/σ_YY that will be asked for, sorted.
     """
-
-    tolerance: float
-
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        body, response = task.body, task.response
-        stack = response.stack(body.half_width)  # type: ignore[attr-defined]
-        if body.pressure:
-            from galinx.app.run.methods.given_layers import at_speed as of_given
-
-            yield of_given(task, stack, self.tolerance)
-            return
-        if body.found:
-            from galinx.app.run.methods.found_layers import at_speed
-
-            yield at_speed(task, stack, self.tolerance, g)
-            return
-        speed = Speed(response, stack, body.slope, self.tolerance)
-        yield AtSpeed(task, speed, *speed.solved(g))
+    speed = Speed(task.response, stack, task.body.slope, tolerance)
+    return AtSpeed(task, speed, *speed.solved(g))
 
 
 @dataclass(frozen=True)

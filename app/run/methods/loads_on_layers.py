@@ -1,4 +1,4 @@
-"""A pressure of the user's own over layers at one speed, put in on a mesh that is graded towards its knots."""
+"""A pressure of the user's own over layers at one speed, put in on cells graded towards its knots."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

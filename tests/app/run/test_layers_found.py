@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 
 import galinx
-from galinx.app.results.check import faults
-from galinx.app.run.methods.found_layers import FoundPunches
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
 from galinx.solvers.profiles.parabolic import Parabolic

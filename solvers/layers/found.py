@@ -28,12 +28,13 @@ from galinx.solvers.layers.contact import (
 )
 from galinx.solvers.layers.kernel import REACH, Kernel, Scaled
 from galinx.solvers.layers.layered import Layered
+from galinx.solvers.layers.panelled import PanelledPressure
 from galinx.solvers.layers.pressure import Pressure
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.profiles.parabolic import Parabolic
 
 #: Slopes under a parabola, the flat punch's first.
-_SHAPES = (np.zeros_like, np.ones_like, np.asarray)
+SHAPES = (np.zeros_like, np.ones_like, np.asarray)
 #: Steps in which a half-width is found, the largest of its logarithm, and what is rounding of it.
 _STEPS, _LARGEST, _ROUNDING = 60, 1.5, 1e-13
 #: By how much the load's logarithm grows with that of the half-width, before it is known.
@@ -163,12 +164,15 @@ class FoundSpeed(Speed):
         def at(x: float) -> tuple[float, Any, float]:
             h = float(np.exp(x))
             equation = Equation(self.response, self.scaled(h), g, self.slope)
-            parts = equation.parts(resolution, _SHAPES, (-2.0, 0.0, 0.0))
+            parts = equation.parts(resolution, SHAPES, (-2.0, 0.0, 0.0))
             amplitudes, m, off = self.punch.balanced(parts.ends, h)
             return off, (parts, amplitudes), m
 
         x, (parts, amplitudes), m = balanced(at, float(np.log(h)))
-        return float(np.exp(x)), m, parts.pressure(amplitudes)
+        pressure = parts.pressure(amplitudes)
+        if isinstance(pressure, PanelledPressure):
+            pressure = pressure.vanishing()
+        return float(np.exp(x)), m, pressure
 
 
 def balanced(at: Callable[[float], tuple[float, Any, float]], x: float) -> tuple[float, Any, float]:

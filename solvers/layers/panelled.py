@@ -31,6 +31,8 @@ _REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
 #: Panels towards a place where a kernel is rough: their grading, number, points; within how many lengths
 #: of a panel a place is near.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+#: Distance from a free end within which a pressure is continued, and up to which it is known for that.
+_MENDED, _KNOWN = 3e-3, 0.12
 _ξ, _ω = legendre.leggauss(14)
 
 
@@ -162,6 +164,20 @@ class PanelledPressure:
 
     near = 1.0
 
+    def vanishing(self) -> "PanelledPressure":
+        """The same of a contact whose ends are free: p falls to them like d and d log d.
+
+        Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
+        for, leaves digits of the largest p.
+        """
+        p = self.p.copy()
+        for x in (self.panels.x, -self.panels.x):
+            d = 2.0 / (1.0 + np.exp(x))
+            known, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
+            c, *_ = np.linalg.lstsq(_to_end(d[known]), self.p[known] / d[known], rcond=None)
+            p[near] = d[near] * (_to_end(d[near]) @ c)
+        return PanelledPressure(self.panels, p)
+
     @property
     def α(self) -> float:
         return self.panels.α
@@ -198,6 +214,12 @@ class PanelledPressure:
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         fine = Panels(self.α, self.β, min(finest, self.panels.finest))
         return fine.t, fine.weights * self.panels.values(self.p, fine.x)
+
+
+def _to_end(d: NDArray) -> NDArray[np.float64]:
+    """What a pressure over its weight and d is a sum of next to a free end, (len(d), terms)."""
+    log = np.log(d)
+    return np.column_stack([np.ones_like(d), log, d, d * log, d * log**2, d**2, d**2 * log])
 
 
 def _x(r: NDArray) -> NDArray[np.float64]:

@@ -13,6 +13,8 @@ import pytest
 import galinx
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
+from galinx.solvers.layers.contact import Equation
+from galinx.solvers.layers.found import SHAPES, FoundSpeed, Parabola
 from galinx.solvers.profiles.parabolic import Parabolic
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
@@ -34,13 +36,18 @@ def scene(layers=COAT, mu=0.4, tolerance=1e-6, methods=("sie",), quantities=("si
 
 
 def random_scene(seed, graded, quantities=("sif",), tolerance=1e-6):
-    """A random stack under a cylinder; its contact is 0.1 to 3 m wide on the surface's solid alone."""
+    """A random stack under a cylinder whose contact has the half-width 1 m at rest without friction."""
     solid, c = random_stack(seed, graded)
-    rng = np.random.default_rng(2000 + seed)
-    base = scene_of(solid, c, rng.uniform(-1.0, 1.0), quantities, tolerance)
-    a, load = 30.0 ** rng.uniform(-0.7, 0.3), 1e-3
-    radius = np.pi * a**2 * solid.μ / (2.0 * load * solid.surface.response(0.0).n)
-    return replace(base, punch=replace(base.punch, profile=Parabolic(radius), loads=(load,)))
+    f = np.random.default_rng(2000 + seed).uniform(-1.0, 1.0)
+    base = scene_of(solid, c, f, quantities, tolerance)
+    load, response = 1e-3, solid.response(0.0)
+    speed = FoundSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
+    parts = Equation(response, speed.kernel, 0.0, np.zeros_like).parts(
+        0.5 if speed.kernel.rough else 60, SHAPES, (-2.0, 0.0, 0.0)
+    )
+    _, _, off = Parabola(1.0, load / solid.μ).balanced(parts.ends, 1.0)
+    profile = Parabolic(float(np.exp(off)))
+    return replace(base, punch=replace(base.punch, profile=profile, loads=(load,)))
 
 
 def apart(data):

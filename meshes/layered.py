@@ -69,6 +69,7 @@ class OnLayers(MeshKind):
         far_length: over which the layers are seen from far, over a.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
         changes: of :class:`galinx.meshes.strata.Strata`.
+        places: positions over a towards which cells are graded, rising from -1 to 1.
     """
 
     depths: tuple[float, ...] = ()
@@ -77,6 +78,7 @@ class OnLayers(MeshKind):
     far_length: float = 1.0
     roots: tuple[tuple[complex, ...], ...] = ()
     changes: tuple[float, ...] = ()
+    places: tuple[float, ...] = (-1.0, 1.0)
 
     def radius(self, wanted: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
@@ -136,31 +138,38 @@ class OnLayers(MeshKind):
 
     def drawn(self, wanted: Wanted) -> QuadMesh:
         """The mesh."""
-        b, R = min(_SHARE * self.depths[0], _SQUARE / max(self.wide, 1.0)), self.radius(wanted)
+        gaps = np.diff(self.places)
+        square = _SQUARE * min(gaps) / 2.0 / max(self.wide, 1.0)
+        b, R = min(_SHARE * self.depths[0], square), self.radius(wanted)
         near = wanted.nearest is not None and wanted.nearest < b
         legs = (2 if near else 1) + ceil(_LEGS * wanted.spread - 0.5)
         wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
-        beside, under, below = self._lines(wanted, b)
-        outer, inner = (np.concatenate([self.wide * in_square, lines]) for lines in (beside, under))
-        right = np.concatenate([1.0 - inner, [1.0], 1.0 + outer])
-        X = np.unique(np.concatenate([-right, right]))
+        beside, below, growth = self._lines(wanted, b)
+        X = [np.array(self.places), 1.0 + self.wide * in_square, 1.0 + beside]
+        X += [-beyond for beyond in X[1:]]
+        for left, right in pairwise(self.places):
+            half = (right - left) / 2.0
+            inner = np.concatenate([self.wide * in_square, between(wide, half, growth)])
+            X += [left + inner, np.array([left + half]), right - inner]
+        columns = np.unique(np.concatenate(X))
         rows = -np.concatenate([[0.0], in_square, below, [R]])
         cells = [
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-            for x0, x1 in pairwise(X.tolist())
+            for x0, x1 in pairwise(columns.tolist())
             for y1, y0 in pairwise(rows.tolist())
-            if y0 < -b or abs(abs((x0 + x1) / 2.0) - 1.0) > wide
+            if y0 < -b or min(abs((x0 + x1) / 2.0 - place) for place in self.places) > wide
         ]
         ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(wanted) / b
         squares = [
-            _rings(edge, (side * wide, b), legs, ratio, last)
-            for edge in (-1.0, 1.0)
+            _rings(place, (side * wide, b), legs, ratio, last)
+            for place in self.places
             for side in (-1.0, 1.0)
         ]
         return tagged(np.concatenate([np.array(cells), *squares]), 1.0 + R)
 
-    def _lines(self, wanted: Wanted, b: float) -> list[NDArray[np.float64]]:
-        """Distances of columns from an edge, beside the punch and under it; depths of rows below b."""
+    def _lines(self, wanted: Wanted, b: float) -> tuple[NDArray, NDArray, float]:
+        """Distances of columns from an edge beside the punch; depths of rows below b; and by what factor
+        columns grow under it."""
         R, wide = self.radius(wanted), self.wide * b
         if wanted.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
@@ -176,8 +185,7 @@ class OnLayers(MeshKind):
             beyond = between(far, R, _FAR_GROWTH)
             beside = np.append(between(wide, far, growth), beyond)
             below = np.append(strata.rows(b, far, share), beyond)
-        under = between(wide, 1.0, min(_UNDER, growth))
-        return [np.append(beside, R), np.append(under, 1.0), below]
+        return np.append(beside, R), below, min(_UNDER, growth)
 
 
 def _rings(
@@ -218,11 +226,12 @@ def on_layers(
     far_length: float = 1.0,
     roots: tuple[tuple[complex, ...], ...] = (),
     changes: tuple[float, ...] = (),
+    places: tuple[float, ...] = (-1.0, 1.0),
 ) -> OnLayers:
     """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
     return OnLayers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, roots=roots, changes=changes,
+        far_length=far_length, roots=roots, changes=changes, places=places,
     )  # fmt: skip

@@ -1,6 +1,6 @@
 """How far finite elements and closed form agree, and whether the forces balance."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.rule import Comparison, Rule, largest_of
+from galinx.postprocess.rules_of_ends import OF_ENDS
 from galinx.postprocess.rules_of_layers import ON_LAYERS
 from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
@@ -42,11 +43,14 @@ def _imbalance(data: dict[str, Any], load: Any) -> float:
     return off.max()
 
 
-def _resultant(data: dict[str, Any], load: Any) -> float:
-    rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO)
-    normal, tangential, exact, g = (data[row.path] for row in rows)
-    off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
-    return (off / np.maximum(np.abs(exact), load)).max()
+def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
+    def measure(data: dict[str, Any], load: Any) -> float:
+        rows = (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT[other], of.RATIO)
+        normal, tangential, exact, g = (data[row.path] for row in rows)
+        off = np.maximum(np.abs(normal - exact), np.abs(tangential - g * exact))
+        return float((off / np.maximum(np.abs(exact), load)).max())
+
+    return measure
 
 
 def _intensities(data: dict[str, Any], _: float) -> float | None:
@@ -121,18 +125,6 @@ def _depth(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None
 
 
-def _ends(data: dict[str, Any], _: float) -> float:
-    size = data[of.HALF_WIDTH[CLOSED_FORM].path]
-    off = [data[row[FEM].path] - data[row[CLOSED_FORM].path] for row in (of.HALF_WIDTH, of.CENTRE)]
-    return float((np.abs(off) / size).max())
-
-
-def _largest_pressure(data: dict[str, Any], _: float) -> float | None:
-    fem, exact = (data[of.LARGEST[method].path] for method in (FEM, CLOSED_FORM))
-    off = np.abs(fem / exact - 1.0)
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
-
-
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
@@ -157,11 +149,14 @@ RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
-        "resultant": Rule(
-            "nodal forces against the resultant of the pressure, over it or N",
-            (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT, of.RATIO), _resultant,
-            limit=BALANCE.limit, own_pressure=True,
-        ),
+        **{
+            next(iter(row.compared)): Rule(
+                f"nodal forces against the resultant of the pressure{name}, over it or N",
+                (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, row, of.RATIO), _resultant(method),
+                limit=BALANCE.limit, own_pressure=True,
+            )
+            for (method, row), name in zip(of.RESULTANT.items(), ("", " over layers"))
+        },
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
@@ -176,14 +171,7 @@ RULES: Registry[Rule] = Registry(
             (of.ESTIMATE,), largest_of(of.ESTIMATE), tolerances=1.0,
         ),
         **ON_LAYERS,
-        "ends": Rule(
-            "ends of the contact, over its half-width",
-            (*of.HALF_WIDTH.values(), *of.CENTRE.values()), _ends, tolerances=1.0,
-        ),
-        "largest pressure": Rule(
-            "largest contact pressure, relative", (*of.LARGEST.values(),), _largest_pressure,
-            tolerances=1.0,
-        ),
+        **OF_ENDS,
         "exponents": Rule(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,

@@ -17,9 +17,12 @@ from galinx.solvers.contact import under_punch
 _VANISHING = 0.1
 
 
-def _intensities_of_layers(data: dict[str, Any], _: float) -> float:
+def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
+    """Ends that are found have none."""
     sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
     fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
+    if not sie.any():
+        return None
     size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
     return float((np.abs(fem - sie) / size).max())
 
@@ -51,7 +54,8 @@ def _inside(data: dict[str, Any], _: float) -> float:
 
 
 def _estimate(row: Quantity, what: str) -> Rule:
-    return Rule(f"estimated error of {what}, relative", (row,), largest_of(row), tolerances=1.0)
+    text = f"estimated error of {what}, relative"
+    return Rule(text, (row,), largest_of(row), tolerances=1.0, own_pressure=True)
 
 
 #: Rules by the name that quantities give.
@@ -70,7 +74,7 @@ ON_LAYERS: dict[str, Rule] = {
     "sigma_XX of layers": Rule(
         "σ_XX against the integral equation, over itself or the largest",
         (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
-        tolerances=1.0,
+        tolerances=1.0, own_pressure=True,
     ),
     "estimate of the integral equation": Rule(
         "estimated error of the integral equation over layers, relative",
@@ -79,11 +83,12 @@ ON_LAYERS: dict[str, Rule] = {
     "stresses at interfaces": Rule(
         "stresses at interfaces against the integral equation, over the largest along each",
         (*on_layers.INTERFACES[FEM], *on_layers.INTERFACES[SIE]), _at_interfaces, tolerances=1.0,
+        own_pressure=True,
     ),
     "stresses inside layers": Rule(
         "stresses inside against the integral equation, over themselves or the largest",
         (*at.STRESSES_INSIDE[FEM], *on_layers.STRESSES_INSIDE[SIE], at.INSIDE_X, at.INSIDE_Y), _inside,
-        tolerances=1.0,
+        tolerances=1.0, own_pressure=True,
     ),
     "estimate at interfaces, fem": _estimate(
         on_layers.ESTIMATE_AT_INTERFACES[FEM], "stresses at interfaces by finite elements"

@@ -20,7 +20,7 @@ from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite
 from galinx.postprocess.quantities import Quantity, runs, states, stresses, table
 from galinx.postprocess.quantities import strata as layers
-from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
+from galinx.postprocess.quantities.quantity import ALONG, INSIDE, POINT
 from galinx.solvers.parameters import Range
 
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
@@ -34,7 +34,7 @@ _ALWAYS = (
 #: What says where values of these dimensions are.
 _POSITIONS = {
     POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y),
-    INTERFACE: (layers.INTERFACE_DEPTH,), ALONG: (layers.ALONG_X,),
+    ALONG: (layers.ALONG_X,),
 }  # fmt: skip
 
 

@@ -47,7 +47,7 @@ _ALONE = [
 _ENDS = [
     (head, row, "{:.4e}")
     for head, rows in (("a (m)", of.HALF_WIDTH), ("centre (m)", of.CENTRE))
-    for row in (rows[FEM], rows[CLOSED_FORM])
+    for row in (rows[FEM], rows[CLOSED_FORM], rows[SIE])
 ]
 _BOTH = [
     ("estimate", of.ESTIMATE, "{:.1e}"),

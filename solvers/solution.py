@@ -11,6 +11,7 @@ from galinx.solvers.contact import under_punch
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.solid import Response
@@ -102,7 +103,10 @@ class Body:
     def alike(self) -> bool:
         """Are contacts of all loads alike, but for their size? Of a flat punch, a power of |X|, or a
         pressure that is put in."""
-        return self.pressure is not None or self.flat or (self.free and bool(exponent(self.profile)))
+        if self.pressure is not None or self.flat:
+            return True
+        # Layers have a length, and what a contact sees of them changes with its width.
+        return self.free and bool(exponent(self.profile)) and not self.layered
 
     def loaded(self, load: Any = None) -> "Body":
         """The same under another load [N/m], or under those of some states; this one for none."""
@@ -121,11 +125,21 @@ class Body:
         if np.ndim(self.load) and self.alike:
             first = self.loaded(float(self.load[0]))
             return first.half_width * first.growth(self.load)
+        if isinstance(self.solid, Layered) and isinstance(self.profile, Parabolic):
+            each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
+            return np.array(each) if np.ndim(self.load) else each[0]
         from galinx.solvers.sie.found import contacts
 
         g = np.zeros(np.size(self.load))
         rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
         return rest if np.ndim(self.load) else float(rest[0])
+
+    def _at_rest(self, load: float) -> float:
+        """Half-width over layers under a load [m]."""
+        from galinx.solvers.layers.found import half_width_at_rest
+
+        assert isinstance(self.solid, Layered) and isinstance(self.profile, Parabolic)
+        return half_width_at_rest(self.solid, self.profile, load / self.solid.μ)
 
     @property
     def compression(self) -> Any:

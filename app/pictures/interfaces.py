@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, by_method
@@ -13,7 +14,7 @@ from galinx.postprocess.figures.style import PAGE, looks
 from galinx.postprocess.figures.surface import Curve
 from galinx.postprocess.figures.typeset import number
 from galinx.postprocess.quantities.quantity import ALONG, INTERFACE, STATE
-from galinx.postprocess.quantities.strata import ALONG_X, INTERFACE_DEPTH
+from galinx.postprocess.quantities.strata import ALONG_X, INTERFACE_DEPTH, INTERFACE_DEPTH_IN_M
 
 #: Curves that can be told apart in a panel, and the least width of a column [in].
 _CURVES, _LEAST = 4, 2.2
@@ -47,9 +48,9 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     some = told.ordered(some)
     shown = looks(len(some), len(names) == 1 and told.numeric(names[0]))
     curves = [Curve(i, told.label(i, names), look) for i, look in zip(some.tolist(), shown)]
-    depths = data[INTERFACE_DEPTH.path]
+    depths, reach, unit = _depths(data, scene)
     columns = [
-        Interface(i, float(depths[i]), f"$Y = {number(-depths[i])}\\,a$")
+        Interface(i, float(reach[i]), f"$Y = {number(-depths[i])}\\,{unit}$")
         for i in spread(range(len(depths)), max(1, int(width / _LEAST)))
     ]
     figure = interfaces_figure(data[ALONG_X.path], _rows(data, choice), columns, curves, choice.size)
@@ -64,6 +65,14 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         caption += f" All at {told.text(int(some[0]), fixed)}."
     missing = not_shown(told, some.tolist(), "--figure interfaces --states", choice.states)
     return Drawing("interfaces", caption, figure, left_out=missing)
+
+
+def _depths(data: dict[str, Any], scene: Scene) -> tuple[NDArray, NDArray, str]:
+    """Depths of interfaces as titles tell them, over a half-width, and the unit of titles."""
+    if INTERFACE_DEPTH.path in data:
+        return data[INTERFACE_DEPTH.path], data[INTERFACE_DEPTH.path], "a"
+    depths = data[INTERFACE_DEPTH_IN_M.path]
+    return 1e3 * depths, depths / scene.body.half_width, r"\mathrm{mm}"
 
 
 def _rows(data: dict[str, Any], choice: Choice) -> list[Row]:

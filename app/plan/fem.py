@@ -2,21 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.errors import BadInput
-from galinx.app.plan import cost
+from galinx.app.plan import cost, layers
 from galinx.app.plan.sweep import Sweep, swept
 from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
-from galinx.meshes.layered import OnLayers, on_layers
+from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.quantities.quantity import FOUND
-from galinx.postprocess.stretched import Stretch
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
@@ -38,36 +36,18 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 #: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
 #: without it grows towards these.
 _FARTHER = 1e3
+#: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
+FOLLOWED = "meshes that follow the contact"
+#: And that in which a pressure is put in over layers.
+LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
 
-#: How far apart a surface's fields may live so that cells are drawn together for both.
-_APART = 0.8
-
 #: Unknowns up to which a rank solves a speed alone faster than two ranks together.
 SMALL = 200_000
-
-
-@dataclass(frozen=True)
-class Tests:
-    """By what a pressure over layers is read off nodal forces.
-
-    Attributes:
-        stretch: variable in which it is smooth.
-        count: moments at the first degree; each degree more takes more, so that what they leave shows in
-            the measured error.
-    """
-
-    stretch: Stretch
-    count: int
-
-    @property
-    def a_degree(self) -> int:
-        """Moments more for each degree more; those over graded solids depend on one another nearly."""
-        return 1 if self.stretch.graded else 2
 
 
 @dataclass(frozen=True)
@@ -83,7 +63,8 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
         wanted: what the mesh has to be good for.
-        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND`` or ``OWN_MESHES``.
+        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES``,
+            ``FOLLOWED`` or ``LOADS``.
         shared_speeds: speeds are shared out over the ranks, each rank with a mesh of its own; else
             all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
@@ -105,7 +86,7 @@ class FemPlan:
     shared_speeds: bool
     sharp: float = -0.5
     drawn: QuadMesh | None = None
-    tests: Tests | None = None
+    tests: layers.Tests | None = None
     sweep: Sweep | None = None
 
     @property
@@ -146,20 +127,13 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     if isinstance(scene.solid, Layered):
         depths = scene.solid.depths / scene.body.half_width
-        kind, name = on_layers(depths.tolist(), **_seen_by_layers(responses)), "layered"
+        knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
+        kind, name = layers.kind_of(depths, responses, knots), "layered"
     _check_degree_and_solver(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
-    wanted = wanted_for(solve.tolerance, places, exponent, spread)
-    if scene.body.free:
-        wanted = wanted_of_free_ends(wanted)
-        # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
-        wanted = replace(wanted, bends=_mode(scene) == FOUND)
-    if _mode(scene) == OWN_MESHES:
-        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
-    if solve.own_pressure:
-        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
+    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread))
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -176,43 +150,34 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
-        tests=_tests(scene, kind, wanted),
+        tests=layers.tests_of(scene.solid, kind, wanted),
         sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
     )  # fmt: skip
 
 
-def _tests(scene: Scene, kind: MeshKind, wanted: Wanted) -> Tests | None:
-    """What a pressure over layers is read off by."""
-    if not isinstance(kind, OnLayers) or not isinstance(scene.solid, Layered):
-        return None
-    graded = scene.solid.layers[0].bottom is not None
-    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
-
-
-def _seen_by_layers(responses: Sequence[Any]) -> dict[str, Any]:
-    """What :class:`galinx.meshes.layered.OnLayers` asks of layered solids at some speeds."""
-    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
-    # Fields that live far apart have no middle.
-    apart = max(response.spread for response in responses) > _APART
-    return {
-        "drawn_together": float(np.min(roots)),
-        "wide": 1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
-        "far_length": max(response.far_field.length for response in responses),
-        "roots": _roots(responses),
-        "changes": tuple(length / responses[0].a for length in responses[0].solid.changes),
-    }
-
-
-def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
-    """p of every solid at the lowest and the highest speed, where they are farthest apart."""
-    by_speed = sorted(responses, key=lambda response: response.c)
-    each = [response.roots for response in (by_speed[0], by_speed[-1])]
-    return tuple(one + other for one, other in zip(*each))
+def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
+    """What a mesh has to be good for, by what is pressed on."""
+    solve = scene.solve
+    if scene.layers:
+        if scene.body.free:
+            return layers.wanted_of_free_ends(wanted)
+        return layers.wanted_of_loads(wanted) if solve.own_pressure else wanted
+    if scene.body.free:
+        wanted = wanted_of_free_ends(wanted)
+        # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
+        wanted = replace(wanted, bends=_mode(scene) == FOUND)
+    if _mode(scene) == OWN_MESHES:
+        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
+    if solve.own_pressure:
+        wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
+    return wanted
 
 
 def _mode(scene: Scene) -> str:
     if not scene.body.found:
-        return scene.solve.modes[-1]
+        return LOADS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
+    if scene.layers:
+        return FOLLOWED
     return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
 
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost
@@ -17,10 +18,14 @@ from galinx.meshes import MESHES, Wanted
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body, Places
 
 #: Share of the far boundary's distance up to which points inside are asked for.
 _INNER = 0.6
+
+#: Knots of a pressure over layers at most, and how near to one another, over a.
+_KNOTS, _APART = 12, 0.02
 
 #: Narrowest piece of a pressure, over a, within which positions have digits enough.
 _NARROWEST = 1e-9
@@ -149,9 +154,11 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
         return
     known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
     faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
-    if scene.solve.mode != "contact":
-        faults.append(f'solve.mode is "{scene.solve.mode}"')
-    if body.found:
+    if scene.solve.mode == "traction" and not scene.solve.own_pressure:
+        faults.append(
+            'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
+        )
+    if body.found and not isinstance(body.profile, Parabolic):
         faults.append(f"the punch is a {body.profile.words()}, whose contact ends are found")
     if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}")
@@ -171,6 +178,9 @@ def check_pressure(scene: Scene, body: Body) -> None:
     """
     if body.pressure is None:
         return
+    if body.layered:
+        _check_knots(body.pressure.knots)
+        return
     kind = MESHES[scene.solve.mesh]
     if kind.walls or not kind.rings:
         raise BadInput(
@@ -189,6 +199,17 @@ def check_pressure(scene: Scene, body: Body) -> None:
         raise BadInput(
             f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
             f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
+        )
+
+
+def _check_knots(knots: NDArray) -> None:
+    """Can cells along interfaces be graded towards all of them?"""
+    width = float(np.diff(knots).min())
+    if len(knots) > _KNOTS or width < _APART:
+        raise BadInput(
+            f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, expected "
+            f"at most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose cells are "
+            'graded towards each; take methods = ["sie"]'
         )
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import OWN_MESHES, FemPlan
+from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan
 from galinx.app.plan.order import Order
 from galinx.app.plan.over_time import Starts
 from galinx.postprocess.compare import FINITE, RULES
@@ -135,7 +135,10 @@ class Plan:
             X, Y = self.places.points.T
             found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
         if self.asks(layers.AT_INTERFACES):
-            found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            if self.body.found:
+                found[layers.INTERFACE_DEPTH_IN_M.path] = self.body.solid.depths  # type: ignore[attr-defined]
+            else:
+                found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
             found[layers.ALONG_X.path] = self.places.along
         return found
 
@@ -161,7 +164,7 @@ class Plan:
     @cached_property
     def chunk(self) -> int:
         """States treated at once: what they hold in memory is bounded."""
-        own_meshes = self.fem is not None and self.fem.mode == OWN_MESHES
+        own_meshes = self.fem is not None and self.fem.mode in (FOLLOWED, OWN_MESHES)
         most = OWN_MESHES_KEPT if own_meshes else 1000
         return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, most))
 

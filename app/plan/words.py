@@ -2,7 +2,7 @@
 
 from galinx.app import ranks
 from galinx.app.plan import cost
-from galinx.app.plan.fem import OWN_MESHES, FemPlan, levels, unknowns
+from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan, levels, unknowns
 from galinx.app.plan.sweep import BESIDES, LADDERS
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
@@ -14,6 +14,8 @@ from galinx.texts import counted
 
 #: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
 _SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
+#: Ladders that finding the ends of a contact over layers takes, with that of the contact itself.
+_MESHES_A_CONTACT = 3.0
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -43,6 +45,12 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
             f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
             f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error asks "
             "for; where their contacts end is found once a speed"
+        ]
+    if fem.mode == FOLLOWED:
+        return [
+            f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
+            f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
+            "error asks for"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
@@ -136,10 +144,11 @@ def _seconds_of_levels(fem: FemPlan, states: int) -> float:
     mesh, direct = fem.pattern, fem.solver == "direct"
     if fem.mode == OWN_MESHES:
         return _SECONDS_OF_OWN_MESH * states + _SECONDS_OF_ENDS * len(fem.degrees)
-    return sum(
+    found = sum(
         cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
         for p, k in _levels(fem)
     )
+    return found * (_MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FOLLOWED else 1.0)
 
 
 def _size(count: float) -> str:

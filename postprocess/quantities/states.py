@@ -16,6 +16,7 @@ from galinx.postprocess.quantities.quantity import (
     LOCAL,
     OWN_PRESSURE,
     QUANTITIES,
+    SIE,
     STATE,
     SWEPT,
     Quantity,
@@ -123,13 +124,14 @@ FITTED = Quantity(
 def _found(
     name: str, unit: str, about: str, of: Callable[[Any], NDArray], compared: str = "", **options: Any
 ) -> dict[str, Quantity]:
-    """A quantity of contacts whose ends are found, by both methods."""
+    """A quantity of contacts whose ends are found, by all methods."""
+    rules = (compared, f"{compared} over layers") if compared else ()
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), lambda s, _: of(s), method, FOUND,
-            compared=(compared,) * (method == FEM and bool(compared)), **options,
+            compared=rules * (method == FEM), **options,
         )
-        for method in (CLOSED_FORM, FEM)
+        for method in (CLOSED_FORM, SIE, FEM)
     }  # fmt: skip
 
 
@@ -151,11 +153,15 @@ LARGEST_X = _found(
     lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0),
 )  # fmt: skip
 
-RESULTANT = Quantity(
-    "states/closed_form/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
-    lambda s, body: s.normal_force * body.force, CLOSED_FORM, OWN_PRESSURE, compared=("resultant",),
-    accuracy=True,
-)  # fmt: skip
+#: By method.
+RESULTANT = {
+    method: Quantity(
+        f"states/{method}/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
+        lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,),
+        accuracy=True,
+    )
+    for method, rule in ((CLOSED_FORM, "resultant"), (SIE, "resultant over layers"))
+}  # fmt: skip
 
 
 #: Share of the larger intensity below which the other is not measured against itself.

@@ -70,6 +70,11 @@ INTERFACE_DEPTH = Quantity(
     "interfaces/depth_over_a", "1", "depths of the interfaces over the half-width", (INTERFACE,),
     asked_by=AT_INTERFACES, range=Range(above=0.0),
 )  # fmt: skip
+#: Where ends are found every state has its own half-width.
+INTERFACE_DEPTH_IN_M = Quantity(
+    "interfaces/depth", "m", "depths of the interfaces, where ends of contacts are found", (INTERFACE,),
+    asked_by=AT_INTERFACES, range=Range(above=0.0),
+)  # fmt: skip
 ALONG_X = Quantity(
     "interfaces/X_over_a", "1", "positions along interfaces over the half-width", (ALONG,),
     asked_by=AT_INTERFACES,

@@ -9,10 +9,11 @@ from petsc4py import PETSc
 
 from galinx.solvers.fem.deformation import forces
 from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem.held import forces_of_far
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceFacets, surface_facets
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 #: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
 #: because next to an edge X/a itself no longer tells the distance.
@@ -26,6 +27,8 @@ _POINTS = 48
 class LoadedHalfPlane:
     """Half-plane without punch at one speed, held far away: one factor for many loads.
 
+    Over layers the far boundary moves as under a line load with each load's resultant.
+
     Args:
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
@@ -35,6 +38,10 @@ class LoadedHalfPlane:
     def __init__(self, space: Space, response: Response, corrected: bool = False) -> None:
         self.space, self.response = space, response
         A = space.assemble(response)
+        moved = np.empty((0, 2, 0))
+        if isinstance(response, ByCells):
+            moved = response.far(*space.coordinates[space.far_nodes].T)
+        far = [forces_of_far(A, space, one) for one in moved]
         A.zeroRowsColumns(space.far_dofs, 1.0)
         self.factor = Factor(A, space.clock, definite=not space.mixed)
         #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
@@ -44,6 +51,10 @@ class LoadedHalfPlane:
         #: What each field lacks where cells are small: its last digit is one of the motion of all.
         self.corrections: list[PETSc.Vec] = []
         self._corrected = corrected
+        #: Of a far boundary that moves as under the resultants (0, -2) and (-2, 0) of (σ_XY, σ_YY).
+        self._far = [self.factor.solve(b) for b in far]
+        for b in far:
+            b.destroy()
         self._facets = surface_facets(space, ("contact",))
 
     def load(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> None:
@@ -55,6 +66,7 @@ class LoadedHalfPlane:
         """
         load = consistent_forces(self.space, self._facets, σ_YY, knots)
         node = self.space.numbers[self._facets.nodes.ravel()]
+        resultant = self.space.comm.allreduce(float(load.sum()))
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(
@@ -64,10 +76,12 @@ class LoadedHalfPlane:
             )
             b.assemble()
             self.fields.append(self.factor.solve(b))
+            if self._far:
+                self.fields[-1].axpy(-resultant / 2.0, self._far[1 - component])
             if self._corrected:
                 self.corrections.append(self._correction(self.fields[-1], b))
             b.destroy()
-        self.resultants.append(self.space.comm.allreduce(float(load.sum())))
+        self.resultants.append(resultant)
 
     def _correction(self, field: PETSc.Vec, load: PETSc.Vec) -> PETSc.Vec:
         """The field of what the forces of the cells' deformation leave of the load."""
@@ -81,7 +95,7 @@ class LoadedHalfPlane:
 
     def destroy(self) -> None:
         """Free factor and fields."""
-        for held in (self.factor, *self.fields, *self.corrections):
+        for held in (self.factor, *self.fields, *self.corrections, *self._far):
             held.destroy()
 
 

@@ -91,16 +91,19 @@ class Level:
         """Absolute, of u,X, σ_YY and σ_XY under a pressure whose resultant is that of a punch, 2."""
         return 2.0 * (self._transform.error / np.pi + self._table.error)
 
-    def read(self, t: NDArray, σ: NDArray, g: float, X: NDArray) -> NDArray[np.float64]:
+    def read(
+        self, t: NDArray, σ: NDArray, g: float, X: NDArray, size: float = 1.0
+    ) -> NDArray[np.float64]:
         """u,X times μ, σ_YY and σ_XY at positions, (3, n).
 
         Args:
             t, σ: of the pressure's rule.
             g: σ_XY/σ_YY on top.
-            X: positions over a.
+            X: positions.
+            size: length over a that ``t`` and ``X`` are over, and stresses.
         """
         found = np.empty((len(X), 6))
         for i, x in enumerate(X.tolist()):
-            found[i] = σ @ self._table(x - t)
+            found[i] = size * (σ @ self._table(size * (x - t)))
         by_shear, by_pressure = found[:, 0::2], found[:, 1::2]
         return np.asarray((g * by_shear + by_pressure).T)

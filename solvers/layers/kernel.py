@@ -20,7 +20,7 @@ from galinx.solvers.layers.medium import inverse
 from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.table import Table, tabulated
 
-#: Positions over a up to which the kernel is tabulated: differences of places on the surface.
+#: Positions over a that are asked for at most: differences of places on the surface.
 REACH = 6.5
 #: First panel of wavenumbers over the inverse of the total thickness.
 _FIRST = 0.2
@@ -40,10 +40,12 @@ class Kernel:
     Attributes:
         stack: layers with their substrate at a speed.
         tolerance: relative.
+        reach: positions over a up to which the kernel is tabulated.
     """
 
     stack: Stack
     tolerance: float
+    reach: float = REACH
 
     @cached_property
     def order(self) -> NDArray[Any]:
@@ -82,7 +84,7 @@ class Kernel:
         finest = min(float(self.stack.layers[0].H), 1.0) / 4.0
         if self.rough:
             finest *= 1e-6
-        return tabulated(self.transform, finest, REACH, allowed)
+        return tabulated(self.transform, finest, self.reach, allowed)
 
     @property
     def error(self) -> float:
@@ -97,3 +99,25 @@ class Kernel:
             log = 0.5 * np.log1p(ratio**2)
             found = found + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
         return found
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """The same with lengths over another one: contacts of all sizes see one kernel.
+
+    Attributes:
+        kernel: with lengths over a.
+        size: the other length over a.
+    """
+
+    kernel: Kernel
+    size: float
+
+    @property
+    def rough(self) -> bool:
+        """Has it a logarithm and a jump at 0?"""
+        return self.kernel.rough
+
+    def __call__(self, x: NDArray) -> NDArray[np.float64]:
+        """The kernels, (..., 4)."""
+        return self.size * self.kernel(self.size * np.asarray(x, dtype=float))

@@ -9,7 +9,7 @@ smooth. With p the pressure without its weight w the dominant part of the equati
 for what p(r) alone contributes is what the exponents make vanish.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -31,6 +31,8 @@ _REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
 #: Panels towards a place where a kernel is rough: their grading, number, points; within how many lengths
 #: of a panel a place is near.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+#: Distance from a free end within which a pressure is continued, and up to which it is known for that.
+_MENDED, _KNOWN = 3e-3, 0.12
 _ξ, _ω = legendre.leggauss(14)
 
 
@@ -50,7 +52,7 @@ class Panels:
     """A rule for what has the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
-        α, β: exponents, their sum -1.
+        α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
         finest: longest panel in t.
     """
 
@@ -87,12 +89,12 @@ class Panels:
     def density(self, x: NDArray) -> NDArray[np.float64]:
         """Weight times dt/dx; 1 - t = 2/(1 + e^x), and dt/dx is half the product of 1 - t and 1 + t."""
         log = -(1.0 + self.α) * np.logaddexp(0.0, x) - (1.0 + self.β) * np.logaddexp(0.0, -x)
-        return np.asarray(np.exp(log))
+        return np.asarray(2.0 ** (self.α + self.β + 1.0) * np.exp(log))
 
     def weight(self, x: NDArray) -> NDArray[np.float64]:
         """(1 - t)^α (1 + t)^β."""
         log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
-        return np.asarray(np.exp(log) / 2.0)
+        return np.asarray(2.0 ** (self.α + self.β) * np.exp(log))
 
     def apart(self, x: Any, δ: NDArray) -> NDArray[np.float64]:
         """t(x + δ) - t(x), to all digits."""
@@ -162,6 +164,20 @@ class PanelledPressure:
 
     near = 1.0
 
+    def vanishing(self) -> "PanelledPressure":
+        """The same of a contact whose ends are free: p falls to them like d and d log d.
+
+        Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
+        for, leaves digits of the largest p.
+        """
+        p = self.p.copy()
+        for x in (self.panels.x, -self.panels.x):
+            d = 2.0 / (1.0 + np.exp(x))
+            known, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
+            c, *_ = np.linalg.lstsq(_to_end(d[known]), self.p[known] / d[known], rcond=None)
+            p[near] = d[near] * (_to_end(d[near]) @ c)
+        return PanelledPressure(self.panels, p)
+
     @property
     def α(self) -> float:
         return self.panels.α
@@ -200,6 +216,12 @@ class PanelledPressure:
         return fine.t, fine.weights * self.panels.values(self.p, fine.x)
 
 
+def _to_end(d: NDArray) -> NDArray[np.float64]:
+    """What a pressure over its weight and d is a sum of next to a free end, (len(d), terms)."""
+    log = np.log(d)
+    return np.column_stack([np.ones_like(d), log, d, d * log, d * log**2, d**2, d**2 * log])
+
+
 def _x(r: NDArray) -> NDArray[np.float64]:
     with np.errstate(divide="ignore"):
         return np.asarray(np.log1p(r) - np.log1p(-r))
@@ -207,6 +229,24 @@ def _x(r: NDArray) -> NDArray[np.float64]:
 
 def solved(equation: Any, finest: float) -> PanelledPressure:
     """The pressure of an :class:`galinx.solvers.layers.contact.Equation` on such panels."""
+    panels, p = parts(equation, finest, [equation.slope], [-2.0])
+    return PanelledPressure(panels, p[:, 0])
+
+
+def parts(
+    equation: Any, finest: float, slopes: Sequence[Callable[[NDArray], NDArray]], loads: Sequence[float]
+) -> tuple[Panels, NDArray[np.float64]]:
+    """Panels, and values at their points of pressures under several slopes with several resultants.
+
+    Args:
+        equation: an :class:`galinx.solvers.layers.contact.Equation`.
+        finest: longest panel in t.
+        slopes: μ v,X under the punch over N/(2a) at given t.
+        loads: ∫ σ_YY dr of each.
+
+    Returns:
+        The panels, and the values, (n, slopes).
+    """
     panels = Panels(equation.α, equation.β, finest)
     n, count = equation.n, len(panels.x)
     apart = panels.apart(panels.x[:, None], panels.x - panels.x[:, None])
@@ -221,7 +261,7 @@ def solved(equation: Any, finest: float) -> PanelledPressure:
         A[i] += by_kernel[:, 3] + equation.g * by_kernel[:, 2]
     scale = 1.0 / panels.weight(panels.x)
     A = np.vstack([A * scale[:, None], panels.weights])
-    b = np.append(equation.slope(panels.t) * scale, -2.0)
+    b = np.vstack([np.stack([slope(panels.t) * scale for slope in slopes], axis=-1), loads])
     p, *_ = np.linalg.lstsq(A, b, rcond=None)
     assert len(p) == count
-    return PanelledPressure(panels, p)
+    return panels, p

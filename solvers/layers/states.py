@@ -48,16 +48,19 @@ class Speed:
             g: wanted, sorted, (states,).
         """
         if len(g) <= _FEW:
-            return Frictions(g, self._each(g)), np.zeros(1)
+            return self._together(g, self._each(g)), np.zeros(1)
         count = _FEW
         middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
         while True:
             nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
-            here = Frictions(nodes, self._each(nodes))
+            here = self._together(nodes, self._each(nodes))
             left = here.unresolved
             if left <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
                 return here, np.array([left])
             count = 2 * count - 1
+
+    def _together(self, g: NDArray, each: list[Any]) -> "Frictions":
+        return Frictions(g, each)
 
     def _each(self, g: NDArray) -> list[Found]:
         answers: list[Found] = []
@@ -101,11 +104,16 @@ class Frictions:
     @cached_property
     def unresolved(self) -> float:
         """Of the pressures as a function of g, by their last Chebyshev coefficients, relative."""
-        r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
-        values = self.read(lambda pressure: pressure.series(r))
+        values = self.smooth
         x = np.cos(np.pi * np.arange(len(self.g)) / (len(self.g) - 1))
         c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
         return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
+
+    @property
+    def smooth(self) -> NDArray[np.float64]:
+        """What is looked at of every pressure, (nodes, n)."""
+        r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
+        return self.read(lambda pressure: pressure.series(r))
 
     def at(self, g: NDArray) -> NDArray[np.float64]:
         """What turns values of every pressure into those at other frictions, (states, nodes)."""

@@ -10,7 +10,7 @@ from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess.quantities import Quantity, states, stresses, validity, yielding
+from galinx.postprocess.quantities import Quantity, states, strata, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
 from galinx.solvers.profiles import exponent
@@ -30,7 +30,7 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from galinx.app.run.methods.layers import Layers
+    from galinx.app.run.methods.on_layers import Layers
 
     return Layers(plan.tolerance)
 
@@ -38,9 +38,9 @@ def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
 def _layers_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if not body.layered:
         return "the solid has no layers, and closed_form knows the solution"
-    if body.found:
-        return "of layered solids, punches with two sharp edges are known"
-    return "the pressure is given" if body.pressure else ""
+    if body.pressure and quantity in _INTENSITIES_OF_LAYERS:
+        return "the pressure is given"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
@@ -83,6 +83,7 @@ def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) ->
 
 
 #: What only a punch has.
+_INTENSITIES_OF_LAYERS = (*strata.K_I_LEFT.values(), *strata.K_I_RIGHT.values(), strata.ESTIMATE)
 _INTENSITIES = (states.K_I_BOTH, states.K_I_LEFT[CLOSED_FORM], states.K_I_RIGHT[CLOSED_FORM])
 
 
@@ -103,7 +104,11 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
         return ""
     if quantity is states.INDENTATION:
         return "the far boundary moves with the load"
-    return _without_σ_ZZ(body, quantity)
+    if body.found and quantity is stresses.RAW_PRESSURE:
+        return "σ_YY itself is that of the nodal forces there"
+    if not body.flat and quantity is states.SLOPE:
+        return "the punch is not flat"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:

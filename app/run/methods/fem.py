@@ -9,9 +9,17 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
-from galinx.app.plan.fem import OWN_MESHES
+from galinx.app.plan.fem import FOLLOWED, LOADS, OWN_MESHES
 from galinx.app.plan.task import Plan, Task
-from galinx.app.run.methods import found_punch, given, kinked_punch, own_pressure, punch
+from galinx.app.run.methods import (
+    followed_punch,
+    found_punch,
+    given,
+    kinked_punch,
+    loads_on_layers,
+    own_pressure,
+    punch,
+)
 from galinx.app.run.methods.discretisation import Discretisation, quiet_compiler
 from galinx.app.run.methods.method import Pressure, Solver
 from galinx.app.run.methods.sweep import Trained, train
@@ -22,7 +30,7 @@ from galinx.solvers.fem.space import Space
 #: What solves at one speed, by the plan's mode: a module with functions ``solver`` and ``one_state``.
 MODES: dict[str, ModuleType] = {
     "contact": punch, "traction": given, OWN_PRESSURE: own_pressure, FOUND: found_punch,
-    OWN_MESHES: kinked_punch,
+    OWN_MESHES: kinked_punch, FOLLOWED: followed_punch, LOADS: loads_on_layers,
 }  # fmt: skip
 
 

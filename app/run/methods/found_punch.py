@@ -22,6 +22,7 @@ from galinx.app.run.methods.error import climbed
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
+from galinx.postprocess.largest import largest
 from galinx.postprocess.pressure import JacobiPressure, chebyshev, from_moments, without_zeros
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.errors import SolveError
@@ -32,9 +33,6 @@ from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
 from galinx.solvers.solution import Body, Surface
-
-#: Positions at which a largest pressure is looked for.
-_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
 
 
 @contextmanager
@@ -233,19 +231,8 @@ class FoundPunches:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        p = -self.found.pressure.σ_YY(_LOOKED_AT)
-        i = np.clip(p.argmax(axis=1), 1, len(_LOOKED_AT) - 2)
-        places = _LOOKED_AT[i[:, None] + [-1, 0, 1]]
-        for _ in range(6):
-            three = np.stack([-self.found.pressure.σ_YY(x)[k] for k, x in enumerate(places)])
-            half = (places[:, 2] - places[:, 0]) / 2.0
-            divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
-            bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
-            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
-            to_left, to_middle = top - places[:, 0], top - places[:, 1]
-            value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
-            half = np.maximum(half / 8.0, 1e-4)
-            places = top[:, None] + half[:, None] * np.array([-1.0, 0.0, 1.0])
+        σ_YY = self.found.pressure.σ_YY
+        value, top = largest(lambda x: -σ_YY(x), lambda i, x: -σ_YY(x)[i])
         infinite = ~self.found.free.all(axis=1)
         return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
 

@@ -1,7 +1,6 @@
 """The singular integral equation of layered and graded half-planes."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,35 +9,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
-from galinx.app.run.methods.method import Solver
 from galinx.postprocess import scale
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.layers.inside import Level
 from galinx.solvers.layers.medium import Medium
+from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import weights_hilbert
 from galinx.solvers.solution import Places, Surface
 
 
-@dataclass(frozen=True)
-class Layers:
-    """Kernels are found once a speed, pressures for some frictions, from which all others follow.
+def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "AtSpeed":
+    """Punches with two sharp edges at one speed, with frictions from which all others follow.
 
-    Attributes:
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
         tolerance: relative.
+        g: all values of σ_XY/σ_YY that will be asked for, sorted.
     """
-
-    tolerance: float
-
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        body, response = task.body, task.response
-        stack = response.stack(body.half_width)  # type: ignore[attr-defined]
-        speed = Speed(response, stack, body.slope, self.tolerance)
-        yield AtSpeed(task, speed, *speed.solved(g))
+    speed = Speed(task.response, stack, task.body.slope, tolerance)
+    return AtSpeed(task, speed, *speed.solved(g))
 
 
 @dataclass(frozen=True)
@@ -107,7 +101,7 @@ class AtSpeed:
         places, found, errors = self.task.places, [], []
         for depth in places.interfaces.tolist():
             level, (u_X, σ_YY, σ_XY) = self.level(depth, places.along)
-            both = [_in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
+            both = [in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
             found.append([σ_YY, σ_XY, *both])
             errors.append(level.error * max(1.0, *(medium.modulus for medium in level.media)))
         return np.moveaxis(np.array(found), 0, 3), np.array(errors)
@@ -123,7 +117,7 @@ class AtSpeed:
         for Y in np.unique(points[:, 1]).tolist():
             some = points[:, 1] == Y
             level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[some, 0])
-            found[..., some] = _in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+            found[..., some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
             errors[some] = level.error * max(1.0, level.media[0].modulus)
         return found, errors
 
@@ -148,9 +142,14 @@ class Punches:
     g: NDArray[np.float64]
 
     @cached_property
-    def local(self) -> FlatPunch:
-        """The edges, like those on a half-plane of the surface's solid."""
+    def edges(self) -> FlatPunch:
+        """Sharp edges, like those on a half-plane of the surface's solid."""
         return FlatPunch(self.at.task.response, self.g)
+
+    @property
+    def local(self) -> Any:
+        """Exponents at the ends."""
+        return self.edges
 
     @cached_property
     def _by_nodes(self) -> NDArray[np.float64]:
@@ -205,7 +204,7 @@ class Punches:
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_YY, 0 beside the punch, and σ_XX; each with fewer unknowns besides, (2, states, n)."""
         at, places, response = self.at, self.at.task.places, self.at.task.response
-        X, g, local = places.X, self.g[:, None], self.local
+        X, g, local = places.X, self.g[:, None], self.edges
         α, β = local.α[:, None], local.β[:, None]
         p = np.zeros((2, len(self.g), len(X)))
         p[..., at.near] = self._of_both(at.series)
@@ -276,7 +275,7 @@ _ESTIMATES: dict[str, Callable[[Estimates], NDArray[np.float64]]] = {
 }
 
 
-def _in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
     """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
     M = medium.modulus
     return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))

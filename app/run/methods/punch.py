@@ -41,7 +41,7 @@ _NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
 _BESIDE_EDGES = 0.1
 
 
-def negligible(work: Discretisation) -> float:
+def negligible(work: Any) -> float:
     """Relative change of the contact forces that no result shows."""
     least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
     return _BESIDE_EDGES * least if work.stresses else least

@@ -1,0 +1,149 @@
+"""The singular integral equation of layers under punches whose contact ends where the pressure says.
+
+Every friction has a contact of its own, and lengths are over its half-width; kernels and depths are
+those of all of them, over one length.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.app.plan.task import Task
+from galinx.app.run.methods.layers import AtSpeed, Punches, in_plane
+from galinx.postprocess.largest import largest
+from galinx.solvers.layers.found import Contacts, FoundSpeed, Parabola
+from galinx.solvers.layers.inside import Level
+from galinx.solvers.layers.stack import Stack
+from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.sie.found import Exponents
+
+
+def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAtSpeed":
+    """Contacts at one speed, with frictions from which all others follow.
+
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
+        tolerance: relative.
+        g: all values of σ_XY/σ_YY that will be asked for, sorted.
+    """
+    body = task.body
+    assert isinstance(body.profile, Parabolic)
+    a = body.half_width
+    punch = Parabola(body.profile.radius / a, body.compression / a)
+    # A place inside is in one layer with one friction and in another with the next.
+    every = bool(len(task.places.points))
+    speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
+    nodes, left = speed.solved(g)
+    assert isinstance(nodes, Contacts)
+    return FoundAtSpeed(task, speed, nodes, left)
+
+
+@dataclass(frozen=True)
+class FoundAtSpeed(AtSpeed):
+    """Contacts at one speed; positions are over each one's half-width, from its middle."""
+
+    nodes: Contacts
+    speed: FoundSpeed
+
+    def states(self, g: NDArray) -> Any:
+        return FoundPunches(self, g)
+
+    def _level(self, depth: float, farthest: float) -> Level:
+        """A depth over the length of all."""
+        return Level(self.speed.stack, depth, farthest, self.speed.tolerance)
+
+    @cached_property
+    def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        X, found, errors = self.task.places.along, [], []
+        largest = float(self.nodes.half_width.max())
+        for depth in self.speed.stack.depths.tolist():
+            level = self._level(depth, largest * (1.0 + float(np.abs(X).max())))
+
+            def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
+                t, σ = pressure.points(depth / h)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
+                return np.array([σ_YY, σ_XY, *(in_plane(one, u_X, σ_YY, σ_XY) for one in level.media)])  # noqa: B023
+
+            found.append(self.nodes.of_each(read))
+            errors.append(largest * _error(level))
+        return np.moveaxis(np.array(found), (3, 0), (0, 3)), np.array(errors)
+
+    @cached_property
+    def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        points, sizes = self.task.places.points, self.nodes.half_width
+        found, errors = np.empty((3, 2, len(sizes), len(points))), np.zeros(len(points))
+        for Y in np.unique(points[:, 1]).tolist():
+            some = points[:, 1] == Y
+            X = points[some, 0]
+            for i, (one, h) in enumerate(zip(self.nodes.each, sizes.tolist())):
+                level = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))
+                for j, pressure in enumerate((one.pressure, one.before)):
+                    g = float(self.nodes.g[i])
+                    t, σ = pressure.points(-Y)
+                    u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)
+                    found[:, j, i, some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+                errors[some] = np.maximum(errors[some], h * _error(level))
+        return found, errors
+
+    @cached_property
+    def regular(self) -> NDArray[np.float64]:
+        X = self.task.places.X
+
+        def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
+            by_kernel = pressure.integral(self.speed.scaled(h), X)
+            return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
+
+        return self.nodes.of_each(read)
+
+
+def _error(level: Level) -> float:
+    """Absolute, of stresses there over those of a contact whose half-width is the length of all."""
+    return level.error * max(1.0, *(medium.modulus for medium in level.media))
+
+
+@dataclass(frozen=True)
+class FoundPunches(Punches):
+    """Punches with several frictions, each with its own half-width and middle."""
+
+    at: FoundAtSpeed
+
+    @property
+    def local(self) -> Exponents:
+        """Exponents at the ends."""
+        return Exponents(self.edges.α + 1.0, self.edges.β + 1.0)
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the contact [m], (states,)."""
+        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.half_width)
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end: none, by condition, (states, 2)."""
+        return np.zeros((len(self.g), 2))
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, (states,)."""
+
+        def pressure(r: NDArray) -> NDArray[np.float64]:
+            p = self._by_nodes @ self.at.nodes.read(lambda pressure: pressure.series(r))
+            α, β = self.edges.α[:, None], self.edges.β[:, None]
+            return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
+
+        return largest(pressure, lambda i, r: pressure(r)[i])
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        body, Y = self.at.task.body, self.places.points[:, 1]
+        shares = self.half_width / body.half_width
+        return np.array([body.σ_ZZ(self.inside[:, i], h * Y) for i, h in enumerate(shares.tolist())])

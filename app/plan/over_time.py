@@ -15,7 +15,7 @@ from galinx.app.plan.driving import (
     load_of,
     ways_at,
 )
-from galinx.app.plan.states import enumerate_states
+from galinx.app.plan.states import States
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
 from galinx.postprocess.compare_over_time import BOTH, OF_FEM
@@ -23,6 +23,7 @@ from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.admittance import Admittance, InPlane
+from galinx.texts import counted
 
 #: Starts of a scene at most, and unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
@@ -138,7 +139,7 @@ class Starts:
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
         begin = "from steady motion on" if self.steady else "from rest"
-        what = f"{self.count} starts {begin}, to t = {self.end:g} a/c_s"
+        what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
         lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
         lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
             not self.tells_K_I
@@ -200,8 +201,8 @@ class Starts:
         return ahead, sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
 
 
-def starts(scene: Scene) -> Starts | None:
-    """The starts of a scene, None where it asks for none.
+def starts(scene: Scene, states: States) -> Starts | None:
+    """The starts of a scene by its friction states, None where it asks for none.
 
     Raises:
         BadInput: they are known of other scenes only.
@@ -214,7 +215,7 @@ def starts(scene: Scene) -> Starts | None:
     load = load_of(scene)
     largest = min(_STEP, load.shortest / _OF_RAMP)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
-    frictions = _frictions(scene)
+    frictions = _frictions(scene, states)
     ways = ways_at(scene, next(iter(frictions)), step)
     alone = ""
     if SIE in methods and scene.time.by_law:
@@ -228,14 +229,13 @@ def starts(scene: Scene) -> Starts | None:
     return found
 
 
-def _frictions(scene: Scene) -> dict[float, tuple[Friction, ...]]:
+def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]]:
     """Friction of all starts by speed.
 
     Raises:
         BadInput: there are too many, or their speed has no answer.
     """
     assert scene.time
-    states = enumerate_states(scene)
     c = states.columns["c"]
     pairs = np.unique(np.column_stack([c, states.g]), axis=0)
     found: dict[float, tuple[Friction, ...]] = {}

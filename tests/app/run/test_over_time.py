@@ -147,7 +147,7 @@ def test_what_has_no_answer_is_refused(changes, said):
 
 def test_a_plan_tells_starts():
     done = command("plan", "scenes/start_from_rest.toml")
-    assert "integral equation in time: 1 starts from rest" in done.stdout
+    assert "integral equation in time: 1 start from rest" in done.stdout
     assert "finite elements in time" in done.stdout
 
 

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from math import ceil, log10, sqrt
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.plan.driving import (
@@ -19,7 +21,10 @@ from galinx.app.plan.states import States
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
 from galinx.postprocess.compare_over_time import BOTH, OF_FEM
+from galinx.postprocess.energy_over_time import BALANCE, WORKS
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.surface_over_time import ALONG, AT_ENDS
+from galinx.postprocess.surface_over_time import OF_FEM as OF_SURFACE
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.admittance import Admittance, InPlane
@@ -40,6 +45,12 @@ _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
 _CROSSED = 2.0
 #: Distance over a times tolerance at which steady motion is held.
 _HELD = 5.0
+#: Distance over a from the punch along the surface, and depth, up to which it may be looked at.
+_SEEN = 2.0, 2.0
+#: Side of cells over a then: waves ahead of the punch are short.
+_SEEN_SIZE = 2.0 / 3.0
+#: Points of the rule that tells work in a step.
+_RULE = 4
 #: Steps by which the end is later for waves.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
@@ -52,7 +63,7 @@ _SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
 
 
 #: Rules by which starts are judged.
-IN_TIME = frozenset({BOTH, OF_FEM})
+IN_TIME = frozenset({BOTH, OF_FEM, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
 
 
 @dataclass(frozen=True)
@@ -86,6 +97,8 @@ class Starts:
         load: over time.
         steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
+        every: time between those at which the surface is told over a/c_s, None for none.
+        stress_ratio: σ_XY/σ_YY over the friction coefficient.
         alone: why the integral equation does not follow them, though it was asked for; empty if it does.
     """
 
@@ -95,6 +108,8 @@ class Starts:
     load: Load
     steady: bool
     tolerance: float
+    every: float | None = None
+    stress_ratio: float = -1.0
     alone: str = ""
 
     @property
@@ -106,6 +121,28 @@ class Starts:
     def end(self) -> float:
         """Last time over a/c_s."""
         return sum(way.duration for way in self.ways)
+
+    def times(self, every: int = 1) -> NDArray[np.float64]:
+        """Ends of the finite elements' steps over a/c_s, or of so many together."""
+        h = [np.full(way.steps // every, every * way.duration / way.steps) for way in self.ways]
+        return np.asarray(np.cumsum(np.concatenate(h)))
+
+    @property
+    def outputs(self) -> NDArray[np.int64]:
+        """How many steps are done when the surface is told, an even number each."""
+        wanted = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
+        return np.unique(2 * np.abs(np.subtract.outer(wanted, self.times(2))).argmin(axis=1) + 2)
+
+    def dissipated(self, c: float, g: Friction) -> NDArray[np.float64]:
+        """∫ f V N dt after each step over N a: what friction takes, but for its second order."""
+        x, w = leggauss(_RULE)
+        ends, found = np.append(0.0, self.times()), []
+        ways = [way.direction for way in self.ways for _ in range(way.steps)]
+        for t0, t1, way in zip(ends[:-1], ends[1:], ways):
+            t = t0 + (t1 - t0) * (1.0 + x) / 2.0
+            f = np.array([g(at) for at in t]) / self.stress_ratio
+            found.append(way * c * (t1 - t0) / 2.0 * float(w @ (f * self.load(t))))
+        return np.cumsum(found)
 
     @property
     def shortest(self) -> float:
@@ -133,8 +170,11 @@ class Starts:
     @property
     def rules(self) -> frozenset[str]:
         """Names of the rules by which what is found is judged."""
-        of_fem = {OF_FEM} if FEM in self.methods else set()
-        return frozenset(of_fem | ({BOTH} if of_fem and SIE in self.methods else set()))
+        if FEM not in self.methods:
+            return frozenset()
+        both = SIE in self.methods
+        found = {OF_FEM, *(BOTH, *((WORKS, AT_ENDS) if not self.steady else ())) * both}
+        return frozenset(found | ({BALANCE, OF_SURFACE, *(ALONG,) * both} if self.every else set()))
 
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
@@ -179,7 +219,11 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        size = (
+            (_SEEN_SIZE if self.every else _SIZE)
+            * min(1.0, gap / _SLOW) ** 0.5
+            * min(1.0, self.shortest / _LONG)
+        )
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
@@ -192,13 +236,18 @@ class Starts:
     def _reach(self, fast: float, c: float) -> tuple[float, float]:
         """Half-width and depth from which the fastest wave is not back before the end.
 
-        It comes back to a punch that has moved. Implicit steps let it be felt a little earlier.
+        It comes back to a punch that has moved, or to what is looked at round it. Implicit steps let it
+        be felt a little earlier.
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
+        beside, below = _SEEN if self.every else (0.0, 0.0)
         if len({way.direction for way in self.ways}) > 1:
-            return 1.0 + fast * T / 2.0 + c * max(way.duration for way in self.ways), fast * T / 2.0
+            farthest = c * max(way.duration for way in self.ways)
+            return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
-        return ahead, sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
+        # On the way down and up the punch goes ahead by c T, but for what is looked at.
+        down = sqrt((fast * T) ** 2 - max(c * T - 2.0 - 2.0 * beside, 0.0) ** 2) / 2.0
+        return ahead + beside, down + below / 2.0
 
 
 def starts(scene: Scene, states: States) -> Starts | None:
@@ -216,6 +265,8 @@ def starts(scene: Scene, states: States) -> Starts | None:
     largest = min(_STEP, load.shortest / _OF_RAMP)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     frictions = _frictions(scene, states)
+    if scene.time.every and not scene.time.step:
+        step = scene.time.every / (2.0 * ceil(scene.time.every / step / 2.0))
     ways = ways_at(scene, next(iter(frictions)), step)
     alone = ""
     if SIE in methods and scene.time.by_law:
@@ -223,7 +274,10 @@ def starts(scene: Scene, states: States) -> Starts | None:
         methods = tuple(name for name in methods if name != SIE)
         if not methods:
             raise BadInput(f"solve.methods is sie only, but {alone}: expected fem, too")
-    found = Starts(frictions, methods, ways, load, scene.time.steady, tolerance, alone)
+    found = Starts(
+        frictions, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
+        scene.friction.stress_ratio, alone,
+    )  # fmt: skip
     if FEM in methods:
         _check_size(found, scene)
     return found

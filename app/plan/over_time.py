@@ -147,12 +147,17 @@ class Starts:
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
-        return min(self.load.shortest, *(way.duration for way in self.ways if self.changing), np.inf)
+        return min(self.load.shortest, *(way.stroke for way in self.ways if self.changing), np.inf)
 
     @property
     def changing(self) -> bool:
         """Does friction change?"""
         return any(one.constant is None for many in self.frictions.values() for one in many)
+
+    @property
+    def turns(self) -> bool:
+        """Does the punch turn round?"""
+        return len({way.direction for way in self.ways}) > 1
 
     @property
     def tells_K_I(self) -> bool:
@@ -174,7 +179,10 @@ class Starts:
             return frozenset()
         both = SIE in self.methods
         found = {OF_FEM, *(BOTH, *((WORKS, AT_ENDS) if not self.steady else ())) * both}
-        return frozenset(found | ({BALANCE, OF_SURFACE, *(ALONG,) * both} if self.every else set()))
+        if self.every:
+            # Of waves that are sharp the estimate is told, and nothing promised.
+            found |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * self.tells_K_I}
+        return frozenset(found)
 
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
@@ -219,11 +227,8 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        size = (
-            (_SEEN_SIZE if self.every else _SIZE)
-            * min(1.0, gap / _SLOW) ** 0.5
-            * min(1.0, self.shortest / _LONG)
-        )
+        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        size = min(size, _SEEN_SIZE) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
@@ -241,8 +246,8 @@ class Starts:
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
         beside, below = _SEEN if self.every else (0.0, 0.0)
-        if len({way.direction for way in self.ways}) > 1:
-            farthest = c * max(way.duration for way in self.ways)
+        if self.turns:
+            farthest = c * max(way.stroke for way in self.ways)
             return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
         # On the way down and up the punch goes ahead by c T, but for what is looked at.
@@ -265,8 +270,6 @@ def starts(scene: Scene, states: States) -> Starts | None:
     largest = min(_STEP, load.shortest / _OF_RAMP)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     frictions = _frictions(scene, states)
-    if scene.time.every and not scene.time.step:
-        step = scene.time.every / (2.0 * ceil(scene.time.every / step / 2.0))
     ways = ways_at(scene, next(iter(frictions)), step)
     alone = ""
     if SIE in methods and scene.time.by_law:

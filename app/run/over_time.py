@@ -203,7 +203,8 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     response = solid.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    motion = Motion(Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock), response)
+    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock)
+    motion = Motion(space, response, starts.turns)
     solver, seen = SlidingInTime(motion, clock), Seen(starts, level, motion)
     phases = [Phase(way.direction, way.duration, way.steps // level.every) for way in starts.ways]
     found = []

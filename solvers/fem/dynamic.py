@@ -28,10 +28,12 @@ class Motion:
     Args:
         space: the space.
         response: of the half-plane at a speed.
+        sharp: are there waves that no cell holds, as where a punch turns round?
     """
 
     space: Space
     response: Response
+    sharp: bool = False
 
     @cached_property
     def K(self) -> csr_matrix:
@@ -55,7 +57,7 @@ class Motion:
     @cached_property
     def D(self) -> csr_matrix:
         """Of waves that far cells are too large for, of one component."""
-        return self._sum(damping(self.space))
+        return self._sum(damping(self.space, self.sharp))
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import ceil
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
@@ -18,6 +19,8 @@ from galinx.solvers.transient.punch import smooth
 
 #: Places of a stroke between which friction is interpolated; steps of a stroke at least.
 _PLACES, _OF_STROKE = 801, 12
+#: Points of the rule that tells work in a step.
+_RULE = 4
 #: Steps instead of one after a turn.
 _FINELY = 8
 
@@ -194,3 +197,22 @@ def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(found)
+
+
+def taken(ways: tuple[Way, ...], load: Load, f: Callable[[float], float]) -> NDArray[np.float64]:
+    """∫ f ±N dt after each step over N a/c_s, where friction f is positive if it is against +X.
+
+    Args:
+        ways: of the punch.
+        load: share of N.
+        f: friction coefficient at times.
+    """
+    x, w = leggauss(_RULE)
+    found, t0 = [], 0.0
+    for way in ways:
+        h = way.duration / way.steps
+        for n in range(way.steps):
+            t = t0 + h * (n + (1.0 + x) / 2.0)
+            found.append(way.direction * h / 2.0 * float(w @ (np.array(list(map(f, t))) * load(t))))
+        t0 += way.duration
+    return np.cumsum(found)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from math import ceil, log10, sqrt
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
@@ -15,25 +14,21 @@ from galinx.app.plan.driving import (
     constant,
     frictions_at,
     load_of,
+    taken,
     ways_at,
 )
+from galinx.app.plan.judged_over_time import rules
+from galinx.app.plan.known_in_time import check_in_time
 from galinx.app.plan.states import States
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
-from galinx.postprocess.compare_over_time import BOTH, OF_FEM
-from galinx.postprocess.energy_over_time import BALANCE, WORKS
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.surface_over_time import ALONG, AT_ENDS
-from galinx.postprocess.surface_over_time import OF_FEM as OF_SURFACE
-from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.solid import Solid
-from galinx.solvers.transient.admittance import Admittance, InPlane
+from galinx.solvers.transient.admittance import Admittance
 from galinx.texts import counted
 
 #: Starts of a scene at most, and unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
-#: Tolerances that can be reached.
-_TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
 _STEP, _OF_RAMP = 0.4, 8
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
@@ -45,12 +40,12 @@ _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
 _CROSSED = 2.0
 #: Distance over a times tolerance at which steady motion is held.
 _HELD = 5.0
+#: Size of a ring of cells at the edges over that of the ring outside it; where waves are sharp.
+_RATIO, _SHARP_RATIO = 0.25, 0.5
 #: Distance over a from the punch along the surface, and depth, up to which it may be looked at.
 _SEEN = 2.0, 2.0
 #: Side of cells over a then: waves ahead of the punch are short.
 _SEEN_SIZE = 2.0 / 3.0
-#: Points of the rule that tells work in a step.
-_RULE = 4
 #: Steps by which the end is later for waves.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
@@ -60,10 +55,6 @@ _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
 #: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
 #: the last of these it asks for a degree more.
 _SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
-
-
-#: Rules by which starts are judged.
-IN_TIME = frozenset({BOTH, OF_FEM, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
 
 
 @dataclass(frozen=True)
@@ -135,14 +126,7 @@ class Starts:
 
     def dissipated(self, c: float, g: Friction) -> NDArray[np.float64]:
         """∫ f V N dt after each step over N a: what friction takes, but for its second order."""
-        x, w = leggauss(_RULE)
-        ends, found = np.append(0.0, self.times()), []
-        ways = [way.direction for way in self.ways for _ in range(way.steps)]
-        for t0, t1, way in zip(ends[:-1], ends[1:], ways):
-            t = t0 + (t1 - t0) * (1.0 + x) / 2.0
-            f = np.array([g(at) for at in t]) / self.stress_ratio
-            found.append(way * c * (t1 - t0) / 2.0 * float(w @ (f * self.load(t))))
-        return np.cumsum(found)
+        return taken(self.ways, self.load, lambda t: g(t) / self.stress_ratio) * c
 
     @property
     def shortest(self) -> float:
@@ -158,6 +142,11 @@ class Starts:
     def turns(self) -> bool:
         """Does the punch turn round?"""
         return len({way.direction for way in self.ways}) > 1
+
+    @property
+    def sharp(self) -> bool:
+        """Are there waves that no cell holds? They begin at the edges, suddenly."""
+        return self.turns or not self.tells_K_I
 
     @property
     def tells_K_I(self) -> bool:
@@ -177,12 +166,7 @@ class Starts:
         """Names of the rules by which what is found is judged."""
         if FEM not in self.methods:
             return frozenset()
-        both = SIE in self.methods
-        found = {OF_FEM, *(BOTH, *((WORKS, AT_ENDS) if not self.steady else ())) * both}
-        if self.every:
-            # Of waves that are sharp the estimate is told, and nothing promised.
-            found |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * self.tells_K_I}
-        return frozenset(found)
+        return rules(SIE in self.methods, self.steady, bool(self.every), self.sharp)
 
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
@@ -231,9 +215,10 @@ class Starts:
         size = min(size, _SEEN_SIZE) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
+        ratio = _SHARP_RATIO if self.sharp else _RATIO
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
         coarse, fine = (
-            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond)
+            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio)
             for of in (_GROWN * growth, growth)
         )
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
@@ -265,7 +250,7 @@ def starts(scene: Scene, states: States) -> Starts | None:
         return None
     methods = tuple(name for name in (FEM, SIE) if name in scene.solve.methods)
     tolerance = scene.solve.tolerance
-    _check(scene, methods)
+    check_in_time(scene, methods)
     load = load_of(scene)
     largest = min(_STEP, load.shortest / _OF_RAMP)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
@@ -329,26 +314,3 @@ def _check_size(found: Starts, scene: Scene) -> None:
                 f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
                 "end, a larger solve.tolerance, or a smaller Poisson's ratio"
             )
-
-
-def _check(scene: Scene, methods: tuple[str, ...]) -> None:
-    solid, tolerance = scene.solid, scene.solve.tolerance
-    faults = []
-    if not methods:
-        faults.append("solve.methods has neither fem nor sie, which follow a start from rest")
-    if not _TIGHTEST <= tolerance <= _COARSEST:
-        faults.append(
-            f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
-        )
-    if not isinstance(solid.response(0.0), InPlane):
-        faults.append("a start from rest is known of uniform solids, without layers")
-    elif solid.nearly_incompressible:
-        faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
-    if not isinstance(scene.punch.profile, Flat):
-        faults.append("a start from rest is known of flat punches")
-    if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
-        faults.append("strokes with a speed or a rest of their own are not followed in time")
-    if scene.solve.mode != "contact":
-        faults.append('a start from rest needs solve.mode = "contact"')
-    if faults:
-        raise BadInput("time: " + "; ".join(faults))

@@ -88,7 +88,8 @@ _FIGURES = {
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
     FILM: _Figure(
         {"states", "quantities", "method"},
-        lambda data, scene, choice: any(has() for has, _ in _films(data, scene, choice)), _no_figure,
+        lambda data, scene, choice: film.has(data, scene, choice) or any(has for has, _ in _films(data)),
+        _no_figure,
     ),
 }  # fmt: skip
 
@@ -119,18 +120,17 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
         choice = replace(choice, figures=(FILM,))
     wanted = names(data, scene, choice)
     files.check(wanted)
-    made = next((make for has, make in _films(data, scene, choice) if has()), film.film)
+    in_time = [make for has, make in _films(data) if has]
+    made = film.film if not in_time or film.has(data, scene, choice) else in_time[0]
     whole = (lambda: made(data, scene, choice)) if FILM in wanted else None
     return files.write(of_archive(data, scene, choice), whole)
 
 
-def _films(data: _Data, scene: Scene, choice: Choice) -> tuple[tuple[Callable[[], bool], Any], ...]:
-    """What may be filmed, the first that an archive has: is it there, and what makes it."""
+def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
+    """Films of motions in time: does an archive have what they show, and what makes them."""
     return (
-        (lambda: film.has(data, scene, choice), film.film),
-        (lambda: surface_over_time.has_film(data), surface_over_time.film),
-        (lambda: pressures.has(data), pressures.film),
-    )
+        (surface_over_time.has_film(data), surface_over_time.film), (pressures.has(data), pressures.film),
+    )  # fmt: skip
 
 
 def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:

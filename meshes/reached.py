@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from galinx.meshes.rings import QuadMesh, Refinement, corner, tagged
 
-#: Size of a ring over that of the ring outside it: straight cells ask for gentle ones.
-_RATIO = 0.25
 #: Largest half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
 _SQUARE = 1.0
 #: How many times as far as one line the next is where only a steady field has to be held.
@@ -32,6 +30,7 @@ class Reached:
         innermost: size of the cells at the edges of the punch over a.
         beyond: half-width and depth of all cells over a, where a steady field is held; 0 for no more than
             waves need.
+        ratio: size of a ring at the edges over that of the ring outside it.
     """
 
     half_width: float
@@ -40,12 +39,13 @@ class Reached:
     growth: float
     innermost: float
     beyond: float = 0.0
+    ratio: float = 0.25
 
     def drawn(self) -> QuadMesh:
         """The mesh."""
         square = min(_SQUARE, self.size)
-        levels = max(ceil(log(self.innermost / square) / log(_RATIO)), 1)
-        beside, _ = corner(square, Refinement(levels, _RATIO, 1, ()), fan=True)
+        levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
+        beside, _ = corner(square, Refinement(levels, self.ratio, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
         squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
         between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / self.size) + 1)

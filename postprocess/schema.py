@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from galinx.postprocess import compare_over_time  # noqa: F401  adds its rules
+# Each adds its rules.
+from galinx.postprocess import compare_over_time, energy_over_time, surface_over_time  # noqa: F401
 from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.finite import not_finite

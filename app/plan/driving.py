@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import ceil
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
@@ -18,6 +19,10 @@ from galinx.solvers.transient.punch import smooth
 
 #: Places of a stroke between which friction is interpolated; steps of a stroke at least.
 _PLACES, _OF_STROKE = 801, 12
+#: Points of the rule that tells work in a step.
+_RULE = 4
+#: Steps instead of one after a turn.
+_FINELY = 8
 
 
 @dataclass(frozen=True)
@@ -52,11 +57,32 @@ class Way:
         direction: ±1.
         duration: over a/c_s.
         steps: of the finite elements, an even number.
+        part_of: duration of the whole where this is a part of it, else 0.
     """
 
     direction: int
     duration: float
     steps: int
+    part_of: float = 0.0
+
+    @property
+    def stroke(self) -> float:
+        """Duration of the whole."""
+        return self.part_of or self.duration
+
+    @property
+    def begun_finely(self) -> "tuple[Way, ...]":
+        """In two parts, the first two steps in shorter ones.
+
+        Where the punch has turned round the pressure changes with the root of time.
+        """
+        if self.steps <= 2:
+            return (self,)
+        first = 2.0 * self.duration / self.steps
+        return (
+            Way(self.direction, first, 2 * _FINELY, self.duration),
+            Way(self.direction, self.duration - first, self.steps - 2, self.duration),
+        )
 
 
 @dataclass(frozen=True)
@@ -112,13 +138,16 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     assert scene.time
     end = scene.time.end
     if not scene.time.by_law:
-        return (_way(1, end, largest),)
-    ways, t = [], 0.0
+        return (_way(1, end, _dividing(scene, largest)),)
+    ways: list[Way] = []
+    t = 0.0
     for leg in scene.legs:
         duration = leg.length * _whole(scene) / c
         # A step less than a millionth of a stroke is rounding.
         if (left := min(duration, end - t)) > 1e-6 * duration:
-            ways.append(_way(leg.s, left, min(largest, duration / _OF_STROKE)))
+            way = _way(leg.s, left, _dividing(scene, min(largest, duration / _OF_STROKE)))
+            turned = ways and ways[-1].direction != leg.s
+            ways += way.begun_finely if turned else (way,)
             t += left
     if end - t > 1e-6 * end:
         raise BadInput(
@@ -126,6 +155,14 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
             'later end, more strokes, or time.friction = "constant"'
         )
     return tuple(ways)
+
+
+def _dividing(scene: Scene, largest: float) -> float:
+    """A step of which an even number is the time from one look at the surface to the next, if any."""
+    assert scene.time
+    if scene.time.every is None or scene.time.step:
+        return largest
+    return scene.time.every / (2.0 * ceil(scene.time.every / largest / 2.0 - 1e-9))
 
 
 def _way(direction: int, duration: float, largest: float) -> Way:
@@ -160,3 +197,22 @@ def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(found)
+
+
+def taken(ways: tuple[Way, ...], load: Load, f: Callable[[float], float]) -> NDArray[np.float64]:
+    """∫ f ±N dt after each step over N a/c_s, where friction f is positive if it is against +X.
+
+    Args:
+        ways: of the punch.
+        load: share of N.
+        f: friction coefficient at times.
+    """
+    x, w = leggauss(_RULE)
+    found, t0 = [], 0.0
+    for way in ways:
+        h = way.duration / way.steps
+        for n in range(way.steps):
+            t = t0 + h * (n + (1.0 + x) / 2.0)
+            found.append(way.direction * h / 2.0 * float(w @ (np.array(list(map(f, t))) * load(t))))
+        t0 += way.duration
+    return np.cumsum(found)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import ceil, log10, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.plan.driving import (
@@ -13,21 +14,21 @@ from galinx.app.plan.driving import (
     constant,
     frictions_at,
     load_of,
+    taken,
     ways_at,
 )
-from galinx.app.plan.states import enumerate_states
+from galinx.app.plan.judged_over_time import rules
+from galinx.app.plan.known_in_time import check_in_time
+from galinx.app.plan.states import States
 from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
-from galinx.postprocess.compare_over_time import BOTH, OF_FEM
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.solid import Solid
-from galinx.solvers.transient.admittance import Admittance, InPlane
+from galinx.solvers.transient.admittance import Admittance
+from galinx.texts import counted
 
 #: Starts of a scene at most, and unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
-#: Tolerances that can be reached.
-_TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
 _STEP, _OF_RAMP = 0.4, 8
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
@@ -39,6 +40,12 @@ _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
 _CROSSED = 2.0
 #: Distance over a times tolerance at which steady motion is held.
 _HELD = 5.0
+#: Size of a ring of cells at the edges over that of the ring outside it; where waves are sharp.
+_RATIO, _SHARP_RATIO = 0.25, 0.5
+#: Distance over a from the punch along the surface, and depth, up to which it may be looked at.
+_SEEN = 2.0, 2.0
+#: Side of cells over a then: waves ahead of the punch are short.
+_SEEN_SIZE = 2.0 / 3.0
 #: Steps by which the end is later for waves.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
@@ -48,10 +55,6 @@ _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
 #: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
 #: the last of these it asks for a degree more.
 _SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
-
-
-#: Rules by which starts are judged.
-IN_TIME = frozenset({BOTH, OF_FEM})
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,8 @@ class Starts:
         load: over time.
         steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
+        every: time between those at which the surface is told over a/c_s, None for none.
+        stress_ratio: σ_XY/σ_YY over the friction coefficient.
         alone: why the integral equation does not follow them, though it was asked for; empty if it does.
     """
 
@@ -94,6 +99,8 @@ class Starts:
     load: Load
     steady: bool
     tolerance: float
+    every: float | None = None
+    stress_ratio: float = -1.0
     alone: str = ""
 
     @property
@@ -106,15 +113,40 @@ class Starts:
         """Last time over a/c_s."""
         return sum(way.duration for way in self.ways)
 
+    def times(self, every: int = 1) -> NDArray[np.float64]:
+        """Ends of the finite elements' steps over a/c_s, or of so many together."""
+        h = [np.full(way.steps // every, every * way.duration / way.steps) for way in self.ways]
+        return np.asarray(np.cumsum(np.concatenate(h)))
+
+    @property
+    def outputs(self) -> NDArray[np.int64]:
+        """How many steps are done when the surface is told, an even number each."""
+        wanted = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
+        return np.unique(2 * np.abs(np.subtract.outer(wanted, self.times(2))).argmin(axis=1) + 2)
+
+    def dissipated(self, c: float, g: Friction) -> NDArray[np.float64]:
+        """∫ f V N dt after each step over N a: what friction takes, but for its second order."""
+        return taken(self.ways, self.load, lambda t: g(t) / self.stress_ratio) * c
+
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
-        return min(self.load.shortest, *(way.duration for way in self.ways if self.changing), np.inf)
+        return min(self.load.shortest, *(way.stroke for way in self.ways if self.changing), np.inf)
 
     @property
     def changing(self) -> bool:
         """Does friction change?"""
         return any(one.constant is None for many in self.frictions.values() for one in many)
+
+    @property
+    def turns(self) -> bool:
+        """Does the punch turn round?"""
+        return len({way.direction for way in self.ways}) > 1
+
+    @property
+    def sharp(self) -> bool:
+        """Are there waves that no cell holds? They begin at the edges, suddenly."""
+        return self.turns or not self.tells_K_I
 
     @property
     def tells_K_I(self) -> bool:
@@ -132,13 +164,14 @@ class Starts:
     @property
     def rules(self) -> frozenset[str]:
         """Names of the rules by which what is found is judged."""
-        of_fem = {OF_FEM} if FEM in self.methods else set()
-        return frozenset(of_fem | ({BOTH} if of_fem and SIE in self.methods else set()))
+        if FEM not in self.methods:
+            return frozenset()
+        return rules(SIE in self.methods, self.steady, bool(self.every), self.sharp)
 
     def words(self, solid: Solid) -> list[str]:
         """What is done, one line a method."""
         begin = "from steady motion on" if self.steady else "from rest"
-        what = f"{self.count} starts {begin}, to t = {self.end:g} a/c_s"
+        what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
         lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
         lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
             not self.tells_K_I
@@ -179,11 +212,13 @@ class Starts:
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        size = min(size, _SEEN_SIZE) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
+        ratio = _SHARP_RATIO if self.sharp else _RATIO
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
         coarse, fine = (
-            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond)
+            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio)
             for of in (_GROWN * growth, growth)
         )
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
@@ -191,17 +226,22 @@ class Starts:
     def _reach(self, fast: float, c: float) -> tuple[float, float]:
         """Half-width and depth from which the fastest wave is not back before the end.
 
-        It comes back to a punch that has moved. Implicit steps let it be felt a little earlier.
+        It comes back to a punch that has moved, or to what is looked at round it. Implicit steps let it
+        be felt a little earlier.
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
-        if len({way.direction for way in self.ways}) > 1:
-            return 1.0 + fast * T / 2.0 + c * max(way.duration for way in self.ways), fast * T / 2.0
+        beside, below = _SEEN if self.every else (0.0, 0.0)
+        if self.turns:
+            farthest = c * max(way.stroke for way in self.ways)
+            return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
-        return ahead, sqrt((fast * T) ** 2 - max(c * T - 2.0, 0.0) ** 2) / 2.0
+        # On the way down and up the punch goes ahead by c T, but for what is looked at.
+        down = sqrt((fast * T) ** 2 - max(c * T - 2.0 - 2.0 * beside, 0.0) ** 2) / 2.0
+        return ahead + beside, down + below / 2.0
 
 
-def starts(scene: Scene) -> Starts | None:
-    """The starts of a scene, None where it asks for none.
+def starts(scene: Scene, states: States) -> Starts | None:
+    """The starts of a scene by its friction states, None where it asks for none.
 
     Raises:
         BadInput: they are known of other scenes only.
@@ -210,11 +250,11 @@ def starts(scene: Scene) -> Starts | None:
         return None
     methods = tuple(name for name in (FEM, SIE) if name in scene.solve.methods)
     tolerance = scene.solve.tolerance
-    _check(scene, methods)
+    check_in_time(scene, methods)
     load = load_of(scene)
     largest = min(_STEP, load.shortest / _OF_RAMP)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
-    frictions = _frictions(scene)
+    frictions = _frictions(scene, states)
     ways = ways_at(scene, next(iter(frictions)), step)
     alone = ""
     if SIE in methods and scene.time.by_law:
@@ -222,20 +262,22 @@ def starts(scene: Scene) -> Starts | None:
         methods = tuple(name for name in methods if name != SIE)
         if not methods:
             raise BadInput(f"solve.methods is sie only, but {alone}: expected fem, too")
-    found = Starts(frictions, methods, ways, load, scene.time.steady, tolerance, alone)
+    found = Starts(
+        frictions, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
+        scene.friction.stress_ratio, alone,
+    )  # fmt: skip
     if FEM in methods:
         _check_size(found, scene)
     return found
 
 
-def _frictions(scene: Scene) -> dict[float, tuple[Friction, ...]]:
+def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]]:
     """Friction of all starts by speed.
 
     Raises:
         BadInput: there are too many, or their speed has no answer.
     """
     assert scene.time
-    states = enumerate_states(scene)
     c = states.columns["c"]
     pairs = np.unique(np.column_stack([c, states.g]), axis=0)
     found: dict[float, tuple[Friction, ...]] = {}
@@ -272,26 +314,3 @@ def _check_size(found: Starts, scene: Scene) -> None:
                 f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
                 "end, a larger solve.tolerance, or a smaller Poisson's ratio"
             )
-
-
-def _check(scene: Scene, methods: tuple[str, ...]) -> None:
-    solid, tolerance = scene.solid, scene.solve.tolerance
-    faults = []
-    if not methods:
-        faults.append("solve.methods has neither fem nor sie, which follow a start from rest")
-    if not _TIGHTEST <= tolerance <= _COARSEST:
-        faults.append(
-            f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
-        )
-    if not isinstance(solid.response(0.0), InPlane):
-        faults.append("a start from rest is known of uniform solids, without layers")
-    elif solid.nearly_incompressible:
-        faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
-    if not isinstance(scene.punch.profile, Flat):
-        faults.append("a start from rest is known of flat punches")
-    if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
-        faults.append("strokes with a speed or a rest of their own are not followed in time")
-    if scene.solve.mode != "contact":
-        faults.append('a start from rest needs solve.mode = "contact"')
-    if faults:
-        raise BadInput("time: " + "; ".join(faults))

@@ -1,6 +1,6 @@
 """Which work a scene needs, derived from the outputs it asks for."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -42,8 +42,12 @@ _PLACES = {
 }
 
 
-def make_plan(scene: Scene) -> Plan:
-    """Plan the work; looks at the scene only, does none of it.
+def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> Plan:
+    """Plan the work; looks at the scene only, and does none of it but friction where that is needed.
+
+    Args:
+        scene: the scene.
+        done: is told how many laws are followed, and of how many, where friction is.
 
     Raises:
         BadInput: finite elements are asked for where they have no answer.
@@ -62,13 +66,15 @@ def make_plan(scene: Scene) -> Plan:
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, known.speeds, "fem" in methods)]
+    friction = enumerate_states(scene, done) if "fem" in methods or scene.time else None
     fem = None
     if "fem" in methods:
+        assert friction
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        g, responses = enumerate_states(scene).g, [body.response(c) for c in known.speeds]
-        fem = plan_fem(scene, responses, _asked(scene, places), g)
+        responses = [body.response(c) for c in known.speeds]
+        fem = plan_fem(scene, responses, _asked(scene, places), friction.g)
         warnings += warnings_of(fem)
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep))
     quantities, refused = _quantities(scene, body, methods, modes)
@@ -77,7 +83,8 @@ def make_plan(scene: Scene) -> Plan:
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, known), tolerance=scene.solve.tolerance,
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
-        warnings=tuple(warnings), integrated=seconds_to_integrate(scene), starts=starts(scene),
+        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
+        starts=starts(scene, friction) if friction else None, friction=friction,
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)
     return replace(plan, warnings=(*plan.warnings, *heavy))

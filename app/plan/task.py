@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan
 from galinx.app.plan.order import Order
 from galinx.app.plan.over_time import Starts
+from galinx.app.plan.states import States
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities import strata as layers
@@ -86,6 +87,7 @@ class Plan:
         strokes: number of strokes along which friction laws are followed.
         integrated: seconds that laws without a formula take for that.
         starts: from rest that are followed in time, None for none.
+        friction: of all states, None where nothing has asked for it so far.
         fem: finite element work, None without.
         skipped: what is not done, and why.
         warnings: what the user should know before starting.
@@ -103,6 +105,7 @@ class Plan:
     warnings: tuple[str, ...]
     integrated: float = 0.0
     starts: Starts | None = None
+    friction: States | None = None
 
     @property
     def states(self) -> int:

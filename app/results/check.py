@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from galinx import __version__
-from galinx.app.plan.over_time import IN_TIME
+from galinx.app.plan.judged_over_time import IN_TIME
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
 from galinx.app.run.judge import Judge

@@ -7,6 +7,7 @@ from typing import Any
 from galinx.app.errors import BadInput
 from galinx.app.pictures import (
     angles,
+    energies,
     film,
     friction,
     inside,
@@ -16,6 +17,7 @@ from galinx.app.pictures import (
     pressures,
     slider,
     surface,
+    surface_over_time,
     sweep,
 )
 from galinx.app.pictures.choice import Choice, one_of
@@ -77,12 +79,17 @@ _FIGURES = {
     "slider": _Figure(set(), lambda data, scene, _: slider.has(data), slider.slider),
     "time": _Figure(set(), lambda data, scene, _: over_time.has(data), over_time.time),
     "pressures": _Figure(set(), lambda data, scene, _: pressures.has(data), pressures.pressures),
+    "stresses": _Figure(
+        set(), lambda data, scene, _: surface_over_time.has(data), surface_over_time.stresses
+    ),
+    "energies": _Figure(set(), lambda data, scene, _: energies.has(data), energies.energies),
     "angles": _Figure(set(), lambda data, scene, _: angles.has(scene), angles.angles),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
     FILM: _Figure(
         {"states", "quantities", "method"},
-        lambda data, scene, choice: film.has(data, scene, choice) or pressures.has(data), _no_figure,
+        lambda data, scene, choice: film.has(data, scene, choice) or any(has for has, _ in _films(data)),
+        _no_figure,
     ),
 }  # fmt: skip
 
@@ -113,9 +120,17 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
         choice = replace(choice, figures=(FILM,))
     wanted = names(data, scene, choice)
     files.check(wanted)
-    of = pressures if pressures.has(data) and not film.has(data, scene, choice) else film
-    made = (lambda: of.film(data, scene, choice)) if FILM in wanted else None
-    return files.write(of_archive(data, scene, choice), made)
+    in_time = [make for has, make in _films(data) if has]
+    made = film.film if not in_time or film.has(data, scene, choice) else in_time[0]
+    whole = (lambda: made(data, scene, choice)) if FILM in wanted else None
+    return files.write(of_archive(data, scene, choice), whole)
+
+
+def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
+    """Films of motions in time: does an archive have what they show, and what makes them."""
+    return (
+        (surface_over_time.has_film(data), surface_over_time.film), (pressures.has(data), pressures.film),
+    )  # fmt: skip
 
 
 def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:

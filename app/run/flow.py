@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,9 +60,10 @@ def compute(
         sink = Nowhere()
     progress, clock = progress or Progress(), Clock() if clock is None else clock
     with clock("friction"):
-        plan = make_plan(scene)
         progress.say("friction")
-        states = enumerate_states(scene, lambda laws, of: progress.done(laws, of, "friction loops"))
+        followed = partial(progress.done, what="friction loops")
+        plan = make_plan(scene, followed)
+        states = plan.friction or enumerate_states(scene, followed)
         _put_states(sink, scene, plan, states)
     if scene.slider:
         with clock("slider"):

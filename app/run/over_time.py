@@ -13,17 +13,17 @@ from galinx.app.plan.over_time import Level, Starts
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
-from galinx.postprocess import to_steady
+from galinx.postprocess import surface_over_time, to_steady
 from galinx.postprocess.compare_over_time import TOLD, largest_change
 from galinx.postprocess.over_time import told
+from galinx.postprocess.quantities import energy_over_time, work_over_time
 from galinx.postprocess.quantities import over_time as rows
-from galinx.postprocess.quantities import work_over_time
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.approach import approach
-from galinx.solvers.transient.punch import PLACES, StartingPunch
+from galinx.solvers.transient.punch import ON_SURFACE, PLACES, StartingPunch
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
 #: steps within which the load comes on; polynomials there, and more at a tenth of it: of still more, K_I
@@ -89,6 +89,7 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
                 rows.STEADY_K_I.path: np.array(steady.K_I),
                 rows.CENTRES.path: _leans(solid.response(c), friction, t),
                 APPROACH.path: np.array(approach(solid, c, g[-1]).within(0.01)),
+                energy_over_time.DISSIPATED.path: starts.dissipated(c, friction),
             }  # fmt: skip
             for method in (SIE, FEM):
                 one |= found[method, c][i] if method in starts.methods else {}
@@ -96,6 +97,8 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
     joined = {path: np.array([one[path] for one in every]) for path in every[0]}
     directions = np.concatenate([np.full(way.steps, float(way.direction)) for way in starts.ways])
     whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t), rows.DIRECTION.path: directions} | joined
+    if starts.every:
+        whole |= surface_over_time.where(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
         whole[work_over_time.PLACES.path] = PLACES
     for name in starts.methods:
@@ -112,10 +115,7 @@ def _leans(response: Response, friction: Friction, t: NDArray) -> NDArray[np.flo
 
 def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
     """Ends of steps, or of so many together."""
-    h = np.concatenate(
-        [np.full(way.steps // every, every * way.duration / way.steps) for way in starts.ways]
-    )
-    return np.asarray(np.cumsum(h))
+    return starts.times(every)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
@@ -138,8 +138,19 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                     course.σ_XX_right,
                 )  # fmt: skip
                 one |= {row.path: value[every] for row, value in zip(work_over_time.ALL, values)}
+            if starts.every:
+                along = punch.along_surface(g, lambda t: starts.load(t) - first)
+                along = along[:, every][:, starts.outputs - 1]
+                one |= surface_over_time.named(SIE, along + first * _along_surface(response, g))
             found.append(one)
     return found
+
+
+def _along_surface(response: Response, g: float) -> NDArray[np.float64]:
+    """σ_XX, σ_YY and σ_XY of steady motion along the surface, (3, 1, places)."""
+    steady = FlatPunch(response, g)
+    σ_YY = steady.σ_YY(ON_SURFACE)
+    return np.array([[steady.σ_XX(ON_SURFACE)], [σ_YY], [g * σ_YY]])
 
 
 def _whole(course: Any, steady: FlatPunch, first: float) -> tuple[NDArray, ...]:
@@ -158,7 +169,7 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = starts.load(_times(starts, 2))
     found = []
-    for friction, (before, _), (values, energies) in zip(starts.frictions[c], coarse, fine):
+    for friction, (before, seen_before), (values, seen) in zip(starts.frictions[c], coarse, fine):
         every_other = [value[1::2] for value in values]
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = _leans(solid.response(c), friction, _times(starts)) if starts.changing else np.zeros(1)
@@ -166,7 +177,8 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
             _named(FEM, values)
             | {
                 rows.ESTIMATE.path: np.array(largest_change(before, every_other, load, lean)),
-                **dict(zip((row.path for row in (rows.WORK, rows.ENERGY, rows.ABSORBED)), energies)),
+                **seen,
+                **surface_over_time.estimated(seen_before, seen),
             }
         )  # fmt: skip
     return found
@@ -179,9 +191,10 @@ def _import(clock: Clock) -> None:
 
 
 def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
-    """Values, and work with energies of each friction at a speed."""
+    """Values, and datasets of what else is seen, of each friction at a speed."""
     from mpi4py import MPI
 
+    from galinx.app.run.seen_over_time import Seen
     from galinx.solvers.fem.distributed import distribute
     from galinx.solvers.fem.dynamic import Motion
     from galinx.solvers.fem.in_time import Phase, SlidingInTime
@@ -190,15 +203,16 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     response = solid.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    motion = Motion(Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock), response)
-    solver = SlidingInTime(motion, clock)
+    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock)
+    motion = Motion(space, response, starts.sharp)
+    solver, seen = SlidingInTime(motion, clock), Seen(starts, level, motion)
     phases = [Phase(way.direction, way.duration, way.steps // level.every) for way in starts.ways]
     found = []
     with clock("steps in time"):
         for g in starts.frictions[c]:
-            run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady)
+            run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady, seen.watching)
             values = _read(run, g, motion, level.degree, starts.tells_K_I)
-            found.append((values, (run.work, run.energy, run.absorbed)))
+            found.append((values, seen.told(run, g)))
     solver.destroy()
     return found
 

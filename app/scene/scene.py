@@ -182,6 +182,7 @@ class Time:
         load: times and shares of N instead of that, from t = 0 on, or none.
         steady: does it begin in steady motion, not at rest?
         by_law: does friction change by its law along the strokes, or stay that of a state?
+        every: time between those at which stresses along the surface are told, None for none.
     """
 
     end: float
@@ -190,6 +191,7 @@ class Time:
     load: tuple[tuple[float, float], ...] = ()
     steady: bool = False
     by_law: bool = False
+    every: float | None = None
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,8 @@ from galinx.solvers.profiles import PROFILES, Profile
 from galinx.solvers.solids import SOLIDS, Solid
 
 _POSITIVE = Range(above=0.0)
+#: Times of a motion at which stresses along the surface are told, at most.
+MOST_OUTPUTS = 400
 
 
 def _solid(
@@ -53,6 +55,7 @@ def _slider(damping: float, **given: float | None) -> Slider | None:
 def _time(
     end: float | None, step: float | str, load_ramp: float,
     load: tuple[tuple[float, float], ...] | None, start: str, friction: str,
+    every: float | None,
 ) -> Time | None:  # fmt: skip
     if end is None:
         return None
@@ -67,9 +70,14 @@ def _time(
             )
         if faults := [f"{share:g}" for _, share in load[not steady :] if share <= 0.0]:
             raise ValueError(f"load: found {faults[0]} of N, expected more than 0: the punch stays down")
+    if every and not end / MOST_OUTPUTS <= every <= end:
+        raise ValueError(
+            f"every: found {every:g}, expected at least {end / MOST_OUTPUTS:g} and at most end = {end:g}"
+        )
     return Time(
-        end, None if isinstance(step, str) else step, load_ramp, load or (), steady, friction == "law"
-    )
+        end, None if isinstance(step, str) else step, load_ramp, load or (), steady, friction == "law",
+        every,
+    )  # fmt: skip
 
 
 _SOLID_KEYS = {
@@ -207,6 +215,11 @@ _TIME_KEYS = {
     "friction": Key(
         Choice(("constant", "law")), "friction over time", "constant",
         '`"law"`: by the law along motion.strokes, one after the other; `"constant"`: that of each state',
+    ),
+    "every": Key(
+        Number("", _POSITIVE), "time over a/c_s from one to the next at which the surface is looked at",
+        None, "stresses along it then, and over time the energy near the punch and beyond",
+        without="none",
     ),
 }  # fmt: skip
 

@@ -76,7 +76,7 @@ def strokes_film(
     dot = axes[0, 0].plot(*places[0], "o", color="black", markersize=5, zorder=9)[0]
     updates: list[Callable[[int], None]] = []
     for axis, stress in zip(axes[0, 1:], stresses):
-        updates.append(_along_surface(axis, surface_X, stress))
+        updates.append(along_surface(axis, surface_X, stress))
     for axis, shown in zip(axes[0, 1 + len(stresses) :], mapped):
         assert grid is not None
         updates.append(maps.moving(axis, *grid, shown))
@@ -90,7 +90,8 @@ def strokes_film(
     return Film(figure, len(places), show)
 
 
-def _along_surface(axis: Axes, X: NDArray, stress: surface.Stress) -> Callable[[int], None]:
+def along_surface(axis: Axes, X: NDArray, stress: surface.Stress) -> Callable[[int], None]:
+    """Draw the first frame of a stress, and return what draws another."""
     values = next(iter(stress.values.values()))
     half = surface.half_width(X, [stress])
     low, high = surface.limits(X, values)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
@@ -96,7 +97,7 @@ def surface_figure(
     curves = {curve.label: curve for column in columns for curve in column.curves}
     methods = {method for stress in stresses for method in stress.values}
     named = [handle(curve.look, label) for label, curve in curves.items() if len(curves) > 1 and label]
-    legend = Legend([*named, *of_methods(CLOSED_FORM in methods, FEM in methods)], size.width)
+    legend = Legend([*named, *_of_methods(methods)], size.width)
     ranges = [_ranges(X, stress, columns) for stress in stresses]
     apart = any(len(set(row)) > 1 for row in ranges)
     room = Room(0.55, 0.1, 0.42 + legend.height, _top(columns, stresses), 0.42 if apart else 0.2, 0.52)
@@ -119,6 +120,12 @@ def surface_figure(
     figure.align_ylabels(axes[:, 0])
     legend.put(figure)
     return figure
+
+
+def _of_methods(methods: set[str]) -> list[Line2D]:
+    """What lines and markers stand for."""
+    lines = "closed form" if CLOSED_FORM in methods else "integral equation"
+    return of_methods(bool(methods - {FEM}), FEM in methods, lines)
 
 
 def _positions(axis: Axes, column: Column, half: float, ends: tuple[NDArray, NDArray] | None) -> None:

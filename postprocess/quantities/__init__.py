@@ -7,7 +7,8 @@ from difflib import get_close_matches
 # isort: off
 from galinx.postprocess.quantities import runs, slider, states  # noqa: F401
 from galinx.postprocess.quantities import stresses, validity, yielding  # noqa: F401
-from galinx.postprocess.quantities import over_time, to_steady, work_over_time, strata  # noqa: F401
+from galinx.postprocess.quantities import over_time, to_steady, work_over_time  # noqa: F401
+from galinx.postprocess.quantities import energy_over_time, surface_over_time, strata  # noqa: F401
 
 # isort: on
 from galinx.postprocess.quantities.quantity import (

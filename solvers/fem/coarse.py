@@ -6,7 +6,8 @@ cell lose energy (spectral viscosity: Maday, Ould Kaber & Tadmor, SIAM J. Numer.
 
     w·D w = Σ_cells rate Σ_ij (d_i + d_j) w_ij²,      d_j = exp(-((p - j)/(j - m))²) for j > m
 
-What a cell holds well is left alone, and steady motion altogether. Near the punch nothing is damped.
+What a cell holds well is left alone, and steady motion altogether. Near the punch nothing is damped,
+but where it turns round: waves that begin at the edges then, suddenly, are sharp, and no cell holds them.
 """
 
 import numpy as np
@@ -20,12 +21,19 @@ from galinx.solvers.fem.space import Space
 #: Rate at which the highest polynomial is damped, over c_s and the cell's shorter side; the share of
 #: polynomials that are not.
 _RATE, _KEPT = 5.0, 0.6
+#: The same of all cells where the punch turns round.
+_SHARP_RATE, _SHARP_KEPT = 20.0, 0.4
 #: Distance from the punch, over a, at which it begins.
 _FROM = 1.0
 
 
-def damping(space: Space) -> NDArray[np.float64]:
-    """The form D of each cell and scalar fields, (cells, nodes, nodes)."""
+def damping(space: Space, sharp: bool = False) -> NDArray[np.float64]:
+    """The form D of each cell and scalar fields, (cells, nodes, nodes).
+
+    Args:
+        space: of the fields.
+        sharp: are there waves that no cell holds?
+    """
     grid, nodes = cells.tensor_order(space.reference_nodes)
     p = len(nodes) - 1
     points, weights = leggauss(p + 2)
@@ -35,22 +43,23 @@ def damping(space: Space) -> NDArray[np.float64]:
     along = normed.T @ (weights[:, None] / 2.0 * values)
     place = np.argsort(grid.ravel())
     both = np.einsum("ia,jb->ijab", along, along).reshape(len(place), len(place))[:, place]
-    d = _damped(orders)
+    d = _damped(orders, _SHARP_KEPT if sharp else _KEPT)
     of_unit = both.T @ (np.add.outer(d, d).reshape(-1, 1) * both)
-    return of_unit * _weights(space.vertices[:, :, :2])[:, None, None]
+    return of_unit * _weights(space.vertices[:, :, :2], sharp)[:, None, None]
 
 
-def _damped(orders: NDArray) -> NDArray[np.float64]:
+def _damped(orders: NDArray, kept: float) -> NDArray[np.float64]:
     p = int(orders[-1])
-    m = round(_KEPT * p)
+    m = round(kept * p)
     high = np.maximum(orders - m, 1e-9)
     return np.asarray(np.exp(-(((p - orders) / high) ** 2)), dtype=np.float64)
 
 
-def _weights(corners: NDArray) -> NDArray[np.float64]:
+def _weights(corners: NDArray, sharp: bool) -> NDArray[np.float64]:
     """Area times rate of each cell."""
     middle = corners.mean(axis=1)
     J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
     shorter = np.linalg.norm(J, axis=1).min(axis=1)
     far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
-    return np.abs(np.linalg.det(J)) * np.where(far, _RATE / shorter, 0.0)
+    rates = _SHARP_RATE if sharp else np.where(far, _RATE, 0.0)
+    return np.asarray(np.abs(np.linalg.det(J)) * rates / shorter)

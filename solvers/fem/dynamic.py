@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
-from galinx.solvers.fem import adapter, cells
+from galinx.solvers.fem import adapter
 from galinx.solvers.fem.coarse import damping
 from galinx.solvers.fem.element import Element
 from galinx.solvers.fem.forms import carried_density, momentum_density
-from galinx.solvers.fem.lagrange import lagrange
+from galinx.solvers.fem.shapes import Shapes
 from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.solid import Response
 
@@ -29,10 +28,12 @@ class Motion:
     Args:
         space: the space.
         response: of the half-plane at a speed.
+        sharp: are there waves that no cell holds, as where a punch turns round?
     """
 
     space: Space
     response: Response
+    sharp: bool = False
 
     @cached_property
     def K(self) -> csr_matrix:
@@ -56,7 +57,7 @@ class Motion:
     @cached_property
     def D(self) -> csr_matrix:
         """Of waves that far cells are too large for, of one component."""
-        return self._sum(damping(self.space))
+        return self._sum(damping(self.space, self.sharp))
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:
@@ -85,26 +86,12 @@ class Motion:
     @cached_property
     def _products(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """∫ φ_a φ_b, (cells, 1, a, b), and ∫ φ_a ∂φ_b, by the two axes, (cells, 2, a, b)."""
-        grid, nodes = cells.tensor_order(self.space.reference_nodes)
-        points, weights = leggauss(len(nodes) + 1)
-        points, weights = (points + 1.0) / 2.0, weights / 2.0
-        value, slope = lagrange(nodes, points)
-        place = np.argsort(grid.ravel())
-        t = np.stack(np.meshgrid(points, points, indexing="ij"), axis=-1).reshape(-1, 2)
-        φ, along, across = (
-            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
-            for a, b in ((value, value), (slope, value), (value, slope))
-        )
-        weight = np.outer(weights, weights).ravel()
-        mass, gradient = [], []
+        shapes, mass, gradient = Shapes.of(self.space.reference_nodes), [], []
         for corners in self.space.vertices[:, :, :2]:
-            J = cells.jacobian(corners, t)
-            weighted = φ * (weight * np.abs(np.linalg.det(J)))[:, None]
-            inverse = np.linalg.inv(J)
-            slopes = [
-                inverse[:, 0, i, None] * along + inverse[:, 1, i, None] * across for i in (0, 1)
-            ]  # fmt: skip
-            mass.append([weighted.T @ φ])
+            weights, inverse = shapes.on(corners)
+            weighted = shapes.values * weights[:, None]
+            slopes = np.einsum("dqn,qdx->xqn", shapes.slopes, inverse)
+            mass.append([weighted.T @ shapes.values])
             gradient.append([weighted.T @ one for one in slopes])
         return np.array(mass), np.array(gradient)
 

@@ -21,6 +21,9 @@ from galinx.solvers.fem.dynamic import Motion, of_both
 from galinx.solvers.fem.pressed import Pressed
 from galinx.solvers.fem.scheme import TIMES, A, γ
 
+#: What is told of displacements, velocities seen from the punch, and the way it goes, ±1.
+Watch = Callable[[NDArray, NDArray, int], NDArray]
+
 
 @dataclass(frozen=True)
 class Steps:
@@ -30,19 +33,28 @@ class Steps:
         t: times over a/c_s, (steps,).
         v0: indentation over N/(2μ) since the first of all times.
         forces: consistent nodal forces of σ_YY at the contact nodes from left to right, (steps, nodes).
-        work: of the contact's forces by velocities seen from the punch, over N²/(4μ).
+        work_of_load, work_of_friction: of the contact's forces along Y and X by velocities seen from the
+            punch, over N²/(4μ).
         energy: of the motion seen from the punch, (u̇M u̇ + u K u)/2 over N²/(4μ), less that at first: that
             work but for what is absorbed, for what is carried along is skew, and K has ρ(V u,X)²/2 taken
             away. Where the punch turns round it jumps.
         absorbed: that of waves which cells far away are too large for, over N²/(4μ).
+        watched: what each of those that watched told, at first and after each step, (1 + steps, …).
     """
 
     t: NDArray[np.float64]
     v0: NDArray[np.float64]
     forces: NDArray[np.float64]
-    work: NDArray[np.float64]
+    work_of_load: NDArray[np.float64]
+    work_of_friction: NDArray[np.float64]
     energy: NDArray[np.float64]
     absorbed: NDArray[np.float64]
+    watched: tuple[NDArray[np.float64], ...] = ()
+
+    @property
+    def work(self) -> NDArray[np.float64]:
+        """Of both."""
+        return self.work_of_load + self.work_of_friction
 
 
 @dataclass(frozen=True)
@@ -67,7 +79,7 @@ class Phase:
 
 @dataclass
 class _State:
-    """Displacements, velocities, accelerations, and powers of the contact and of what is absorbed."""
+    """Displacements, velocities, accelerations, and powers of load, friction and what is absorbed."""
 
     u: NDArray
     w: NDArray
@@ -99,6 +111,7 @@ class SlidingInTime:
         g: Callable[[float], float],
         load: Callable[[float], float],
         steady: bool = False,
+        watching: Sequence[Watch] = (),
     ) -> Steps:
         """March through all phases.
 
@@ -107,10 +120,12 @@ class SlidingInTime:
             g: σ_XY/σ_YY under the punch at a time.
             load: share of N at a time; from rest load(0) = 0 with no slope there.
             steady: begin in the steady motion of what there is at t = 0, not at rest.
+            watching: each is shown the motion at first and after each step.
         """
         state = self._steady(g(0.0), load(0.0)) if steady else self._rest()
         first_v0, first_energy = -state.u[self._Y[0]], self._energy(state)
         found, t, way = [], 0.0, phases[0].direction
+        seen = [[watch(state.u, state.w, way) for watch in watching]]
         for phase in phases:
             if phase.direction != way:
                 self._turn(state, phase.direction - way, g(t), load(t))
@@ -120,14 +135,16 @@ class SlidingInTime:
                 r, done = self._step(state, stages, phase.h, t, g, load)
                 t += phase.h
                 found.append((t, -state.u[self._Y[0]] - first_v0, r, *done, self._energy(state)))
-        times, v0, forces, work, absorbed, energy = map(np.array, zip(*found))
+                seen.append([watch(state.u, state.w, way) for watch in watching])
+        times, v0, forces, by_load, by_friction, absorbed, energy = map(np.array, zip(*found))
         return Steps(
-            times, v0, forces, np.cumsum(work), energy - first_energy, np.cumsum(absorbed)
+            times, v0, forces, np.cumsum(by_load), np.cumsum(by_friction), energy - first_energy,
+            np.cumsum(absorbed), tuple(map(np.array, zip(*seen))),
         )  # fmt: skip
 
     def _rest(self) -> _State:
         u, w, a = np.zeros((3, self._motion.size))
-        return _State(u, w, a, np.zeros(2))
+        return _State(u, w, a, np.zeros(3))
 
     def _steady(self, g: float, load: float) -> _State:
         state = self._rest()
@@ -165,7 +182,7 @@ class SlidingInTime:
         self, state: _State, stages: Pressed, h: float, t: float,
         g: Callable[[float], float], load: Callable[[float], float],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
-        """Take a step; normal reactions at its end, and the work and the energy absorbed in it."""
+        """Take a step; normal reactions at its end, and both works and the energy absorbed in it."""
         velocities, accelerations, powers = [state.w], [state.a], [state.powers]
         for weights, time in zip(A, TIMES):
             before = state.u + h * sum(of * one for of, one in zip(weights, velocities))
@@ -181,7 +198,7 @@ class SlidingInTime:
         return r / (γ * h), h * np.array([*A[-1], γ]) @ np.array(powers)
 
     def _powers(self, r: NDArray, w: NDArray, g: float) -> NDArray[np.float64]:
-        return np.array([r @ (w[self._Y] + g * w[self._Y - 1]), w @ of_both(self._D, w)])
+        return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), w @ of_both(self._D, w)])
 
     def _energy(self, state: _State) -> float:
         return float(state.w @ of_both(self._M, state.w) + state.u @ (self._K @ state.u)) / 2.0

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from galinx.solvers.solids.solid import Response
+from galinx.solvers.transient.surface import AlongSurface
 from galinx.solvers.transient.transform import Transformed
 
 #: Rounding that the scaling of steps back in time may enlarge.
@@ -23,6 +24,9 @@ _LONGER = 1.5
 BESIDE = 0.05
 #: Places X over a under the punch at which the pressure is told, closer towards the ends.
 PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
+#: Distances over a from the ends at which stresses beside the punch are told, and all places X over a.
+_BEYOND = np.geomspace(0.01, 1.0, 24)
+ON_SURFACE = np.concatenate([-1.0 - _BEYOND[::-1], PLACES, 1.0 + _BEYOND])
 
 
 def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
@@ -80,6 +84,7 @@ class StartingPunch:
         longer = ceil(_LONGER * steps)
         self._scheme = Radau(end / steps * longer, longer)
         self._transformed = Transformed(response, rayleigh, self._scheme.s, terms)
+        self._along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE)
 
     def course(self, g: float, load: Callable[[NDArray], NDArray]) -> Course:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
@@ -102,6 +107,19 @@ class StartingPunch:
             t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load,
             g * _work(t, a, u), a @ basis.pressures(PLACES).T, *σ_XX.T,
         )  # fmt: skip
+
+    def along_surface(self, g: float, load: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
+        """σ_XX, σ_YY and σ_XY over N/(2a) at ``ON_SURFACE`` of :meth:`course`, (3, times, places)."""
+        basis = self._transformed.basis(g)
+        (answers,) = self._transformed.answers(basis)
+        a = answers[:, :-1]
+        strains = self._along.strains(g, (basis.α, basis.β), basis.polynomials, a)
+        found = self._scheme.convolved(np.hstack([a, strains]), load)[: self._steps]
+        under = np.abs(ON_SURFACE) < 1.0
+        σ_YY = np.zeros((self._steps, len(ON_SURFACE)))
+        σ_YY[:, under] = found[:, : self._terms] @ basis.pressures(ON_SURFACE[under]).T
+        u_X = found[:, self._terms :]
+        return np.array([self._response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray) -> NDArray[np.float64]:

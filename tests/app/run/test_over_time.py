@@ -18,7 +18,7 @@ QUICK = {"time.end": 3.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
 
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):
-    changes = [f"--set={key}={value}" for key, value in QUICK.items()]
+    changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 0.75}).items()]
     done = command("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
     assert done.returncode == 0, done.stdout + done.stderr
     assert faults(tmp_path / "s.h5") == []
@@ -44,16 +44,36 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
         data["time/fem/energy"],
         atol=1e-3,
     )
+    surface_and_energies_are_told(data)
     ten, one, tenth = data["time/fem/steady_within"][0]
     assert tenth > one > ten > 3.0
     assert result.attributes["verdict"] == "PASS"
-    assert len(json.loads(result.attributes["comparisons"])) == 2
-    assert [drawing.name for drawing in result.drawings()] == ["friction", "time", "pressures"]
+    assert len(json.loads(result.attributes["comparisons"])) == 7
+    assert [drawing.name for drawing in result.drawings()] == [
+        "friction", "time", "pressures", "stresses", "energies",
+    ]  # fmt: skip
     words = ["--figure", "film", "--format", "gif", "-o", tmp_path / "film.gif"]
     assert command("plot", tmp_path / "s.h5", *words).returncode == 0
     assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = command("show", tmp_path / "s.h5").stdout
     assert "Starts from rest" in shown
+
+
+def surface_and_energies_are_told(data):
+    """Both methods know nothing of each other; all work of the punch is found again."""
+    np.testing.assert_allclose(data["time/surface/t"], [0.75, 1.5, 2.25, 3.0])
+    X = data["time/surface/X_over_a"]
+    far = np.abs(np.abs(X) - 1.0) > 0.01
+    for name in ("sigma_XX", "sigma_YY", "sigma_XY"):
+        fem, sie = (data[f"time/surface/{method}/{name}"][..., far] for method in ("fem", "sie"))
+        assert fem.shape == (1, 4, far.sum())
+        np.testing.assert_allclose(fem, sie, atol=3e-3 * np.abs(sie).max())
+    assert data["time/surface/fem/estimate"][0] < 1e-2
+    done = sum(data[f"time/fem/work_of_{name}"] for name in ("load", "friction", "carrying"))
+    held = sum(data[f"time/fem/{name}"] for name in ("strain_near", "kinetic_near", "radiated"))
+    np.testing.assert_allclose(done, held, atol=1e-4 * done.max())
+    # f V ∫ N dt, and of the ramp's two a/c_s the half counts.
+    assert data["time/dissipated"][0, -1] == pytest.approx(0.4 * 0.6 * 2.0)
 
 
 def test_two_ranks_end_as_one_does(tmp_path):
@@ -132,6 +152,7 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
         ({"time.load": [[0.0, 0.0], [1.0, -1.0]]}, "the punch stays down"),
         ({"time.load": [[1.0, 0.0], [0.5, 1.0]]}, "expected 0 first, then ever later ones"),
         ({"time.friction": "law"}, "the strokes are over at"),
+        ({"time.every": 20.0}, "expected at least 0.025 and at most end = 10"),
         ({"time.friction": "law", "motion.c": [0.1, 0.2]}, "found 2 speeds"),
         (
             {"time.friction": "law", "motion.rest": 1.0, "motion.strokes": ["forward", "backward"]},
@@ -147,7 +168,7 @@ def test_what_has_no_answer_is_refused(changes, said):
 
 def test_a_plan_tells_starts():
     done = command("plan", "scenes/start_from_rest.toml")
-    assert "integral equation in time: 1 starts from rest" in done.stdout
+    assert "integral equation in time: 1 start from rest" in done.stdout
     assert "finite elements in time" in done.stdout
 
 

@@ -1,0 +1,121 @@
+"""Energies, strains and pressures of motions in time where they are known, and their balance."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from scipy.special import roots_jacobi
+
+from galinx.meshes.charts import Physical
+from galinx.meshes.reached import Reached
+from galinx.meshes.rings import TAGS
+from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.dynamic import Motion, of_both
+from galinx.solvers.fem.energies import BOX, Energies
+from galinx.solvers.fem.in_time import Phase, SlidingInTime
+from galinx.solvers.fem.lagrange import lagrange
+from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.surface_in_time import SurfaceInTime
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.admittance import Admittance
+from galinx.solvers.transient.punch import ON_SURFACE, smooth
+
+SOLID = Isotropic(1.0, 0.25, 1.0)
+
+
+def motion(c, degree=4, mesh=None, solid=SOLID):
+    mesh = mesh or Reached(4.3, 3.1, 1.0, 0.3, 1e-2)
+    space = Space(*distribute(mesh.drawn(), MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
+    return Motion(space, solid.response(c))
+
+
+@pytest.fixture(scope="module")
+def moving():
+    return motion(0.5)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_energies_seen_from_solid_and_punch_differ_by_momentum(moving, way):
+    u, w = np.random.default_rng(0).normal(size=(2, moving.size))
+    seen = (w @ of_both(moving.M, w) + u @ (moving.K @ u)) / 2.0
+    _, _, strain, kinetic, momentum = Energies(moving)(u, w, way)
+    assert strain + kinetic == pytest.approx(seen + way * 0.5 * momentum, rel=1e-12)
+
+
+def test_energies_in_the_box_of_a_field_that_is_known(moving):
+    """Its sides cut cells; where all is strained alike its energy is by its area."""
+    X, Y = moving.space.coordinates.T
+    u = np.column_stack([0.3 * X + 0.1 * Y, -0.2 * Y]).ravel()
+    w = np.column_stack([0.7 + 0.0 * X, Y]).ravel()
+    strain, kinetic, *_ = Energies(moving)(u, w, 1)
+    λ, area = 1.0, 2.0 * BOX[0] * BOX[1]
+    density = 0.3**2 + 0.2**2 + 0.1**2 / 2.0 + λ * (0.3 - 0.2) ** 2 / 2.0
+    assert strain == pytest.approx(density * area, rel=1e-12)
+    expected = (0.7 - 0.5 * 0.3) ** 2 / 2.0 * area + BOX[0] * BOX[1] ** 3 / 3.0
+    assert kinetic == pytest.approx(expected, rel=1e-12)
+
+
+def test_work_of_a_random_motion_is_its_energy():
+    """All that the punch does on the solid, which is strained and moves, or was absorbed."""
+    random = np.random.default_rng(4)
+    solid = Isotropic(1.0, random.uniform(0.0, 0.4), 1.0)
+    c, (f, more) = random.uniform(0.2, 0.8) * solid.limit(), random.uniform(0.0, 0.6, 2)
+    fast, T = Admittance.of(solid.response(c)).fastest, 3.0
+    mesh = Reached(3.0 + fast * T / 2.0, 1.0 + fast * T / 2.0, 1.0, 0.15, 1e-4)
+    of = motion(c, 7, mesh, solid)
+    solver = SlidingInTime(of)
+    run = solver.run(
+        [Phase(1, T, 15)], lambda t: -f - more * np.sin(t) ** 2, lambda t: float(smooth(t, 2.5)),
+        watching=[Energies(of)],
+    )  # fmt: skip
+    solver.destroy()
+    watched = run.watched[0] - run.watched[0][0]
+    done = run.work_of_load + run.work_of_friction + c * watched[1:, 4]
+    held = watched[1:, 2] + watched[1:, 3] + run.absorbed
+    assert np.abs(done - held).max() < 1e-4 * np.abs(done).max()
+    assert 0.1 * done[-1] < watched[-1, 0] + watched[-1, 1] < 0.95 * held[-1]
+
+
+def test_strains_along_the_surface_are_those_of_polynomials(moving):
+    X, Y = moving.space.coordinates.T
+    along = SurfaceInTime(moving, ON_SURFACE)
+    found = along.strain(np.column_stack([X**3 + Y, X**4]).ravel())
+    np.testing.assert_allclose(found, 3.0 * ON_SURFACE**2, atol=1e-9)
+
+
+def test_pressure_of_forces_is_the_one_they_are_of(moving):
+    """A polynomial with the weight of a punch, integrated with the shapes of the whole contact."""
+    α, β, p = -0.37, -0.63, 4
+    X, forces = moving.X, np.zeros(len(moving.X))
+    nodes = (X[p * 2 : p * 3 + 1] - X[p * 2]) / (X[p * 3] - X[p * 2])
+    for k in range(len(X) // p):
+        left, right = X[k * p], X[k * p + p]
+        at_left, at_right = β * (k == 0), α * (right == X[-1])
+        x, w = roots_jacobi(40, at_right, at_left)
+        r, half = (left + right) / 2.0 + (right - left) / 2.0 * x, (right - left) / 2.0
+        w = w * half ** (1.0 + at_left + at_right)
+        w = w * (1.0 if k == 0 else (1.0 + r) ** β) * (1.0 if right == X[-1] else (1.0 - r) ** α)
+        forces[k * p : k * p + p + 1] += (w * (1.0 - r**3)) @ lagrange(nodes, (1.0 + x) / 2.0)[0]
+    found = SurfaceInTime(moving, ON_SURFACE).pressure(forces, α, β)
+    under = np.abs(ON_SURFACE) < 1.0
+    r = ON_SURFACE[under]
+    expected = (1.0 - r) ** α * (1.0 + r) ** β * (1.0 - r**3)
+    np.testing.assert_allclose(found[under], expected, rtol=1e-6, atol=1e-8)
+    assert not found[~under].any()
+
+
+def test_surface_of_steady_motion():
+    """Held 1000 a away; by the closed form further than 0.01 a from the edges."""
+    c, g = 0.5, -0.5
+    of = motion(c, 7, Reached(3.0, 2.0, 1.0, 0.5, 1e-3, 1000.0))
+    solver, along = SlidingInTime(of), SurfaceInTime(of, ON_SURFACE)
+    run = solver.run(
+        [Phase(1, 0.2, 2)], lambda t: g, lambda t: 1.0, True, [lambda u, w, way: along.strain(u)]
+    )
+    solver.destroy()
+    exact = FlatPunch(of.response, g)
+    σ_YY = along.pressure(run.forces[-1], exact.α, exact.β)
+    σ_XX = of.response.σ_XX(run.watched[0][-1], σ_YY, g * σ_YY)
+    far = np.abs(np.abs(ON_SURFACE) - 1.0) > 0.01
+    for found, expected in ((σ_YY, exact.σ_YY(ON_SURFACE)), (σ_XX, exact.σ_XX(ON_SURFACE))):
+        assert np.abs(found - expected)[far].max() < 1e-3 * np.abs(expected[far]).max()

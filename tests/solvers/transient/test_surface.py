@@ -1,0 +1,53 @@
+"""Strain along the surface by Laplace's transform against what is known of it."""
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.punch import ON_SURFACE
+from galinx.solvers.transient.surface import AlongSurface
+from galinx.solvers.transient.transform import Transformed
+
+SOLID = Isotropic(1.0, 0.25, 1.0)
+TERMS, SOME = 14, ON_SURFACE[::4]
+
+
+def strains(solid, c, g, s, X):
+    """û,X at places under the pressure of a punch at some s, and what makes that pressure."""
+    s, response = np.array(s, dtype=complex), solid.response(c)
+    transformed = Transformed(response, solid.limit(), s, TERMS)
+    basis = transformed.basis(g)
+    (answers,) = transformed.answers(basis)
+    along = AlongSurface(response, solid.limit(), s, X)
+    found = along.strains(g, (basis.α, basis.β), basis.polynomials, answers[:, :-1])
+    return found, transformed, basis, answers[:, :-1]
+
+
+def test_beside_the_contact_it_is_that_of_the_kernel():
+    X = np.array([-1.3, 1.3])
+    found, transformed, basis, a = strains(SOLID, 0.5, -0.5, [0.3, 1.0 + 4.0j, 2.0 - 6.0j], X)
+    np.testing.assert_allclose(found, transformed.strains(basis, a, 0.3), rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize(("solid", "c", "g"), [(SOLID, 0.6, -0.5), (random_solid(1), 0.2, 0.4)])
+def test_at_late_times_it_is_steady(solid, c, g):
+    """What is left falls like s, with its logarithm."""
+    steady = FlatPunch(solid.response(c), g)
+    σ = np.nan_to_num(steady.σ_YY(SOME))
+    expected, weight = steady.σ_XX(SOME), np.minimum(np.sqrt(np.abs(1.0 - SOME**2)), 1.0)
+    off = []
+    for s in (1e-4, 1e-6):
+        u_X = strains(solid, c, g, [s], SOME)[0][0].real
+        σ_XX = solid.response(c).σ_XX(u_X, σ, g * σ)
+        off.append(np.abs((σ_XX - expected) * weight).max())
+    assert off[1] < 3e-4
+    assert off[1] < 0.05 * off[0]
+
+
+def test_of_the_mirror_image_it_changes_sign_and_sides():
+    s = [0.5, 1.0 + 2.0j]
+    one, other = (strains(SOLID, 0.0, g, s, SOME)[0] for g in (0.4, -0.4))
+    np.testing.assert_allclose(one, other[:, ::-1], rtol=1e-7, atol=1e-7)
+    assert np.abs(one - other).max() > 0.1

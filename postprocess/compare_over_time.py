@@ -47,8 +47,12 @@ def largest_change(
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float:
-    fem, sie = ([data[row[method].path] for row in TOLD] for method in (FEM, SIE))
-    return largest_change(fem, sie, data[rows.LOAD.path])
+    """Up to where the integral equation knows them."""
+    known = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
+    if not known.any():
+        return np.inf
+    fem, sie = ([data[row[method].path][:, known] for row in TOLD] for method in (FEM, SIE))
+    return largest_change(fem, sie, data[rows.LOAD.path][known])
 
 
 def _estimate(data: Mapping[str, Any], _: Any) -> float:

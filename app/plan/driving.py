@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import ceil
 
 import numpy as np
@@ -46,7 +46,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Way:
-    """A stroke, or what there is time for of it.
+    """Strokes in one direction, or what there is time for of them.
 
     Attributes:
         direction: ±1.
@@ -104,7 +104,7 @@ def load_of(scene: Scene) -> Load:
 
 
 def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
-    """Strokes one after the other at a speed until the end, in steps of at most so much.
+    """From one turn to the next at a speed until the end, in steps of at most so much.
 
     Raises:
         BadInput: they are over before.
@@ -114,11 +114,11 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     if not scene.time.by_law:
         return (_way(1, end, largest),)
     ways, t = [], 0.0
-    for leg in scene.legs:
-        duration = leg.length * _whole(scene) / c
+    for direction, legs in groupby(scene.legs, lambda leg: leg.s):
+        durations = [leg.length * _whole(scene) / c for leg in legs]
         # A step less than a millionth of a stroke is rounding.
-        if (left := min(duration, end - t)) > 1e-6 * duration:
-            ways.append(_way(leg.s, left, min(largest, duration / _OF_STROKE)))
+        if (left := min(sum(durations), end - t)) > 1e-6 * durations[0]:
+            ways.append(_way(direction, left, min(largest, min(durations) / _OF_STROKE)))
             t += left
     if end - t > 1e-6 * end:
         raise BadInput(

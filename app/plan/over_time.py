@@ -81,11 +81,10 @@ class Starts:
     Attributes:
         frictions: by speed over c_s.
         methods: that follow them.
-        ways: strokes one after the other.
+        ways: from one turn to the next; the integral equation follows the first.
         load: over time.
         steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
-        alone: why the integral equation does not follow them, though it was asked for; empty if it does.
     """
 
     frictions: dict[float, tuple[Friction, ...]]
@@ -94,7 +93,6 @@ class Starts:
     load: Load
     steady: bool
     tolerance: float
-    alone: str = ""
 
     @property
     def steps(self) -> int:
@@ -139,11 +137,13 @@ class Starts:
         """What is done, one line a method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{self.count} starts {begin}, to t = {self.end:g} a/c_s"
-        lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
+        turns = "" if len(self.ways) == 1 else (
+            f"; only to t = {self.ways[0].duration:.6g} a/c_s, where the punch turns round"
+        )  # fmt: skip
+        lines = [f"integral equation in time: {what}{turns}"] if SIE in self.methods else []
         lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
             not self.tells_K_I
         )
-        lines += [f"not by the integral equation in time: {self.alone}"] if self.alone else []
         if FEM in self.methods:
             for c in self.frictions:
                 _, level = self.levels(solid, c)
@@ -165,7 +165,7 @@ class Starts:
                         _SET_UP * n**1.5 + len(of_speed) * _STAGE * 5 * self.steps / level.every * n**1.1
                     )
             if SIE in self.methods:
-                total += _SYMBOL * max(3.0 * self.end, self.steps)
+                total += _SYMBOL * max(3.0 * self.ways[0].duration, self.ways[0].steps)
         return total
 
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
@@ -216,13 +216,12 @@ def starts(scene: Scene) -> Starts | None:
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     frictions = _frictions(scene)
     ways = ways_at(scene, next(iter(frictions)), step)
-    alone = ""
-    if SIE in methods and scene.time.by_law:
-        alone = "it knows no way back, and friction that stays as it is"
-        methods = tuple(name for name in methods if name != SIE)
-        if not methods:
-            raise BadInput(f"solve.methods is sie only, but {alone}: expected fem, too")
-    found = Starts(frictions, methods, ways, load, scene.time.steady, tolerance, alone)
+    if methods == (SIE,) and len(ways) > 1:
+        raise BadInput(
+            f"solve.methods: found sie only, which knows no way back, and the punch turns round at "
+            f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
+        )
+    found = Starts(frictions, methods, ways, load, scene.time.steady, tolerance)
     if FEM in methods:
         _check_size(found, scene)
     return found

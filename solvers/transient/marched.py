@@ -1,7 +1,6 @@
 """Pressure under a flat punch whose friction changes in time: the convolution is marched through.
 
-At the stages of step n, with the quadrature's weights W of the response to pressures of friction g, a part
-A of σ_YY and a part g B of σ_XY ::
+At the stages of step n, with the quadrature's weights W of the response to σ_YY and g σ_YY ::
 
     Σ_m W_{n-m} [σ_m] = -v₀,      σ(t) = (1 - X)^α(t) (1 + X)^β(t) Σ a_j(t) P_j(X; t)
 

@@ -45,7 +45,7 @@ class Course:
         load: over N.
         centre: of the pressure over a.
         K_left, K_right: normalised intensities of the pressure at X = -a and X = a, by the exponents of
-            steady motion at the friction of each time and over the final load, as those of the steady state.
+            steady motion at the friction of each time, and over the final load.
         work_of_load: ∫ N dv₀ over N²/(4μ).
         work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): what friction gives to
             the motion of the solid besides being carried past the punch.
@@ -152,7 +152,7 @@ class StartingPunch:
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:
-    """∫ Σ force d(way) up to each time, (times,); forces and ways are (times, n), forces at t = 0 (n,)."""
+    """∫ Σ force d(way) up to each time, (times,); both (times, n), and ``first`` forces at t = 0."""
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))
     F, u = CubicSpline(times, np.vstack([first, forces])), CubicSpline(times, np.vstack([still, ways]))
     y, w = np.polynomial.legendre.leggauss(4)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
 _ROUNDING = 1e-14
-#: Length of the transform over what is told of it: what comes round again is the smaller, the longer it is.
+#: Length of the transform over what is told of it: the longer, the less comes round.
 _LONGER = 1.5
 #: Stages.
 STAGES = 3

@@ -66,17 +66,13 @@ class Transformed:
         """Tested v̂ of each polynomial of the pressure for every s, (s, tests, terms)."""
         ahead, behind = self._values
         g = basis.g
-        return self._summed(
-            basis, tests, ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1]
-        )
+        return self._summed(basis, tests, ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1])
 
     def dragging(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
         """Tested û of each polynomial of the pressure for every s, (s, tests, terms)."""
         ahead, behind = self._values
         g = basis.g
-        return self._summed(
-            basis, tests, ahead[:, 2] + g * ahead[:, 3], g * behind[:, 3] - behind[:, 2]
-        )
+        return self._summed(basis, tests, ahead[:, 2] + g * ahead[:, 3], g * behind[:, 3] - behind[:, 2])
 
     def _summed(
         self, basis: Basis, tests: Weighted, ahead: NDArray, behind: NDArray

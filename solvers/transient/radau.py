@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
-_ROUNDING = 1e-14
+_ROUNDING = 1e-16
 #: Length of the transform over what is told of it: the longer, the less comes round.
-_LONGER = 1.5
+_LONGER = 1.75
 #: Stages.
 STAGES = 3
 

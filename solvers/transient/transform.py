@@ -4,7 +4,7 @@ from functools import cached_property
 from math import ceil
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
@@ -16,6 +16,9 @@ from galinx.solvers.transient.kernel import Kernel, both_sides
 _NEAR, _FAR, _POINTS = 24, 5, 8
 #: Largest width of a panel.
 _EVEN = 0.125
+#: Points that tell the response within so much of distance 2, where panels are shorter for what tests and
+#: pressures share.
+_TOLD = 24
 #: Points of the pressure as seen from beside the contact.
 _FEW = 96
 #: More polynomials than there are.
@@ -142,8 +145,18 @@ class Transformed:
     @cached_property
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
-        ahead, behind = (np.array([_at(kernel, self._x, s) for s in self.s]) for kernel in self._kernels)
-        return ahead, behind
+        t, _ = leggauss(_TOLD)
+        order, middle, half = _TOLD - 1, 2.0 - _EVEN / 2.0, _EVEN / 2.0
+        short = self._x > 2.0 - 0.5 * _EVEN
+        between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
+        x, found = np.append(self._x[~short], middle + half * t), []
+        for kernel in self._kernels:
+            values = np.array([_at(kernel, x, s) for s in self.s])
+            whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
+            whole[..., ~short] = values[..., :-_TOLD]
+            whole[..., short] = values[..., -_TOLD:] @ between.T
+            found.append(whole)
+        return found[0], found[1]
 
 
 def _at(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:

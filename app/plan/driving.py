@@ -81,6 +81,14 @@ class Friction:
         """Its value, None where it changes."""
         return self.along[0](0.0) if isinstance(self.along[0], _Constant) else None
 
+    @cached_property
+    def shortest(self) -> float:
+        """Time over a/c_s in which it would change by 1 where it changes fastest."""
+        slopes = [
+            float(np.abs(one(one.x, 1)).max()) for one in self.along if isinstance(one, PchipInterpolator)
+        ]
+        return 1.0 / max(*slopes, 0.0) if any(slopes) else np.inf
+
 
 @dataclass(frozen=True)
 class _Constant:

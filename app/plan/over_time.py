@@ -30,6 +30,8 @@ MOST, LARGEST = 24, 300_000
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
 _STEP, _OF_RAMP = 0.4, 8
+#: Shortest time over a/c_s of friction that changes along a stroke for which steps and cells are made.
+_QUICK = 1.0
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
@@ -44,9 +46,9 @@ _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
 #: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
 _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
-#: Side of cells next to the punch over a where things change within so many a/c_s; and how much slower
-#: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
-#: the last of these it asks for a degree more.
+#: Side of cells next to the punch over a where things change within so many a/c_s, at a tolerance of
+#: 1e-3, and one more at each tenth of it; how much slower than the Rayleigh wave a punch has to be for
+#: that: the wave ahead of a faster one is shorter. Within the last of these it asks for a degree more.
 _SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
 
 
@@ -107,7 +109,9 @@ class Starts:
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
-        return min(self.load.shortest, *(way.duration for way in self.ways if self.changing), np.inf)
+        ways = [way.duration for way in self.ways if self.changing]
+        frictions = [max(one.shortest, _QUICK) for many in self.frictions.values() for one in many]
+        return min(self.load.shortest, *ways, *frictions)
 
     @property
     def changing(self) -> bool:
@@ -178,7 +182,8 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        long = _LONG + max(digits - 3.0, 0.0)
+        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / long)
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)

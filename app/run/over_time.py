@@ -26,8 +26,7 @@ from galinx.solvers.transient.approach import approach
 from galinx.solvers.transient.punch import PLACES, Course, StartingPunch
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
-#: steps within which the load comes on; polynomials there, and more at a tenth of it: of still more, K_I
-#: has the rounding of the quadrature.
+#: steps within which the load comes on; polynomials there, and more at each tenth of it.
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 _Found = dict[str, NDArray[np.float64]]
@@ -122,7 +121,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     first = starts.ways[0]
     largest = min(_STEP, starts.shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
-    terms = _TERMS + round(_MORE * min(max(-3.0 - np.log10(starts.tolerance), 0.0), 1.0))
+    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
     with clock("integral equation in time"):
         punch = StartingPunch(
             solid.response(c), solid.limit(), first.duration, first.steps * finer, terms

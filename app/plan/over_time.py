@@ -47,9 +47,9 @@ _EARLIER = 8
 #: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
 _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
 #: Side of cells next to the punch over a where things change within so many a/c_s, at a tolerance of
-#: 1e-3, and one more at each tenth of it; how much slower than the Rayleigh wave a punch has to be for
-#: that: the wave ahead of a faster one is shorter. Within the last of these it asks for a degree more.
-_SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
+#: 1e-3, and so many more at each tenth of it; how much slower than the Rayleigh wave a punch has to be
+#: for that: the wave ahead of a faster one is shorter. Within the last of these it asks for a degree more.
+_SIZE, _LONG, _LONGER, _SLOW, _SHORT = 2.0, 2.0, 1.5, 0.25, 0.15
 
 
 #: Rules by which starts are judged.
@@ -182,7 +182,7 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        long = _LONG + max(digits - 3.0, 0.0)
+        long = _LONG + _LONGER * max(digits - 3.0, 0.0)
         size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / long)
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0

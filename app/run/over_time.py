@@ -119,7 +119,8 @@ def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     first = starts.ways[0]
-    largest = min(_STEP, starts.shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
+    shortest = min(starts.shortest, *(friction.shortest for friction in starts.frictions[c]))
+    largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
     terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
     with clock("integral equation in time"):

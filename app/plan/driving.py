@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import ceil
 
 import numpy as np
@@ -51,7 +51,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Way:
-    """A stroke, or what there is time for of it.
+    """Strokes in one direction, or what there is time for of them.
 
     Attributes:
         direction: ±1.
@@ -107,6 +107,14 @@ class Friction:
         """Its value, None where it changes."""
         return self.along[0](0.0) if isinstance(self.along[0], _Constant) else None
 
+    @cached_property
+    def shortest(self) -> float:
+        """Time over a/c_s in which it would change by 1 where it changes fastest."""
+        slopes = [
+            float(np.abs(one(one.x, 1)).max()) for one in self.along if isinstance(one, PchipInterpolator)
+        ]
+        return 1.0 / max(*slopes, 0.0) if any(slopes) else np.inf
+
 
 @dataclass(frozen=True)
 class _Constant:
@@ -130,7 +138,7 @@ def load_of(scene: Scene) -> Load:
 
 
 def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
-    """Strokes one after the other at a speed until the end, in steps of at most so much.
+    """From one turn to the next at a speed until the end, in steps of at most so much.
 
     Raises:
         BadInput: they are over before.
@@ -141,13 +149,12 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
         return (_way(1, end, _dividing(scene, largest)),)
     ways: list[Way] = []
     t = 0.0
-    for leg in scene.legs:
-        duration = leg.length * _whole(scene) / c
+    for direction, legs in groupby(scene.legs, lambda leg: leg.s):
+        durations = [leg.length * _whole(scene) / c for leg in legs]
         # A step less than a millionth of a stroke is rounding.
-        if (left := min(duration, end - t)) > 1e-6 * duration:
-            way = _way(leg.s, left, _dividing(scene, min(largest, duration / _OF_STROKE)))
-            turned = ways and ways[-1].direction != leg.s
-            ways += way.begun_finely if turned else (way,)
+        if (left := min(sum(durations), end - t)) > 1e-6 * durations[0]:
+            way = _way(direction, left, _dividing(scene, min(largest, min(durations) / _OF_STROKE)))
+            ways += way.begun_finely if ways else (way,)
             t += left
     if end - t > 1e-6 * end:
         raise BadInput(

@@ -31,6 +31,8 @@ from galinx.texts import counted
 MOST, LARGEST = 24, 300_000
 #: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
 _STEP, _OF_RAMP = 0.4, 8
+#: Shortest time over a/c_s of friction that changes along a stroke for which steps and cells are made.
+_QUICK = 1.0
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
@@ -51,10 +53,10 @@ _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
 #: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
 _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
-#: Side of cells next to the punch over a where things change within so many a/c_s; and how much slower
-#: than the Rayleigh wave a punch has to be for that: the wave ahead of a faster one is shorter. Within
-#: the last of these it asks for a degree more.
-_SIZE, _LONG, _SLOW, _SHORT = 2.0, 2.0, 0.25, 0.15
+#: Side of cells next to the punch over a where things change within so many a/c_s, at a tolerance of
+#: 1e-3, and so many more at each tenth of it; how much slower than the Rayleigh wave a punch has to be
+#: for that: the wave ahead of a faster one is shorter. Within the last of these a degree more is taken.
+_SIZE, _LONG, _LONGER, _SLOW, _SHORT = 2.0, 2.0, 1.5, 0.25, 0.15
 
 
 @dataclass(frozen=True)
@@ -84,13 +86,12 @@ class Starts:
     Attributes:
         frictions: by speed over c_s.
         methods: that follow them.
-        ways: strokes one after the other.
+        ways: from one turn to the next; the integral equation follows the first.
         load: over time.
         steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
         every: time between those at which the surface is told over a/c_s, None for none.
         stress_ratio: σ_XY/σ_YY over the friction coefficient.
-        alone: why the integral equation does not follow them, though it was asked for; empty if it does.
     """
 
     frictions: dict[float, tuple[Friction, ...]]
@@ -101,7 +102,6 @@ class Starts:
     tolerance: float
     every: float | None = None
     stress_ratio: float = -1.0
-    alone: str = ""
 
     @property
     def steps(self) -> int:
@@ -131,7 +131,9 @@ class Starts:
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
-        return min(self.load.shortest, *(way.stroke for way in self.ways if self.changing), np.inf)
+        ways = [way.stroke for way in self.ways if self.changing]
+        frictions = [max(one.shortest, _QUICK) for many in self.frictions.values() for one in many]
+        return min(self.load.shortest, *ways, *frictions)
 
     @property
     def changing(self) -> bool:
@@ -172,11 +174,13 @@ class Starts:
         """What is done, one line a method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
-        lines = [f"integral equation in time: {what}"] if SIE in self.methods else []
+        turns = "" if len(self.ways) == 1 else (
+            f"; only to t = {self.ways[0].duration:.6g} a/c_s, where the punch turns round"
+        )  # fmt: skip
+        lines = [f"integral equation in time: {what}{turns}"] if SIE in self.methods else []
         lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
             not self.tells_K_I
         )
-        lines += [f"not by the integral equation in time: {self.alone}"] if self.alone else []
         if FEM in self.methods:
             for c in self.frictions:
                 _, level = self.levels(solid, c)
@@ -198,7 +202,7 @@ class Starts:
                         _SET_UP * n**1.5 + len(of_speed) * _STAGE * 5 * self.steps / level.every * n**1.1
                     )
             if SIE in self.methods:
-                total += _SYMBOL * max(3.0 * self.end, self.steps)
+                total += _SYMBOL * max(3.0 * self.ways[0].duration, self.ways[0].steps)
         return total
 
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
@@ -211,7 +215,8 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / _LONG)
+        long = _LONG + _LONGER * max(digits - 3.0, 0.0)
+        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / long)
         size = min(size, _SEEN_SIZE) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
@@ -256,15 +261,14 @@ def starts(scene: Scene, states: States) -> Starts | None:
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     frictions = _frictions(scene, states)
     ways = ways_at(scene, next(iter(frictions)), step)
-    alone = ""
-    if SIE in methods and scene.time.by_law:
-        alone = "it knows no way back, and friction that stays as it is"
-        methods = tuple(name for name in methods if name != SIE)
-        if not methods:
-            raise BadInput(f"solve.methods is sie only, but {alone}: expected fem, too")
+    if methods == (SIE,) and len(ways) > 1:
+        raise BadInput(
+            f"solve.methods: found sie only, which knows no way back, and the punch turns round at "
+            f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
+        )
     found = Starts(
         frictions, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
-        scene.friction.stress_ratio, alone,
+        scene.friction.stress_ratio,
     )  # fmt: skip
     if FEM in methods:
         _check_size(found, scene)

@@ -23,11 +23,10 @@ from galinx.postprocess.quantities.to_steady import APPROACH
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.approach import approach
-from galinx.solvers.transient.punch import ON_SURFACE, PLACES, StartingPunch
+from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
-#: steps within which the load comes on; polynomials there, and more at a tenth of it: of still more, K_I
-#: has the rounding of the quadrature.
+#: steps within which the load comes on; polynomials there, and more at each tenth of it.
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 _Found = dict[str, NDArray[np.float64]]
@@ -119,46 +118,74 @@ def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
-    steps = starts.steps
-    largest = min(_STEP, starts.shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
-    finer = int(np.ceil(starts.end / steps / largest - 1e-9))
-    response = solid.response(c)
-    terms = _TERMS + round(_MORE * min(max(-3.0 - np.log10(starts.tolerance), 0.0), 1.0))
-    every, first = slice(finer - 1, None, finer), float(starts.load(0.0))
+    first, response = starts.ways[0], solid.response(c)
+    shortest = min(starts.shortest, *(friction.shortest for friction in starts.frictions[c]))
+    largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
+    finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
+    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
     with clock("integral equation in time"):
-        punch = StartingPunch(response, solid.limit(), starts.end, steps * finer, terms)
+        steps, whole = first.steps * finer, bool(starts.every)
+        punch = StartingPunch(response, solid.limit(), first.duration, steps, terms, whole)
         found = []
         for friction in starts.frictions[c]:
-            g = friction(0.0)
-            course = punch.course(g, lambda t: starts.load(t) - first)
-            one = _named(SIE, [value[every] for value in _whole(course, FlatPunch(response, g), first)])
+            if friction.constant is None:
+                g = np.vectorize(friction, otypes=[float])
+                course = punch.course_along(g, starts.load, starts.steady)
+                values: tuple[NDArray, ...] = course.v0, course.centre, course.K_left, course.K_right
+            else:
+                course, values = _of_constant(friction.constant, starts, punch, response)
+            if not starts.tells_K_I:
+                values = (*values[:2], *np.full((2, len(course.t)), np.nan))
+            one = _named(SIE, values)
             if not starts.steady:
-                values = (
+                works = (
                     course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
                     course.σ_XX_right,
                 )  # fmt: skip
-                one |= {row.path: value[every] for row, value in zip(work_over_time.ALL, values)}
+                one |= {row.path: value for row, value in zip(work_over_time.ALL, works)}
+            one = {path: _until_the_end(value[finer - 1 :: finer], starts) for path, value in one.items()}
             if starts.every:
-                along = punch.along_surface(g, lambda t: starts.load(t) - first)
-                along = along[:, every][:, starts.outputs - 1]
-                one |= surface_over_time.named(SIE, along + first * _along_surface(response, g))
+                one |= surface_over_time.named(
+                    SIE, _along_surface(course, finer, response, friction, starts)
+                )
             found.append(one)
     return found
 
 
-def _along_surface(response: Response, g: float) -> NDArray[np.float64]:
-    """σ_XX, σ_YY and σ_XY of steady motion along the surface, (3, 1, places)."""
-    steady = FlatPunch(response, g)
+def _along_surface(
+    course: Course, finer: int, response: Response, friction: Friction, starts: Starts
+) -> NDArray[np.float64]:
+    """σ_XX, σ_YY and σ_XY when the surface is told, (3, times, places); NaN after a turn."""
+    assert course.surface is not None
+    steady, first = FlatPunch(response, friction(0.0)), float(starts.load(0.0))
     σ_YY = steady.σ_YY(ON_SURFACE)
-    return np.array([[steady.σ_XX(ON_SURFACE)], [σ_YY], [g * σ_YY]])
+    before = np.array([steady.σ_XX(ON_SURFACE), σ_YY, steady.g * σ_YY])
+    added = np.moveaxis(course.surface[:, finer - 1 :: finer], 0, 1)
+    told = _until_the_end(added, starts)[starts.outputs - 1] + first * before
+    return np.moveaxis(told, 0, 1)
 
 
-def _whole(course: Any, steady: FlatPunch, first: float) -> tuple[NDArray, ...]:
-    """v₀, centre, and K_I at both ends: what a load adds to steady motion under a first share of it."""
+def _until_the_end(values: NDArray, starts: Starts) -> NDArray[np.float64]:
+    """NaN from where the punch turns round."""
+    known = np.full((starts.steps, *values.shape[1:]), np.nan)
+    known[: len(values)] = values
+    return known
+
+
+def _of_constant(
+    g: float, starts: Starts, punch: StartingPunch, response: Response
+) -> tuple[Course, tuple[NDArray, ...]]:
+    """Friction that does not change; v₀, centre, and K_I at both ends.
+
+    A load adds its course from rest to steady motion under a first share of it.
+    """
+    first, steady = float(starts.load(0.0)), FlatPunch(response, g)
+    course = punch.course(g, lambda t: starts.load(t) - first)
     with np.errstate(invalid="ignore"):
         leaning = np.where(course.load == 0.0, 0.0, course.load * course.centre)
     centre = (first * (steady.β - steady.α) + leaning) / (first + course.load)
-    return course.v0, centre, first * steady.K_I + course.K_left, first * steady.K_I + course.K_right
+    K = first * steady.K_I
+    return course, (course.v0, centre, K + course.K_left, K + course.K_right)
 
 
 def _named(method: str, values: Any) -> _Found:

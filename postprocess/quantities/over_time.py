@@ -38,8 +38,10 @@ STEADY_K_I = _row(
 )
 
 
-def _by_method(name: str, unit: str, about: str, nan_allowed: str = NEVER) -> dict[str, Quantity]:
+def _by_method(name: str, unit: str, about: str, nan_allowed: str | None = None) -> dict[str, Quantity]:
+    """By both; the integral equation says nothing from where the punch turns round."""
     how = {FEM: "finite elements", SIE: "integral equation"}
+    untold = {FEM: NEVER, SIE: ANYWHERE}
     return {
         method: _row(
             f"{method}/{name}",
@@ -47,7 +49,7 @@ def _by_method(name: str, unit: str, about: str, nan_allowed: str = NEVER) -> di
             f"{about}, {told}",
             (START, INSTANT),
             method=method,
-            nan_allowed=nan_allowed,
+            nan_allowed=nan_allowed or untold[method],
         )
         for method, told in how.items()
     }

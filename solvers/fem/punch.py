@@ -195,7 +195,7 @@ class SlidingPunch(Punch):
         """Displacements (rows, n) and forces (2, n, n) that a tangential load at each node causes."""
         if self._nodal is None:
             n = len(self.space.contact.s)
-            found = self._answers(self._tangential(np.eye(n)), [refines] * n)
+            found = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
             forces = np.array([self._reactions(field) for field in found])
             self._nodal = np.array([field.array_r for field in found]).T, np.moveaxis(forces, 0, 2)
             for field in found:

@@ -40,6 +40,10 @@ _PANELS, _HALVINGS, _ACCURACY = 3, 12, 1e-10
 _TURN = 5.0
 #: Where a panel is looked at.
 _BETWEEN = np.linspace(-0.9, 0.9, 4)
+#: Width of panels of distances that have the same points.
+_PANEL = 0.125
+#: So many distances have panels in common.
+_MANY = 64
 #: Distances are treated together where one is so many times another at most.
 _ALIKE = 4.0
 
@@ -91,7 +95,7 @@ class Kernel:
         ]
         found = np.zeros((4, len(x)), dtype=complex)
         for ζ, values in ways:
-            found += (values * (-s * ζ) if slopes else values) @ np.exp(np.multiply.outer(-s * ζ, x))
+            found += (values * (-s * ζ) if slopes else values) @ _exponentials(-s * ζ, x).T
         return found
 
     @cached_property
@@ -194,6 +198,19 @@ def _interpolation(at: NDArray) -> NDArray[np.float64]:
     """What Gauss's points of a panel tell between them, (points there, Gauss's)."""
     t, _ = leggauss(_POINTS)
     return np.asarray(np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(at, _POINTS - 1).T).T)
+
+
+def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
+    """exp(a x), (x, a): of few places and steps from there, where x are points of even panels."""
+    if len(x) < _MANY:
+        return np.asarray(np.exp(np.multiply.outer(x, a)))
+    steps = np.mod(x, _PANEL)
+    _, first, step = np.unique(np.round(steps, 12), return_index=True, return_inverse=True)
+    places, place = np.unique(np.round((x - steps) / _PANEL), return_inverse=True)
+    whole, rest = (np.exp(np.multiply.outer(of, a)) for of in (places * _PANEL, steps[first]))
+    found = whole[place]
+    found *= rest[step]
+    return np.asarray(found)
 
 
 def both_sides(response: Response, rayleigh: float) -> tuple[Kernel, Kernel]:

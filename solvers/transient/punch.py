@@ -1,25 +1,26 @@
 """A flat punch that is pressed on and slides from rest at constant speed: integral equation in time.
 
-What depends on time is solved as a convolution: quadrature by Radau IIA of three stages (Lubich), of
-order five, so that Laplace's transform of the response is all that is needed.
+What depends on time is a convolution, so that Laplace's transform of the response is all that is needed.
+Where friction is constant so is what a load makes of pressure and indentation; where it changes the
+convolution is marched through.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, pi
+from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from galinx.solvers.solids.solid import Response
+from galinx.solvers.transient.basis import Basis
+from galinx.solvers.transient.between import Between
+from galinx.solvers.transient.marched import march
+from galinx.solvers.transient.radau import Radau
 from galinx.solvers.transient.surface import AlongSurface
 from galinx.solvers.transient.transform import Transformed
 
-#: Rounding that the scaling of steps back in time may enlarge.
-_SCALED = 1e-15
-#: Length of the quadrature over what is told of it: near its end rounding is enlarged most.
-_LONGER = 1.5
 #: Distance over a beyond the ends of the contact at which σ_XX is told: it is infinite at them.
 BESIDE = 0.05
 #: Places X over a under the punch at which the pressure is told, closer towards the ends.
@@ -27,6 +28,10 @@ PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
 #: Distances over a from the ends at which stresses beside the punch are told, and all places X over a.
 _BEYOND = np.geomspace(0.01, 1.0, 24)
 ON_SURFACE = np.concatenate([-1.0 - _BEYOND[::-1], PLACES, 1.0 + _BEYOND])
+_UNDER = np.abs(ON_SURFACE) < 1.0
+
+#: What depends on time: values at times over a/c_s of any shape.
+Law = Callable[[NDArray], NDArray]
 
 
 def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
@@ -45,12 +50,14 @@ class Course:
         load: over N.
         centre: of the pressure over a.
         K_left, K_right: normalised intensities of the pressure at X = -a and X = a, by the exponents of
-            steady motion and over the final load, as those of the steady state.
+            steady motion at the friction of each time, and over the final load.
         work_of_load: ∫ N dv₀ over N²/(4μ).
         work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): what friction gives to
             the motion of the solid besides being carried past the punch.
         σ_YY: under the punch at ``PLACES``, (times, places).
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
+        surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less what there was before
+            t = 0; None where it is not asked for.
     """
 
     t: NDArray[np.float64]
@@ -64,10 +71,11 @@ class Course:
     σ_YY: NDArray[np.float64]
     σ_XX_left: NDArray[np.float64]
     σ_XX_right: NDArray[np.float64]
+    surface: NDArray[np.float64] | None = None
 
 
 class StartingPunch:
-    """All starts from rest at one speed.
+    """All starts at one speed.
 
     Args:
         response: of steady motion at that speed; tells the solid's stiffness and the exponents.
@@ -75,100 +83,109 @@ class StartingPunch:
         end: last time over a/c_s.
         steps: of the quadrature.
         terms: polynomials of the pressure.
+        surface: are stresses wanted along it?
     """
 
     def __init__(
-        self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24
-    ) -> None:
-        self._response, self._end, self._steps, self._terms = response, end, steps, terms
-        longer = ceil(_LONGER * steps)
-        self._scheme = Radau(end / steps * longer, longer)
+        self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24,
+        surface: bool = False,
+    ) -> None:  # fmt: skip
+        self._response, self._terms = response, terms
+        self._scheme = Radau(end, steps)
         self._transformed = Transformed(response, rayleigh, self._scheme.s, terms)
-        self._along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE)
+        along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE)
+        self._along = along if surface else None
 
-    def course(self, g: float, load: Callable[[NDArray], NDArray]) -> Course:
+    def course(self, g: float, load: Law) -> Course:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
-        basis = self._transformed.basis(g)
+        basis, n = self._transformed.basis(g), self._terms
         (answers,) = self._transformed.answers(basis)
-        along = self._transformed.along(basis, answers[:, :-1])
-        strains = self._transformed.strains(basis, answers[:, :-1], BESIDE)
-        found = self._scheme.convolved(np.hstack([answers, along, strains]), load)[: self._steps]
-        a, v0 = found[:, : self._terms], found[:, self._terms]
-        t = np.arange(1.0, self._steps + 1.0) * (self._end / self._steps)
-        u, u_X = found[:, self._terms + 1 : -2], found[:, -2:]
-        σ_XX = self._response.σ_XX(u_X, np.zeros_like(u_X), np.zeros_like(u_X))
-        by_load = _work(t, 2.0 * load(t)[:, None], v0[:, None])
-        normal = a @ basis.moments
+        pressure = answers[:, :-1, None]
+        dragged = self._transformed.dragging(basis, basis.pressure) @ pressure
+        strains = self._strains(basis) @ pressure
+        found = self._scheme.convolved(np.hstack([answers, dragged[..., 0], strains[..., 0]]), load)
+        a, v0, u, u_X = np.split(found, [n, n + 1, 2 * n + 1], axis=1)
+        by_friction = _work(self._t, g * a, u, np.zeros(n))
+        return self._told([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
+
+    def _strains(self, basis: Basis) -> NDArray[np.complex128]:
+        """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if wanted, (s, places, terms)."""
+        beside = self._transformed.strains(basis, BESIDE)
+        return beside if self._along is None else np.hstack([beside, self._along.strains(basis)])
+
+    def course_along(self, g: Law, load: Law, steady: bool = False) -> Course:
+        """What happens where friction changes, σ_XY = g(t) σ_YY, and N is there by the share ``load(t)``.
+
+        Args:
+            g: at times over a/c_s.
+            load: at times; from rest load(0) = 0.
+            steady: before t = 0 there was steady motion of what there is then. The course tells v₀ and
+                works from then on, and what is added to σ_XX of then.
+        """
+        scheme, transformed = self._scheme, self._transformed
+        ratios = g(scheme.times)
+        occurring = np.append(ratios, g(np.zeros(())))
+        between = Between(self._response, occurring.min(), occurring.max(), self._terms)
+        found = march(transformed, scheme, between, g, load, steady)
+        held = between.middle.pressure
+        rows = [np.hstack([transformed.dragging(one, held), self._strains(one)]) for one in between.bases]
+        moved = scheme.answered(np.concatenate(rows, axis=2), found.shares - found.begun)
+        u, u_X = np.split(moved, [self._terms], axis=1)
+        shared = np.hstack([one.pressure.tested(held) for one in between.bases])
+        forces = ratios[:, -1:] * (found.shares[:, -1] @ shared.T)
+        by_friction = _work(self._t, forces, u, occurring[-1] * (shared @ found.begun))
+        bases = [Basis(self._response, ratio, self._terms) for ratio in ratios[:, -1]]
+        begun = found.begun @ np.vstack([one.pressure(ON_SURFACE[_UNDER]).T for one in between.bases])
+        before = begun, occurring[-1] * begun
+        return self._told(bases, found.a, found.v0, load, by_friction, u_X, before)
+
+    @property
+    def _t(self) -> NDArray[np.float64]:
+        """Ends of the steps."""
+        return self._scheme.times[:, -1]
+
+    def _told(
+        self, bases: list[Basis], a: NDArray, v0: NDArray, load: Law, by_friction: NDArray, u_X: NDArray,
+        begun: tuple[ArrayLike, ArrayLike] = (0.0, 0.0),
+    ) -> Course:  # fmt: skip
+        """All of the polynomials' coefficients, of strains, and of σ_YY and σ_XY before t = 0."""
+        t, beside, along = self._t, u_X[:, :2], u_X[:, 2:]
+        σ_XX = self._response.σ_XX(beside, np.zeros_like(beside), np.zeros_like(beside))
+        first = np.array([2.0 * float(load(np.zeros(())))])
+        by_load = _work(t, 2.0 * load(t)[:, None], v0[:, None], first)
+        normal = np.array([one @ basis.moments for one, basis in zip(a, bases)])
+        ends = np.array([basis.ends for basis in bases])
         # Inertia adds r log r to what the polynomials tell at a distance r from an end, so that their
         # sum there converges with the square of their number; half of them say how.
-        whole, half = (a[:, :n] @ basis.ends[:, :n].T for n in (self._terms, self._terms // 2))
-        left, right = -(whole + (whole - half) / 3.0).T / 2.0
+        whole, half = (
+            np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (self._terms, self._terms // 2)
+        )
+        left, right = -(whole + (whole - half) / 3.0) / 2.0
+        σ_YY = np.array([basis.pressure(PLACES) @ one for one, basis in zip(a, bases)])
         return Course(
-            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load,
-            g * _work(t, a, u), a @ basis.pressures(PLACES).T, *σ_XX.T,
+            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load, by_friction,
+            σ_YY, σ_XX[:, 0], σ_XX[:, 1],
+            None if self._along is None else self._on_surface(bases, a, along, begun),
         )  # fmt: skip
 
-    def along_surface(self, g: float, load: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
-        """σ_XX, σ_YY and σ_XY over N/(2a) at ``ON_SURFACE`` of :meth:`course`, (3, times, places)."""
-        basis = self._transformed.basis(g)
-        (answers,) = self._transformed.answers(basis)
-        a = answers[:, :-1]
-        strains = self._along.strains(g, (basis.α, basis.β), basis.polynomials, a)
-        found = self._scheme.convolved(np.hstack([a, strains]), load)[: self._steps]
-        under = np.abs(ON_SURFACE) < 1.0
-        σ_YY = np.zeros((self._steps, len(ON_SURFACE)))
-        σ_YY[:, under] = found[:, : self._terms] @ basis.pressures(ON_SURFACE[under]).T
-        u_X = found[:, self._terms :]
-        return np.array([self._response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+    def _on_surface(
+        self, bases: list[Basis], a: NDArray, u_X: NDArray, begun: tuple[ArrayLike, ArrayLike]
+    ) -> NDArray[np.float64]:
+        """σ_XX, σ_YY and σ_XY at ``ON_SURFACE`` less those before t = 0, (3, times, places)."""
+        σ_YY, σ_XY = np.zeros((2, *u_X.shape))
+        for n, (one, basis) in enumerate(zip(a, bases)):
+            σ_YY[n, _UNDER] = basis.pressure(ON_SURFACE[_UNDER]) @ one
+            σ_XY[n] = basis.g * σ_YY[n]
+        σ_YY[:, _UNDER] -= begun[0]
+        σ_XY[:, _UNDER] -= begun[1]
+        return np.array([self._response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
 
-def _work(t: NDArray, forces: NDArray, ways: NDArray) -> NDArray[np.float64]:
-    """∫ Σ force d(way) up to each time from rest at t = 0, (times,); forces and ways are (times, n)."""
+def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:
+    """∫ Σ force d(way) up to each time, (times,); both (times, n), and ``first`` forces at t = 0."""
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))
-    F, u = (CubicSpline(times, np.concatenate([still, one])) for one in (forces, ways))
+    F, u = CubicSpline(times, np.vstack([first, forces])), CubicSpline(times, np.vstack([still, ways]))
     y, w = np.polynomial.legendre.leggauss(4)
     half = np.diff(times)[:, None] / 2.0
     at = times[:-1, None] + half * (1.0 + y)
     return np.asarray(np.cumsum(((F(at) * u(at, 1)).sum(axis=-1) * w * half).sum(axis=-1)))
-
-
-class Radau:
-    """Convolution quadrature by Radau IIA of three stages.
-
-    Args:
-        end: last time.
-        steps: of equal length.
-
-    Attributes:
-        s: where Laplace's transform of a response is needed, (values,).
-    """
-
-    def __init__(self, end: float, steps: int) -> None:
-        root = np.sqrt(6.0)
-        A = np.array([
-            [(88.0 - 7.0 * root) / 360.0, (296.0 - 169.0 * root) / 1800.0, (-2.0 + 3.0 * root) / 225.0],
-            [(296.0 + 169.0 * root) / 1800.0, (88.0 + 7.0 * root) / 360.0, (-2.0 - 3.0 * root) / 225.0],
-            [(16.0 - root) / 36.0, (16.0 + root) / 36.0, 1.0 / 9.0],
-        ])  # fmt: skip
-        self._steps, h = steps, end / steps
-        nodes = A.sum(axis=1)
-        self._times = h * (np.arange(steps)[:, None] + nodes)
-        self._scale = _SCALED ** (np.arange(steps) / (2.0 * steps))
-        half = steps // 2 + 1
-        ζ = _SCALED ** (0.5 / steps) * np.exp(-2j * pi * np.arange(half) / steps)
-        Δ = np.linalg.inv(A + (ζ / (1.0 - ζ))[:, None, None] * np.outer(np.ones(3), A[-1]))
-        values, self._vectors = np.linalg.eig(Δ)
-        self.s = (values / h).ravel()
-
-    def convolved(self, response: NDArray, given: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
-        """What a response makes of what is given over time, after each step.
-
-        Args:
-            response: its transform at ``s``, (values, n).
-            given: function of time.
-        """
-        scaled = np.fft.rfft(given(self._times) * self._scale[:, None], axis=0)
-        modes = np.linalg.solve(self._vectors, scaled[..., None])[..., 0]
-        answered = modes[..., None] * response.reshape(*modes.shape, -1)
-        last = np.einsum("fm,fmn->fn", self._vectors[:, -1], answered)
-        return np.fft.irfft(last, self._steps, axis=0) / self._scale[:, None]

@@ -8,16 +8,15 @@ The first two are known of the polynomials that the pressure is made of. The res
 once, whatever the friction, and is smooth in each panel of distances but the one at 0.
 """
 
-from collections.abc import Callable
 from functools import cached_property
 from math import pi
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 from galinx.solvers.solids.solid import Response
+from galinx.solvers.transient.basis import Basis, Weighted
 from galinx.solvers.transient.kernel import Kernel, both_sides
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
@@ -26,9 +25,6 @@ _NEAR, _EVEN, _POINTS = 24, 0.125, 10
 _STEPS, _LENGTH = 161, 3.4
 #: Points of the pressure as seen from beside the contact.
 _FEW = 128
-
-#: Polynomials of the pressure, without its weight, at places: (n, terms).
-Polynomials = Callable[[NDArray], NDArray]
 
 
 class AlongSurface:
@@ -45,44 +41,29 @@ class AlongSurface:
         self._response, self._s, self._X = response, s, X
         self._kernels = both_sides(response, rayleigh)
 
-    def strains(
-        self, g: float, exponents: tuple[float, float], polynomials: Polynomials, a: NDArray
-    ) -> NDArray[np.complex128]:
-        """û,X over N̂/(2aμ) where σ_XY = g σ_YY, (s, places).
-
-        Args:
-            g: friction.
-            exponents: α and β of the pressure, α + β = -1.
-            polynomials: that make it with its weight (1 - X)^α (1 + X)^β.
-            a: their coefficients for every s, (s, terms).
-        """
-        answer, X, (α, β) = self._response, self._X, exponents
+    def strains(self, basis: Basis) -> NDArray[np.complex128]:
+        """û,X over N̂/(2aμ) of each polynomial of the pressure where σ_XY = g σ_YY, (s, places, terms)."""
+        answer, X, g, pressure = self._response, self._X, basis.g, basis.pressure
         slope, under = answer.n12 + g * answer.m, np.abs(X) < 1.0
-        σ = np.zeros((len(X), a.shape[1]))
-        weight = (1.0 - X[under]) ** α * (1.0 + X[under]) ** β
-        σ[under] = weight[:, None] * polynomials(X[under])
-        local = answer.q * σ + slope * _hilbert(X, exponents, polynomials, σ)
-        found = np.asarray(a @ local.T, dtype=np.complex128)
+        σ = np.zeros((len(X), pressure.terms))
+        σ[under] = pressure(X[under])
+        local = answer.q * σ + slope * _hilbert(X, pressure, σ)
+        found = np.repeat(local[None].astype(np.complex128), len(self._s), axis=0)
         pole = slope / (pi * self._x)
         for table, sign in zip(self._tables, (1.0, -1.0)):
             rest = table[:, 0] + sign * (g * table[:, 1] + pole)
-            whole = rest @ self._sums(sign, exponents, polynomials).reshape(len(self._x), -1)
-            found += np.einsum("spt,st->sp", whole.reshape(len(a), len(X), -1), a)
+            found += (rest @ self._sums(sign, pressure).reshape(len(self._x), -1)).reshape(found.shape)
         return found
 
-    def _sums(
-        self, sign: float, exponents: tuple[float, float], polynomials: Polynomials
-    ) -> NDArray[np.float64]:
+    def _sums(self, sign: float, pressure: Weighted) -> NDArray[np.float64]:
         """What of each tabulated distance comes from polynomials there, (distances, places, terms).
 
         Args:
             sign: 1 for places ahead of the loads, -1 for those behind.
-            exponents: of the pressure.
-            polynomials: that make it.
+            pressure: its polynomials.
         """
-        α, β = exponents if sign > 0.0 else exponents[::-1]
-        terms = polynomials(np.zeros(1)).shape[1]
-        found = np.zeros((len(self._x), len(self._X), terms))
+        α, β = (pressure.α, pressure.β) if sign > 0.0 else (pressure.β, pressure.α)
+        found = np.zeros((len(self._x), len(self._X), pressure.terms))
         # As if ahead, in the mirror image: loads from -1 up to X or 1.
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
@@ -90,7 +71,9 @@ class AlongSurface:
                 near, far, w = _both_ends(last + 1.0)
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
-                found[:, n] = self._told(beyond + near).T @ (w[:, None] * polynomials(sign * loads))
+                found[:, n] = self._told(beyond + near).T @ (
+                    w[:, None] * pressure.polynomials(sign * loads)
+                )
         return found
 
     def _told(self, x: NDArray) -> NDArray[np.float64]:
@@ -134,20 +117,17 @@ def _slopes(kernel: Kernel, x: NDArray, s: complex) -> NDArray[np.complex128]:
     return found if s.imag >= 0.0 else np.conj(found)
 
 
-def _hilbert(
-    X: NDArray, exponents: tuple[float, float], polynomials: Polynomials, σ: NDArray
-) -> NDArray[np.float64]:
+def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]:
     """(1/π) ⨍ of the polynomials with their weight over t - X, (n, terms); ``σ`` are these at X."""
     found = np.empty_like(σ)
     under = np.abs(X) < 1.0
-    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy replaces 0/0 where α + β = -1
-        t, w = roots_jacobi(_FEW, *exponents)
-    P = w[:, None] * polynomials(t)
+    t, w = pressure.rule(_FEW)
+    P = w[:, None] * pressure.polynomials(t)
     found[~under] = (1.0 / (t - X[~under, None])) @ P
     # That of the weight is π cot(πα) times it; what is left is a polynomial.
     over = 1.0 / (t - X[under, None])
-    rest = over @ P - (over @ w)[:, None] * polynomials(X[under])
-    found[under] = rest + pi / np.tan(pi * exponents[0]) * σ[under]
+    rest = over @ P - (over @ w)[:, None] * pressure.polynomials(X[under])
+    found[under] = rest + pi / np.tan(pi * pressure.α) * σ[under]
     return np.asarray(found / pi)
 
 

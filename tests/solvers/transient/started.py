@@ -39,7 +39,8 @@ class ByFiniteElements:
 
     def run(self, g, load):
         way = Phase(1, self.end, self.steps)
-        return self.solver.run([way], lambda t: g, lambda t: float(load(t)))
+        law = g if callable(g) else lambda t: g
+        return self.solver.run([way], law, lambda t: float(load(t)))
 
     def told(self, run, α, β):
         return told(self.motion.X, run.forces, α, β, self.degree)

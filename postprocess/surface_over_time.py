@@ -65,7 +65,7 @@ def _beside(data: Mapping[str, Any], _: Any) -> float:
 
 #: Rules by name: of the surface by both methods, and by finite elements; of what is beside both ends.
 ALONG, OF_FEM, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
-#: σ_XX beside both ends.
+#: σ_XX beside both ends, which is told and not judged: waves ahead of a fast punch are short.
 ENDS = LEFT, RIGHT
 
 RULES.register(
@@ -87,6 +87,6 @@ RULES.register(
     AT_ENDS,
     Rule(
         "σ_XX 0.05 a beside both ends over time against the integral equation, over the largest",
-        tuple(row[method] for row in ENDS for method in (FEM, SIE)), _beside, tolerances=1.0,
+        tuple(row[method] for row in ENDS for method in (FEM, SIE)), _beside,
     ),
 )  # fmt: skip

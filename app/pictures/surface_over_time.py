@@ -38,7 +38,7 @@ def has_film(data: dict[str, Any]) -> bool:
 
 def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Of the first start, at chosen times from the first to the last, beside steady motion of then."""
-    t, methods = data[at.TIMES.path], _methods(data)
+    t, methods = data[at.TIMES.path], _methods(data)[::-1]  # what is drawn as lines comes first
     shown = np.unique(np.linspace(0, len(t) - 1, _TIMES).round().astype(int))
     styles, count = looks(len(shown), True), len(shown)
     columns = [
@@ -49,7 +49,7 @@ def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         for title, first in (("in time", 0), ("steady motion of that time's friction and load", count))
     ]  # fmt: skip
     steady = _steady(data, scene, t[shown])
-    as_lines = [1.0 if method == methods[-1] else np.nan for method in methods]
+    as_lines = [1.0 if method == methods[0] else np.nan for method in methods]
     found = [
         Stress(label, {
             method: np.vstack([_told(data, name, method)[shown], as_line * steady[name]])

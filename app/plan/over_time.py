@@ -215,9 +215,10 @@ class Starts:
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         degree += gap < _SHORT and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
+        slow = min(1.0, gap / _SLOW) ** 0.5
         long = _LONG + _LONGER * max(digits - 3.0, 0.0)
-        size = _SIZE * min(1.0, gap / _SLOW) ** 0.5 * min(1.0, self.shortest / long)
-        size = min(size, _SEEN_SIZE) if self.every else size
+        size = _SIZE * slow * min(1.0, self.shortest / long)
+        size = min(size, _SEEN_SIZE * slow) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO

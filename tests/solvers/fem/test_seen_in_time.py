@@ -23,10 +23,10 @@ from galinx.solvers.transient.punch import ON_SURFACE, smooth
 SOLID = Isotropic(1.0, 0.25, 1.0)
 
 
-def motion(c, degree=4, mesh=None, solid=SOLID):
+def motion(c, degree=4, mesh=None, solid=SOLID, sharp=False):
     mesh = mesh or Reached(4.3, 3.1, 1.0, 0.3, 1e-2)
     space = Space(*distribute(mesh.drawn(), MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
-    return Motion(space, solid.response(c))
+    return Motion(space, solid.response(c), sharp)
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +74,24 @@ def test_work_of_a_random_motion_is_its_energy():
     held = watched[1:, 2] + watched[1:, 3] + run.absorbed
     assert np.abs(done - held).max() < 1e-4 * np.abs(done).max()
     assert 0.1 * done[-1] < watched[-1, 0] + watched[-1, 1] < 0.95 * held[-1]
+
+
+def test_energy_is_kept_where_the_punch_turns_round():
+    """The solid goes on as it did, only the velocities seen from the punch jump; waves are sharp then."""
+    c, of = 0.5, motion(0.5, 6, Reached(4.6, 2.6, 0.5, 0.3, 1e-3, 0.0, 0.5), sharp=True)
+    ways = [Phase(1, 1.0, 8), Phase(-1, 0.25, 8), Phase(-1, 0.25, 2)]
+    solver = SlidingInTime(of)
+    run = solver.run(
+        ways, lambda t: -0.4 if t < 1.0 + 1e-9 else 0.4, lambda t: float(smooth(t, 1.0)),
+        watching=[Energies(of)],
+    )  # fmt: skip
+    solver.destroy()
+    watched = run.watched[0]
+    V = c * np.repeat([way.direction for way in ways], [way.steps for way in ways])
+    done = run.work_of_load + run.work_of_friction + np.cumsum(V * np.diff(watched[:, 4]))
+    left = np.abs(done - watched[1:, 2] - watched[1:, 3] - run.absorbed)
+    assert left[:8].max() < 1e-4 * done[7]
+    assert left.max() < 5e-3 * np.abs(done).max()
 
 
 def test_strains_along_the_surface_are_those_of_polynomials(moving):

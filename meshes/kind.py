@@ -32,6 +32,9 @@ _ALONE, _BESIDE, _INSIDE, _AROUND = (1.0, 0.65, 0.8), (1.9, 1.9, 0.8), (0.5, 0.5
 #: for a degree more, or at a tight tolerance for gentler rings.
 _TURNED, _HIGHER = 0.5, 0.7
 
+#: Share of the size of innermost cells that is left where rings tell stresses at lower degrees.
+_CLOSER = 0.5
+
 #: Tolerance from which on rings of stresses have a ratio of their own.
 _LOOSE = 2e-4
 
@@ -222,7 +225,8 @@ class MeshKind:
         if wanted.nearest is not None:
             # The innermost cells cannot follow the singularity. Beside them that shows in the stresses,
             # like the square of their size over the distance, both in this chart.
-            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, self.beside * sqrt(tolerance)))
+            beside = self.beside * (_CLOSER if self._own_rings(wanted) else 1.0)
+            size = min(size, sqrt(2.0 * wanted.nearest) * min(0.5, beside * sqrt(tolerance)))
         return max(size, self.smallest)
 
     def degree(self, wanted: Wanted, margin: float) -> int:

@@ -48,7 +48,8 @@ _EARLIER = 8
 _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
 #: Side of cells next to the punch over a where things change within so many a/c_s, at a tolerance of
 #: 1e-3, and so many more at each tenth of it; how much slower than the Rayleigh wave a punch has to be
-#: for that: the wave ahead of a faster one is shorter. Within the last of these it asks for a degree more.
+#: for that: the wave ahead of a faster one is shorter. Within the last of these one asks for a degree
+#: more.
 _SIZE, _LONG, _LONGER, _SLOW, _SHORT = 2.0, 2.0, 1.5, 0.25, 0.15
 
 

@@ -1,1 +1,1 @@
-"""A flat punch whose load changes in time: integral equation, independent of the finite elements."""
+"""A flat punch whose load and friction change: integral equation, independent of the finite elements."""

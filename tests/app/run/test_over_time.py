@@ -143,7 +143,7 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     assert np.abs(lean).max() < 0.3 * np.abs(data["time/steady_centres"][0, :first]).max()
     assert np.isnan(data["time/fem/K_I_left"]).all()
     assert data["time/fem/estimate"][0] > 0.0
-    # The integral equation goes as far as the first turn, and agrees with what leans by little.
+    # The integral equation goes as far as the first turn, and both are compared up to there.
     by_sie = data["time/sie/centre_of_pressure"][0]
     np.testing.assert_array_equal(np.isnan(by_sie), t > 0.5 + 1e-9)
     assert json.loads(result.attributes["comparisons"])[OF_BOTH] < 0.05

@@ -83,7 +83,8 @@ def test_random_stacks(seed, graded):
     """Ends and, with all of it, the surface and interfaces: within the tolerance and the estimates."""
     start = process_time()
     quantities = ("sif", "surface", "interfaces") if THOROUGH else ("sif",)
-    data = galinx.compute(random_scene(seed, graded, quantities)).data
+    tolerance = 1e-6 if THOROUGH else 1e-3
+    data = galinx.compute(random_scene(seed, graded, quantities, tolerance)).data
     row = [f"seed {seed}, {'graded' if graded else 'uniform'}: {process_time() - start:.0f} s"]
     found = apart(data)
     estimates = {
@@ -94,8 +95,8 @@ def test_random_stacks(seed, graded):
     print(", ".join(row))
     for what, difference in found.items():
         assert difference <= sum(estimates[what])
-        assert difference <= 1e-6
-        assert estimates[what][0] <= 1e-6
+        assert 0.0 < difference <= tolerance
+        assert estimates[what][0] <= tolerance
 
 
 @pytest.mark.parametrize("mu", [1e-9, 0.4, 1.0])
@@ -149,7 +150,7 @@ def test_between_a_thick_coating_and_a_thin_one(mu):
     off_thick = [of[H] / of_coat - 1.0 for H in (30.0, 60.0)]
     assert off_thick[0] <= 2e-3 and 1.8 < off_thick[0] / off_thick[1] < 4.5
     off_thin = [1.0 - of[H] / below for H in (0.04, 0.02)]
-    assert off_thin[0] <= 0.05 and 1.7 < off_thin[0] / off_thin[1] < 2.3
+    assert off_thin[0] <= 0.05 and 1.5 < off_thin[0] / off_thin[1] < 2.1  # H, and H log H
 
 
 def test_a_mirror_image_has_its_ends_swapped():
@@ -165,44 +166,44 @@ def test_a_mirror_image_has_its_ends_swapped():
 
 
 def test_many_frictions_and_loads_are_those_of_each():
-    many = np.linspace(0.05, 0.9, 30).tolist()
-    loads = [1e4, 1e5, 1e6]
-    asked = ("sif", "surface", "interfaces")
+    many = np.linspace(0.05, 0.9, 12).tolist()
+    loads = [1e5, 1e6]
+    asked = ("sif", "surface")
     together = galinx.compute(scene(mu=many, quantities=asked, load=loads)).data
-    h = together["states/sie/half_width"].reshape(3, 30)
+    h = together["states/sie/half_width"].reshape(2, 12)
     # A wider contact sees more of the soft substrate: it grows faster than the root of the load.
     assert np.all(np.diff(np.log(h), axis=0) > 0.5 * np.log(10.0))
-    for i, j in ((0, 3), (2, 21)):
+    for i, j in ((0, 3), (1, 7)):
         alone = galinx.compute(scene(mu=many[j], quantities=asked, load=loads[i])).data
-        row = 30 * i + j
-        for path in ("states/sie/half_width", "surface/sie/sigma_XX", "interfaces/sie/sigma_XX_below"):
+        row = 12 * i + j
+        for path in ("states/sie/half_width", "surface/sie/sigma_XX"):
             off = np.abs(together[path][row] - alone[path][0]).max() / np.abs(alone[path][0]).max()
             assert off <= 1e-6, path
 
 
 def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
     """But where to begin: from another half-width they find the same."""
-    asked = dict(methods=("fem",), tolerance=1e-4)
+    asked = dict(methods=("fem",), tolerance=1e-3)
     one = galinx.compute(scene(**asked)).data
     true = Body._at_rest
     monkeypatch.setattr(Body, "_at_rest", lambda self, load: 1.7 * true(self, load))
     other = galinx.compute(scene(**asked)).data
     for name in ("half_width", "centre"):
         found = one[f"states/fem/{name}"], other[f"states/fem/{name}"]
-        assert np.abs(found[0] - found[1]) <= 1e-5 * one["states/fem/half_width"]
+        assert np.abs(found[0] - found[1]) <= 1e-4 * one["states/fem/half_width"]
         assert (found[0] != found[1]).all()
 
 
 def test_both_methods_tell_all_of_a_cylinder_and_the_archive_is_whole(tmp_path):
     asked = ("sif", "surface", "interior", "interfaces")
     result = galinx.compute(
-        scene(tolerance=1e-4, methods=("sie", "fem"), quantities=asked,
+        scene(tolerance=1e-3, methods=("sie", "fem"), quantities=asked,
               more="points = [[0.2, -0.5], [-1.0, -1.4]]\n")
     )  # fmt: skip
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     found = apart(result.data)
     for what, difference in found.items():
-        assert 0.0 < difference <= 1e-4
+        assert 0.0 < difference <= 1e-3
         assert difference <= sum(result.data[f"states/{by}/estimate{what}"][0] for by in ("fem", "sie"))
     told = " ".join(result.comparisons)
     for text in ("ends of the contact against", "largest contact pressure against", "σ_YY of contacts",

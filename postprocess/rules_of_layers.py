@@ -27,12 +27,22 @@ def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
     return float((np.abs(fem - sie) / size).max())
 
 
-def _pressure_of_layers(data: dict[str, Any], _: float) -> float:
-    fem, sie = (
-        data[row.path][:, under_punch(data[at.SURFACE_X.path])]
-        for row in (at.PRESSURE[FEM], on_layers.PRESSURE[SIE])
-    )
-    return (np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max()
+def _pressures(data: dict[str, Any]) -> tuple[Any, Any]:
+    under = under_punch(data[at.SURFACE_X.path])
+    return data[at.PRESSURE[FEM].path][:, under], data[on_layers.PRESSURE[SIE].path][:, under]
+
+
+def _found_pressure_of_layers(data: dict[str, Any], _: float) -> float:
+    """Over each state's largest: next to free ends it vanishes."""
+    fem, sie = _pressures(data)
+    return float((np.abs(fem - sie) / np.abs(sie).max(axis=1, keepdims=True)).max())
+
+
+def _pressure_of_layers(data: dict[str, Any], _: float) -> float | None:
+    if of.HALF_WIDTH[SIE].path in data:
+        return None
+    fem, sie = _pressures(data)
+    return float((np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max())
 
 
 def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
@@ -70,6 +80,12 @@ ON_LAYERS: dict[str, Rule] = {
         "σ_YY against the integral equation, over itself or a tenth of the mean",
         (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
         tolerances=1.0,
+    ),
+    # As under punches on uniform solids whose ends are found.
+    "sigma_YY of found ends over layers": Rule(
+        "σ_YY of contacts whose ends are found against the integral equation, over the largest",
+        (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X, of.LARGEST[SIE]),
+        _found_pressure_of_layers, tolerances=10.0,
     ),
     "sigma_XX of layers": Rule(
         "σ_XX against the integral equation, over itself or the largest",

@@ -56,6 +56,8 @@ class Fields:
     def interfaces(self) -> tuple[float, ...]:
         """Depths over a of the lower faces of layers."""
         body, solid = self._scene.body, self._scene.solid
+        if body.found:  # over every state's own half-width they are elsewhere
+            return ()
         return tuple((solid.depths / body.half_width).tolist()) if isinstance(solid, Layered) else ()
 
     def grid(self) -> tuple[NDArray, NDArray]:

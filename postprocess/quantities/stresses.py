@@ -33,7 +33,7 @@ PRESSURE = {
         "surface/fem/sigma_YY", "N/(2a)",
         "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
         (STATE, POINT), lambda s, _: s.surface.σ_YY, FEM, asked_by=ON_SURFACE, nan_allowed=BESIDE,
-        compared=("tension", "sigma_YY", "sigma_YY of found ends"),
+        compared=("tension", "sigma_YY", "sigma_YY of found ends", "sigma_YY of found ends over layers"),
     ),
 }  # fmt: skip
 RAW_PRESSURE = Quantity(

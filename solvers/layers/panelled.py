@@ -32,7 +32,7 @@ _REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
 #: of a panel a place is near.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
 #: Distance from a free end within which a pressure is continued, and up to which it is known for that.
-_MENDED, _KNOWN = 3e-3, 0.12
+_MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
 
 

@@ -11,13 +11,16 @@ import numpy as np
 import pytest
 
 import galinx
+from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
 from galinx.solvers.layers.contact import Equation
 from galinx.solvers.layers.found import SHAPES, FoundSpeed, Parabola
 from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.solution import Body
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
+from layers_cases import SUBSTRATE
 from test_layers import COAT, SCENE
 from test_layers_fem import scene_of
 from test_stack import random_stack
@@ -25,6 +28,9 @@ from test_stack import random_stack
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 PUNCH = '[punch]\nprofile = "parabolic"\nradius = "20 mm"\nload = {load}\n'
 PARTS = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
+
+
+SAME = COAT.replace("7.5", "2.5").replace("0.3", "0.25").replace("1200", "1000")
 
 
 def scene(layers=COAT, mu=0.4, tolerance=1e-6, methods=("sie",), quantities=("sif",), load=1e5, more=""):
@@ -71,13 +77,14 @@ def apart(data):
 
 @pytest.mark.parametrize(
     ("seed", "graded"),
-    [(seed, graded) for seed in range(15) for graded in (False, True)] if THOROUGH else [(7, False)],
+    [(seed, graded) for seed in range(15) for graded in (False, True)] if THOROUGH else [(4, False)],
 )
 def test_random_stacks(seed, graded):
     """Ends and, with all of it, the surface and interfaces: within the tolerance and the estimates."""
     start = process_time()
     quantities = ("sif", "surface", "interfaces") if THOROUGH else ("sif",)
-    data = galinx.compute(random_scene(seed, graded, quantities)).data
+    tolerance = 1e-6 if THOROUGH else 1e-3
+    data = galinx.compute(random_scene(seed, graded, quantities, tolerance)).data
     row = [f"seed {seed}, {'graded' if graded else 'uniform'}: {process_time() - start:.0f} s"]
     found = apart(data)
     estimates = {
@@ -88,5 +95,126 @@ def test_random_stacks(seed, graded):
     print(", ".join(row))
     for what, difference in found.items():
         assert difference <= sum(estimates[what])
-        assert difference <= 1e-6
-        assert estimates[what][0] <= 1e-6
+        assert 0.0 < difference <= tolerance
+        assert estimates[what][0] <= tolerance
+
+
+@pytest.mark.parametrize("mu", [1e-9, 0.4, 1.0])
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.95])
+def test_layers_of_one_solid_are_the_half_plane(mu, share):
+    """All that is told of a contact is that of the closed form."""
+    c = share * SUBSTRATE.limit()
+    asked = ("sif", "surface", "interior")
+    points = "points = [[0.2, -0.5], [-1.0, -0.3], [0.7, -3.0]]\n"
+    layered, plain = (
+        galinx.compute(at_speed(scene(layers, mu, 1e-9, (method,), asked, more=points), c)).data
+        for layers, method in ((SAME + SAME, "sie"), ("", "closed_form"))
+    )
+    h = plain["states/closed_form/half_width"][0]
+    assert layered["states/sie/half_width"][0] == pytest.approx(h, rel=1e-10)
+    assert layered["states/sie/centre"][0] == pytest.approx(
+        plain["states/closed_form/centre"][0], abs=1e-10 * h
+    )
+    for name in ("states/{}/largest_pressure", "surface/{}/sigma_YY", "surface/{}/sigma_XX",
+                 "interior/{}/sigma_XX", "interior/{}/sigma_YY", "interior/{}/sigma_XY"):  # fmt: skip
+        one, other = (data[name.format(by)] for data, by in ((layered, "sie"), (plain, "closed_form")))
+        known = np.isfinite(other)
+        assert np.array_equal(known, np.isfinite(one))
+        assert np.abs(one - other)[known].max() <= 1e-8 * np.abs(other[known]).max()
+
+
+def at_speed(scene, c):
+    """The scene at a speed over the wave speed."""
+    return replace(scene, motion=replace(scene.motion, c=(c,), speed=None))
+
+
+@pytest.mark.parametrize("mu", [0.3, 0.9])
+def test_between_a_thick_coating_and_a_thin_one(mu):
+    """What the other solid does falls with the thickness over the width, and with its inverse."""
+    alone = COAT.replace('thickness = "1 mm"\n', "").replace("[[layer]]", "[solid]")
+    text = SCENE.replace(SCENE[: SCENE.index("{layers}") + 8], alone)
+    coat = parse(
+        text.format(mu=mu, tolerance=1e-6, methods='["closed_form"]', quantities='["sif"]').replace(
+            "[friction]", PUNCH.format(load=1e5) + "[friction]"
+        )
+    )
+    of_coat = galinx.compute(coat).data["states/closed_form/half_width"][0]
+    below = galinx.compute(scene("", mu, methods=("closed_form",))).data["states/closed_form/half_width"][
+        0
+    ]
+    of = {
+        H: galinx.compute(scene(COAT.replace("1 mm", f"{H} mm"), mu)).data["states/sie/half_width"][0]
+        for H in (0.02, 0.04, 1.0, 30.0, 60.0)
+    }
+    assert of_coat < of[30.0] < of[1.0] < of[0.04] < of[0.02] < below
+    off_thick = [of[H] / of_coat - 1.0 for H in (30.0, 60.0)]
+    assert off_thick[0] <= 2e-3 and 1.8 < off_thick[0] / off_thick[1] < 4.5
+    off_thin = [1.0 - of[H] / below for H in (0.04, 0.02)]
+    assert off_thin[0] <= 0.05 and 1.5 < off_thin[0] / off_thin[1] < 2.1  # H, and H log H
+
+
+def test_a_mirror_image_has_its_ends_swapped():
+    one, other = (
+        galinx.compute(replace(base, friction=replace(base.friction, sign=sign))).data
+        for base in [scene(quantities=("sif", "surface"))]
+        for sign in ("physical", "eq25")
+    )
+    assert one["states/sie/half_width"] == pytest.approx(other["states/sie/half_width"], rel=1e-9)
+    assert one["states/sie/centre"] == pytest.approx(-other["states/sie/centre"], rel=1e-7)
+    σ = one["surface/sie/sigma_XX"][0]
+    assert np.abs(σ + 0.0 - other["surface/sie/sigma_XX"][0, ::-1]).max() <= 1e-7 * np.abs(σ).max()
+
+
+def test_many_frictions_and_loads_are_those_of_each():
+    many = np.linspace(0.05, 0.9, 12).tolist()
+    loads = [1e5, 1e6]
+    asked = ("sif", "surface")
+    together = galinx.compute(scene(mu=many, quantities=asked, load=loads)).data
+    h = together["states/sie/half_width"].reshape(2, 12)
+    # A wider contact sees more of the soft substrate: it grows faster than the root of the load.
+    assert np.all(np.diff(np.log(h), axis=0) > 0.5 * np.log(10.0))
+    for i, j in ((0, 3), (1, 7)):
+        alone = galinx.compute(scene(mu=many[j], quantities=asked, load=loads[i])).data
+        row = 12 * i + j
+        for path in ("states/sie/half_width", "surface/sie/sigma_XX"):
+            off = np.abs(together[path][row] - alone[path][0]).max() / np.abs(alone[path][0]).max()
+            assert off <= 1e-6, path
+
+
+def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
+    """But where to begin: from another half-width they find the same."""
+    asked = dict(methods=("fem",), tolerance=1e-3)
+    one = galinx.compute(scene(**asked)).data
+    true = Body._at_rest
+    monkeypatch.setattr(Body, "_at_rest", lambda self, load: 1.7 * true(self, load))
+    other = galinx.compute(scene(**asked)).data
+    for name in ("half_width", "centre"):
+        found = one[f"states/fem/{name}"], other[f"states/fem/{name}"]
+        assert np.abs(found[0] - found[1]) <= 1e-4 * one["states/fem/half_width"]
+        assert (found[0] != found[1]).all()
+
+
+def test_both_methods_tell_all_of_a_cylinder_and_the_archive_is_whole(tmp_path):
+    asked = ("sif", "surface", "interior", "interfaces")
+    result = galinx.compute(
+        scene(tolerance=1e-3, methods=("sie", "fem"), quantities=asked,
+              more="points = [[0.2, -0.5], [-1.0, -1.4]]\n")
+    )  # fmt: skip
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    found = apart(result.data)
+    for what, difference in found.items():
+        assert 0.0 < difference <= 1e-3
+        assert difference <= sum(result.data[f"states/{by}/estimate{what}"][0] for by in ("fem", "sie"))
+    told = " ".join(result.comparisons)
+    for text in ("ends of the contact against", "largest contact pressure against", "σ_YY of contacts",
+                 "stresses at interfaces against", "stresses inside against"):  # fmt: skip
+        assert text in told
+    assert result.data["interfaces/depth"] == pytest.approx([1e-3])
+    assert "interfaces/depth_over_a" not in result.data
+    path = tmp_path / "a.h5"
+    result.save(path)
+    assert not faults(path)
+    again = galinx.load(path)
+    again.report(tmp_path / "r.html")
+    assert "Half-width of the contact" in (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert any(drawing.name == "interfaces" for drawing in again.drawings())

@@ -84,7 +84,8 @@ def rotated(stiffness: NDArray, angle: float) -> NDArray[np.float64]:
 def along_axes(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, angle: float) -> tuple[NDArray, NDArray]:
     """Normal stresses along the solid's axes 1 and 2, the first at an angle [°] from X towards Y."""
     mean, half = (σ_XX + σ_YY) / 2.0, (σ_XX - σ_YY) / 2.0
-    deviation = half * cos(angle * pi / 90.0) + σ_XY * sin(angle * pi / 90.0)
+    twice = angle % 180.0 * pi / 90.0  # of any angle, however large
+    deviation = half * cos(twice) + σ_XY * sin(twice)
     return mean + deviation, mean - deviation
 
 

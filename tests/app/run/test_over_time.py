@@ -127,9 +127,9 @@ def test_unloading_from_steady_motion_by_both_methods():
 def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     """Friction grows as along the strokes of the states; where they turn the direction does."""
     changes = {
-        "solve.tolerance": 1e-2, "time.end": 0.9, "friction.pre_sliding": 3e-4, "time.step": 0.05,
-        "motion.X_over_L": [0.0, 0.5], "solve.methods": ["sie", "fem"], "time.every": 0.25,
-        "friction.sigma0_over_load": 6000.0,
+        "solve.tolerance": 1e-2, "time.end": 1.0, "friction.pre_sliding": 3e-4, "time.step": 0.1,
+        "motion.X_over_L": [0.0, 0.5], "solve.methods": ["sie", "fem"], "time.every": None,
+        "friction.sigma0_over_load": 4000.0,
     }  # fmt: skip
     result = computed("study_in_time", changes)
     data = result.data
@@ -147,12 +147,6 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     by_sie = data["time/sie/centre_of_pressure"][0]
     np.testing.assert_array_equal(np.isnan(by_sie), t > 0.5 + 1e-9)
     assert json.loads(result.attributes["comparisons"])[OF_BOTH] < 0.05
-    # So do both on the surface, when it is told for the first and the second time.
-    by_fem, by_sie_there = (data[f"time/surface/{name}/sigma_XX"][0] for name in ("fem", "sie"))
-    np.testing.assert_array_equal(np.isnan(by_sie_there).any(axis=1), data["time/surface/t"] > 0.5 + 1e-9)
-    away = np.abs(np.abs(data["time/surface/X_over_a"]) - 1.0) > 0.05
-    largest = np.abs(by_sie_there[:2, away]).max()
-    np.testing.assert_allclose(by_fem[:2, away], by_sie_there[:2, away], atol=0.05 * largest)
     np.testing.assert_allclose(lean, by_sie[: len(lean)], atol=1e-3)
 
 
@@ -160,7 +154,7 @@ def test_friction_by_its_law_is_followed_by_both_methods():
     """From rest, along two strokes that go the same way: there is no turn between them."""
     law = {"friction.model": "dahl", "friction.mu_c": 0.6, "friction.sigma0_over_load": "600 1/m",
            "friction.pre_sliding": "1 mm", "punch.half_width": "1 mm"}  # fmt: skip
-    more = {"time.friction": "law", "motion.strokes": ["forward", "forward"], "time.end": 3.0}
+    more = {"time.friction": "law", "motion.strokes": ["forward", "forward"], "time.every": 1.0}
     result = computed("start_from_rest", QUICK | law | more)
     data = result.data
     assert np.isfinite(data["time/sie/K_I_left"]).all() and np.ptp(data["time/ratio"][0]) > 0.3
@@ -168,6 +162,11 @@ def test_friction_by_its_law_is_followed_by_both_methods():
     assert json.loads(result.attributes["comparisons"])[OF_BOTH] < 2e-3
     work = data["time/sie/work_of_load"] + data["time/sie/work_of_friction"]
     np.testing.assert_allclose(work, data["time/fem/energy"], rtol=0.0, atol=1e-3 * work.max())
+    away = np.abs(np.abs(data["time/surface/X_over_a"]) - 1.0) > 0.05
+    for name in ("sigma_XX", "sigma_YY", "sigma_XY"):
+        by_fem, by_sie = (data[f"time/surface/{of}/{name}"][0][:, away] for of in ("fem", "sie"))
+        assert by_sie.shape[0] == 3 and np.ptp(by_sie[-1]) > 0.2
+        np.testing.assert_allclose(by_fem, by_sie, atol=0.02 * np.abs(by_sie).max())
 
 
 @pytest.mark.parametrize(

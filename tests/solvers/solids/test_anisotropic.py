@@ -11,7 +11,7 @@ from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
-from galinx.solvers.solids.plane import rotated
+from galinx.solvers.solids.plane import along_axes, rotated
 
 pytest.importorskip("mpmath")
 from stroh import Punch, Stroh
@@ -200,3 +200,13 @@ def test_impossible_solids_are_refused(made, told):
     with pytest.raises(ValueError, match=told) as found:
         made()
     assert "expected" in str(found.value)
+
+
+@pytest.mark.parametrize("angle", [30.0, -150.0, 3990.0, 1e308])
+def test_stresses_along_axes_of_any_angle(angle):
+    """Those of a tensor turned by it, of which half a turn more makes no difference."""
+    σ = np.array([2.0, -0.5, 0.7])
+    φ = np.radians(angle % 180.0)
+    axes = np.array([[np.cos(φ), np.sin(φ)], [-np.sin(φ), np.cos(φ)]])
+    turned = axes @ np.array([[σ[0], σ[2]], [σ[2], σ[1]]]) @ axes.T
+    np.testing.assert_allclose(along_axes(*σ, angle), np.diag(turned), atol=1e-12)

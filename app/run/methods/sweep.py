@@ -126,7 +126,7 @@ class _Solved:
     Attributes:
         number: of the speed.
         degree: of its elements.
-        sample: for the fit.
+        sample: for the fit, None of a higher degree than its own.
         record: of the work.
         estimates: of the discretisation, by word, where they were measured.
         off: how far the fit before was, by word, where it told the speed.
@@ -134,7 +134,7 @@ class _Solved:
 
     number: int
     degree: int
-    sample: Sampled
+    sample: Sampled | None
     record: dict[str, Any]
     estimates: dict[str, NDArray] | None = None
     off: dict[str, float] | None = None
@@ -223,7 +223,7 @@ class _Training:
         for one in found:
             if one.estimates:
                 self._estimates.add(one.number, self._sweep.z[one.number], one.estimates)
-        fit.take([(one.number, one.sample, one.record) for one in found])
+        fit.take([(one.number, one.sample, one.record) for one in found if one.sample])
 
     def _frictions(self, count: int) -> Frictions:
         if self._sweep.few:
@@ -250,9 +250,10 @@ class _Training:
             level = ladder.levels[-1]
             if not self._fit:
                 self._fit, self._degree = self._begun(level), ladder.degree
+            fits = ladder.degree <= self._fit.space.degree
             return _Solved(
-                number, ladder.degree, self._fit.sampled(task, level), ladder.record() | error.record(),
-                estimates=error.of(self._probes, self._loads),
+                number, ladder.degree, self._fit.sampled(task, level) if fits else None,
+                ladder.record() | error.record(), estimates=error.of(self._probes, self._loads),
             )  # fmt: skip
 
     def _tell(self, task: Task) -> None:

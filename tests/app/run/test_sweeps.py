@@ -175,9 +175,9 @@ def test_all_of_256_speeds_at_once():
     check(result, galinx.compute(each), 1e-6)
 
 
-@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(12) if THOROUGH else [6])
 def test_all_speeds_of_random_solids(seed):
+    """Of some, the one of seed 6 among them, a speed asks for a higher degree than those before."""
     rng, solid = np.random.default_rng(seed), random_solid(seed)
     c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.95), 32)) * solid.limit()
     tolerance = 10.0 ** rng.uniform(-6.0, -3.0)

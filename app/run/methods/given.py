@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,11 +15,12 @@ from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
+from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solution import Body, Places, Surface
+from galinx.solvers.solution import Places, Surface
 
 
 @contextmanager
@@ -106,39 +106,19 @@ class LoadsAtDegree:
         self.loaded.destroy()
 
 
-class LoadsAtSpeed:
-    """Loads at one speed, solved to the tolerance.
-
-    Args:
-        ladder: climbed.
-        error: of its last level.
-    """
+class LoadsAtSpeed(PutInAtSpeed):
+    """Loads at one speed, solved to the tolerance."""
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
-        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        super().__init__(ladder, error)
         self.displacement = Displacement(ladder.task, self.level.space, self.level.loaded.fields)
-        self._ladder = ladder
 
     def states(self, g: NDArray, load: Any = None) -> "GivenLoads":
         return GivenLoads(self, g, self.task.body.loaded(load))
 
-    def record(self) -> dict[str, Any]:
-        return self._ladder.record() | self.error.record()
 
-
-@dataclass(frozen=True)
-class GivenLoads:
-    """States with given pressure.
-
-    Attributes:
-        at: their speed.
-        g: σ_XY/σ_YY, (states,).
-        body: what slides over what, under the load of each.
-    """
-
-    at: LoadsAtSpeed
-    g: NDArray[np.float64]
-    body: Body
+class GivenLoads(PutIn):
+    """States with given pressure."""
 
     @property
     def local(self) -> FlatPunch:
@@ -149,16 +129,6 @@ class GivenLoads:
         """Resultant over N/2, (states,)."""
         level = self.at.level
         return np.array(level.loaded.resultants)[level.columns(self.g) // 2]
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return self.g * self.normal_force
-
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g)
 
     @cached_property
     def surface(self) -> Surface:

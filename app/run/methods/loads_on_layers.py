@@ -15,12 +15,13 @@ from galinx.app.run.methods.displacement import Displacement
 from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.rays import NEAR, rays
 from galinx.solvers.sie.linear import LinearPressure
-from galinx.solvers.solution import Body, Places, Surface
+from galinx.solvers.solution import Places, Surface
 
 
 @contextmanager
@@ -130,59 +131,24 @@ def weights(g: NDArray) -> NDArray[np.float64]:
     return np.column_stack([np.ones_like(g), g])
 
 
-class LoadsAtSpeed:
-    """A pressure put in at one speed, solved to the tolerance.
-
-    Args:
-        ladder: climbed.
-        error: of its last level.
-    """
+class LoadsAtSpeed(PutInAtSpeed):
+    """A pressure of the user's own over layers at one speed."""
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
-        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        super().__init__(ladder, error)
         self.displacement = self.level.displaced(ladder.task)
-        self._ladder = ladder
 
     def states(self, g: NDArray, load: Any = None) -> "LoadsOnLayers":
         return LoadsOnLayers(self, g, self.task.body.loaded(load))
 
-    def record(self) -> dict[str, Any]:
-        return self._ladder.record() | self.error.record()
 
-
-@dataclass(frozen=True)
-class LoadsOnLayers:
-    """States with a pressure of the user's own.
-
-    Attributes:
-        at: their speed.
-        g: σ_XY/σ_YY, (states,).
-        body: what slides over what, under the load of each.
-    """
-
-    at: LoadsAtSpeed
-    g: NDArray[np.float64]
-    body: Body
+class LoadsOnLayers(PutIn):
+    """States with a pressure of the user's own."""
 
     @property
     def places(self) -> Places:
         """Where stresses are."""
         return self.at.task.places
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.full(len(self.g), self.at.level.resultant)
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return self.g * self.normal_force
-
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g)
 
     @cached_property
     def surface(self) -> Surface:

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,10 +10,10 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import MeasuredError, climbed
+from galinx.app.run.methods.error import climbed
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
-from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
+from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.interior import TOGETHER
@@ -23,7 +22,7 @@ from galinx.solvers.fem.pieces import Pieces
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.sie.linear import LinearPressure
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Surface
 
 
 @contextmanager
@@ -165,53 +164,15 @@ class PiecesLevel:
         self._loads = None
 
 
-class OwnPressureAtSpeed:
-    """A pressure put in at one speed, solved to the tolerance.
-
-    Args:
-        ladder: climbed.
-        error: of its last level.
-    """
-
-    def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
-        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
-        self._ladder = ladder
+class OwnPressureAtSpeed(PutInAtSpeed):
+    """A pressure of the user's own at one speed."""
 
     def states(self, g: NDArray, load: Any = None) -> "OwnPressures":
         return OwnPressures(self, g, self.task.body.loaded(load))
 
-    def record(self) -> dict[str, Any]:
-        return self._ladder.record() | self.error.record()
 
-
-@dataclass(frozen=True)
-class OwnPressures:
-    """States with a pressure of the user's own.
-
-    Attributes:
-        at: their speed.
-        g: σ_XY/σ_YY, (states,).
-        body: what slides over what, under the load of each.
-    """
-
-    at: OwnPressureAtSpeed
-    g: NDArray[np.float64]
-    body: Body
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.full(len(self.g), self.at.level.resultant)
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return self.g * self.normal_force
-
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g)
+class OwnPressures(PutIn):
+    """States with a pressure of the user's own."""
 
     @cached_property
     def surface(self) -> Surface:

@@ -15,16 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.task import OWN_MESHES_KEPT, Task
+from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.kinked_ends import EndsAtSpeed, alone, ends_at_speed
 from galinx.app.run.methods.kinked_state import KinkedState, solved
 from galinx.app.run.methods.ladder import WorkDone
+from galinx.app.run.methods.own_meshes import OnOwnMeshes, OwnMeshesAtSpeed
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.profiles import jumps
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.found import Exponents
-from galinx.solvers.solution import Body, Surface
 
 
 @contextmanager
@@ -38,21 +36,17 @@ def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["KinkedAtSp
             at.destroy()
 
 
-class KinkedAtSpeed:
-    """Contacts at one speed.
+class KinkedAtSpeed(OwnMeshesAtSpeed):
+    """Contacts at one speed, see :class:`OwnMeshesAtSpeed`.
 
     Args:
-        work: gives spaces.
-        task: the speed.
+        work, task: the same.
         ends: of all its contacts.
     """
 
     def __init__(self, work: Discretisation, task: Task, ends: EndsAtSpeed) -> None:
-        self.work, self.task, self._ends = work, task, ends
-        self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
-        self._done = WorkDone()
-        #: By σ_XY/σ_YY and load, those that were asked for last at last.
-        self._known: dict[tuple[float, float], KinkedState] = {}
+        super().__init__(work, task)
+        self._ends = ends
 
     def states(self, g: NDArray, load: Any = None) -> "KinkedPunches":
         body = self.task.body.loaded(load)
@@ -67,51 +61,20 @@ class KinkedAtSpeed:
         done.add(self._ends.done)
         return self._record | vars(done)
 
-    def destroy(self) -> None:
-        """Free what states hold."""
-        for state in self._known.values():
-            state.destroy()
-
-    def _state(self, g: float, load: float) -> KinkedState:
-        state = self._known.pop((g, load), None)
-        if state is None:
-            ends, task = self._ends.of(g, load), alone(self.task, load)
-            state = solved(self.work, task, g, ends, self._done)
-            self._told(state.record)
-        self._known[g, load] = state
-        while len(self._known) > OWN_MESHES_KEPT:
-            self._known.pop(next(iter(self._known))).destroy()
-        return state
-
-    def _told(self, record: dict[str, Any]) -> None:
-        """The largest of what states have."""
-        for name, value in record.items():
-            self._record[name] = max(self._record.get(name, value), value)
+    def _solve(self, g: float, load: float) -> KinkedState:
+        task = alone(self.task, load)
+        return solved(self.work, task, g, self._ends.of(g, load), self._done)
 
 
 @dataclass(frozen=True)
-class KinkedPunches:
-    """Punches with several frictions and loads, each with its own half-width and middle.
+class KinkedPunches(OnOwnMeshes):
+    """Punches of any convex profile with several frictions and loads.
 
     Attributes:
-        task: their speed.
-        g: σ_XY/σ_YY, (states,).
-        found: of each; of some loads the same where contacts are alike.
-        body: what slides over what, under the load of each.
         growth: half-width of each over that of what was found, (states,).
     """
 
-    task: Task
-    g: NDArray[np.float64]
-    found: list[KinkedState]
-    body: Body
     growth: NDArray[np.float64]
-
-    @cached_property
-    def local(self) -> Exponents:
-        """Exponents at the ends."""
-        flat = FlatPunch(self.task.response, self.g)
-        return Exponents(flat.α + 1.0, flat.β + 1.0)
 
     @property
     def half_width(self) -> NDArray[np.float64]:
@@ -124,11 +87,6 @@ class KinkedPunches:
         return self.growth * [state.ends.centre for state in self.found]
 
     @property
-    def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end: none, by condition, (states, 2)."""
-        return np.zeros((len(self.g), 2))
-
-    @property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
         if jumps(self.body.profile):
@@ -137,37 +95,9 @@ class KinkedPunches:
         return values, places
 
     @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.array([state.level.contact.normal.sum() for state in self.found])
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.array([state.level.contact.tangential.sum() for state in self.found])
-
-    @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return np.array([state.level.contact.v0[0] for state in self.found])
-
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        words = self.found[0].estimates
-        return {word: np.array([state.estimates[word] for state in self.found]) for word in words}
-
-    @cached_property
-    def surface(self) -> Surface:
-        """Stresses on the surface."""
-        each = [state.surface for state in self.found]
-        σ_YY, σ_XX, v_X = (np.array([getattr(one, name)[0] for one in each]) for name in _ON_SURFACE)
-        return Surface(self.task.places, σ_YY, σ_XX, None, v_X)
-
-    @cached_property
-    def inside(self) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
-        return np.stack([state.inside for state in self.found], axis=1)
 
     @cached_property
     def strength(self) -> Strength:
@@ -181,7 +111,3 @@ class KinkedPunches:
         each = np.broadcast_to(points, (len(self.g), *points.shape[1:]))
         found = [state.at(some) for state, some in zip(self.found, each)]
         return np.stack(found, axis=1)
-
-
-#: What is known of every surface.
-_ON_SURFACE = ("σ_YY", "σ_XX", "v_X")

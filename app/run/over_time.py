@@ -76,7 +76,7 @@ def _computed(
 
 def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _Found:
     """Each start a row."""
-    t = _times(starts)
+    t = starts.times()
     every = []
     for c, of_speed in starts.frictions.items():
         for i, friction in enumerate(of_speed):
@@ -110,11 +110,6 @@ def _leans(response: Response, friction: Friction, t: NDArray) -> NDArray[np.flo
     ratios, which = np.unique([friction(at) for at in t], return_inverse=True)
     steady = [FlatPunch(response, ratio) for ratio in ratios]
     return np.array([one.β - one.α for one in steady])[which]
-
-
-def _times(starts: Starts, every: int = 1) -> NDArray[np.float64]:
-    """Ends of steps, or of so many together."""
-    return starts.times(every)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
@@ -194,12 +189,12 @@ def _named(method: str, values: Any) -> _Found:
 
 def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
-    load = starts.load(_times(starts, 2))
+    load = starts.load(starts.times(2))
     found = []
     for friction, (before, seen_before), (values, seen) in zip(starts.frictions[c], coarse, fine):
         every_other = [value[1::2] for value in values]
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
-        lean = _leans(solid.response(c), friction, _times(starts)) if starts.changing else np.zeros(1)
+        lean = _leans(solid.response(c), friction, starts.times()) if starts.changing else np.zeros(1)
         found.append(
             _named(FEM, values)
             | {

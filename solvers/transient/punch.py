@@ -93,8 +93,7 @@ class StartingPunch:
         self._response, self._terms = response, terms
         self._scheme = Radau(end, steps)
         self._transformed = Transformed(response, rayleigh, self._scheme.s, terms)
-        along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE)
-        self._along = along if surface else None
+        self._along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE) if surface else None
 
     def course(self, g: float, load: Law) -> Course:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis, Weighted
-from galinx.solvers.transient.kernel import Kernel, both_sides
+from galinx.solvers.transient.kernel import both_sides
+from galinx.solvers.transient.transform import at_any
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.125, 10
@@ -106,15 +107,9 @@ class AlongSurface:
     def _tables(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each."""
         ahead, behind = (
-            np.array([_slopes(kernel, self._x, s) for s in self._s]) for kernel in self._kernels
+            np.array([at_any(kernel, self._x, s, True)[2:] for s in self._s]) for kernel in self._kernels
         )
         return ahead, behind
-
-
-def _slopes(kernel: Kernel, x: NDArray, s: complex) -> NDArray[np.complex128]:
-    """Where Im s < 0 the transform of what is real is the conjugate."""
-    found = kernel(x, s if s.imag >= 0.0 else np.conj(s), True)[2:]
-    return found if s.imag >= 0.0 else np.conj(found)
 
 
 def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]:

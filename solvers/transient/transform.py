@@ -108,7 +108,7 @@ class Transformed:
         if beyond not in self._beside:
             X, _ = self._few.rule(_FEW)
             self._beside[beyond] = tuple(
-                np.array([_at(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
+                np.array([at_any(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
                 for kernel, sign in zip(self._kernels, (1.0, -1.0))
             )
         ahead, behind = self._beside[beyond]
@@ -151,7 +151,7 @@ class Transformed:
         between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
         x, found = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
-            values = np.array([_at(kernel, x, s) for s in self.s])
+            values = np.array([at_any(kernel, x, s) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
             whole[..., ~short] = values[..., :-_TOLD]
             whole[..., short] = values[..., -_TOLD:] @ between.T
@@ -159,6 +159,6 @@ class Transformed:
         return found[0], found[1]
 
 
-def _at(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+def at_any(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
     """Where Im s < 0 the transform of what is real is the conjugate."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

@@ -17,6 +17,7 @@ from typing import Any
 import h5py
 import matplotlib
 import numpy as np
+from energy import counters, joules
 
 import galinx
 from galinx.postprocess.errors import Occupied, UnwritableArchive
@@ -41,7 +42,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Figures:
-    """Medians of a case; seconds of the whole process, memory in MB, errors relative."""
+    """Medians of a case; seconds of the whole process, memory in MB, errors relative, energy in J."""
 
     name: str
     states: int
@@ -53,11 +54,12 @@ class Figures:
     sigma_YY: float
     sigma_XX: float
     estimate: float
+    energy: float = np.nan
 
 
-def positions(count: int) -> dict[str, list[float]]:
+def positions(count: int) -> dict[str, Any]:
     """So many positions along a stroke."""
-    return {"motion.X_over_L": np.linspace(0.0, 1.0, count).round(6).tolist()}
+    return {"motion.X_over_L": {"from": 0.0, "to": 1.0, "number": count}}
 
 
 FEM_ALONE = {"solve.methods": ["fem"]}
@@ -65,6 +67,38 @@ ONE_STATE = {"motion.c": 0.6, "motion.X_over_L": 0.8, "motion.strokes": ["forwar
 SIXTEEN = {"motion.c": [n / 20 for n in range(16)], "solve.sweep": "every"} | positions(334) | FEM_ALONE
 SPEEDS = {"motion.c": {"from": 0, "to": 0.9, "number": 256}} | positions(34)
 FINE = {"solve.tolerance": 1e-9}
+#: One speed, one friction, K_I or what stands in its place, by finite elements at 1e-6.
+ALIKE = {"motion.c": 0.6, "motion.X_over_L": 0.8, "motion.strokes": ["forward"], "solve.tolerance": 1e-6}
+ALIKE |= {"output.quantities": ["friction", "sif"], "solve.methods": ["closed_form", "fem"]}
+LUGRE = {"friction.model": "lugre", "friction.mu_s": 0.9, "friction.stribeck_velocity": "1 mm/s"}
+CYLINDER = {"punch.profile": "parabolic", "punch.radius": "20 mm"}
+LOADS = {"punch.load": {"from": "1 N/mm", "to": "50 N/mm", "number": 1000}}
+FIBRES = {"solid.material": "carbon-epoxy", "solid.angle": 30, "motion.c": 0.2}
+STACK = {"friction.mu_c": 0.4, "solve.tolerance": 1e-6}
+K_I_ALONE = {"output.quantities": ["friction", "sif"]}
+BOTH, SIE = {"solve.methods": ["sie", "fem"]}, {"solve.methods": ["sie"]}
+LOOP = {"output.quantities": ["friction"]} | positions(33334)
+
+#: What else slides, beside the flat punch on steel.
+OTHERS = [
+    Case("flat punch", "tables4_5", ALIKE),
+    Case("cylinder", "shoulders", ALIKE | CYLINDER),
+    Case("wedge", "shoulders", {"punch.profile": "wedge", "punch.slope": 0.005} | ALIKE),
+    Case("rounded flat", "shoulders", ALIKE),
+    Case("cylinder, 1 000 loads", "shoulders", ALIKE | CYLINDER | LOADS),
+    Case("copper", "tables4_5", {"solid.material": "copper"} | ALIKE),
+    Case("fibres at 30°", "tables4_5", ALIKE | FIBRES),
+    Case("coating, integral equation", "coating", STACK | K_I_ALONE | SIE),
+    Case("coating, both methods", "coating", STACK | K_I_ALONE | BOTH),
+    Case("coating, both, with its interface", "coating", STACK | BOTH),
+    Case("cylinder on a coating, both", "coating", STACK | BOTH | CYLINDER),
+    Case("start from rest to t = 20, both", "start_from_rest", {"time.end": 20.0}),
+    Case("friction: Dahl", "fig2", LOOP),
+    Case("friction: LuGre", "fig2", LUGRE | LOOP),
+    Case("friction: Maxwell slip", "minor_loops", LOOP),
+    Case("friction: rate and state", "velocity_steps", LOOP),
+    Case("stick-slip, 30 s", "slider"),
+]
 
 CASES = [
     *(Case(f"tolerance 1e-{n}", "tables4_5", {"solve.tolerance": 10.0**-n}) for n in range(2, 10)),
@@ -94,16 +128,14 @@ def run(case: Case, folder: Path) -> Figures:
     scene.write_text(galinx.template(case.scene, case.changes).text, encoding="utf-8")
     command = [str(HOME / "run.sh")] + (["-n", str(case.ranks)] if case.ranks > 1 else [])
     command += ["run", str(scene), "-o", str(archive), "--overwrite"]
-    measured = [wall_cpu_memory(command) for _ in range(REPEATS + 1)][1:]
-    wall, cpu, memory = (median(column) for column in zip(*measured))
-    return Figures(case.name, wall=wall, cpu=cpu, memory=memory, **_results(archive))
+    measured = [consumption(command) for _ in range(REPEATS + 1)][1:]
+    used = {name: median(each[name] for each in measured) for name in measured[0]}
+    return Figures(case.name, **used, **_results(archive))
 
 
-def wall_cpu_memory(
-    command: list[str], environment: dict[str, str] | None = None
-) -> tuple[float, float, float]:
-    """Wall and processor seconds of a command, and MB of its largest process."""
-    started = time.perf_counter()
+def consumption(command: list[str], environment: dict[str, str] | None = None) -> dict[str, float]:
+    """Wall and processor seconds of a command, MB of its largest process, J of the processor or NaN."""
+    before, started = counters(), time.perf_counter()
     process = subprocess.Popen(
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
@@ -111,7 +143,12 @@ def wall_cpu_memory(
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode > 1:
         sys.exit(f"error: {' '.join(command)} ended with status {process.returncode}")
-    return time.perf_counter() - started, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0
+    return {
+        "wall": time.perf_counter() - started,
+        "cpu": usage.ru_utime + usage.ru_stime,
+        "memory": usage.ru_maxrss / 1024.0,
+        "energy": joules(before, counters()),
+    }
 
 
 def _results(archive: Path) -> dict[str, float]:
@@ -153,7 +190,7 @@ def steps(folder: Path) -> str:
     found = []
     environment = os.environ | {"XDG_CACHE_HOME": str(folder / "cache")}
     for _ in range(2):  # cold, then warm
-        wall, _, _ = wall_cpu_memory(command, environment)
+        wall = consumption(command, environment)["wall"]
         with h5py.File(archive) as file:
             seconds = dict(zip(file["run/steps"].asstr()[()], file["run/seconds"][()]))
         found.append({"whole process": wall} | seconds)
@@ -163,19 +200,17 @@ def steps(folder: Path) -> str:
 
 
 def table(figures: list[Figures]) -> str:
-    """The figures as Markdown."""
-    lines = [
-        f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; seconds of "
-        f"the whole process, median of {REPEATS}",
-        "",
-        "| case | states | unknowns | wall (s) | cpu (s) | memory (MB) | K_I | σ_YY | σ_XX | estimate |",
-        "|---|---|---|---|---|---|---|---|---|---|",
-    ]
+    """The figures as Markdown; energy where any case has it."""
+    told = any(not np.isnan(f.energy) for f in figures)
+    titles = ["case", "states", "unknowns", "wall (s)", "cpu (s)", "memory (MB)"]
+    titles += ["energy (J)"] * told + ["K_I", "σ_YY", "σ_XX", "estimate"]
+    lines = [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|"]
     for f in figures:
         errors = (f.K_I, f.sigma_YY, f.sigma_XX, f.estimate)
-        shown = " | ".join("–" if np.isnan(e) else f"{e:.1e}" for e in errors)
-        sizes = f"{f.states} | {f.unknowns or '–'} | {f.wall:.2f} | {f.cpu:.2f} | {f.memory:.0f}"
-        lines.append(f"| {f.name} | {sizes} | {shown} |")
+        row = [f.name, str(f.states), str(f.unknowns or "–"), f"{f.wall:.2f}", f"{f.cpu:.2f}"]
+        row += [f"{f.memory:.0f}"] + [f"{f.energy:.0f}"] * told
+        row += ["–" if np.isnan(e) else f"{e:.1e}" for e in errors]
+        lines.append(f"| {' | '.join(row)} |")
     return "\n".join(lines) + "\n"
 
 
@@ -205,7 +240,7 @@ def draw(figures: list[Figures]) -> bytes:
 def archived(figures: list[Figures]) -> bytes:
     """The figures as an HDF5 file."""
     rows, data = [asdict(f) for f in figures], BytesIO()
-    units = {"wall": "s", "cpu": "s", "memory": "MB"}
+    units = {"wall": "s", "cpu": "s", "memory": "MB", "energy": "J"}
     with h5py.File(data, "w") as file:
         for name in rows[0]:
             file[name] = [row[name] for row in rows]
@@ -219,14 +254,18 @@ def main() -> None:
     folder = Folder(parser.parse_args().folder).path
     names = "table.md", "error_against_time.png", "benchmark.h5"
     targets = [Target(folder / name, overwrite=True) for name in names]  # before the work of hours
-    figures = []
+    figures, others = [], []
+    cases = [(case, figures) for case in CASES] + [(case, others) for case in OTHERS]
     with tempfile.TemporaryDirectory() as work:
-        for i, case in enumerate(CASES):
-            print(f"{i + 1}/{len(CASES)} {case.name}", file=sys.stderr, flush=True)
-            figures.append(run(case, Path(work)))
+        for i, (case, rows) in enumerate(cases):
+            print(f"{i + 1}/{len(cases)} {case.name}", file=sys.stderr, flush=True)
+            rows.append(run(case, Path(work)))
         print("one state, start apart", file=sys.stderr, flush=True)
         figures += without_start()
-        text = table(figures) + "\n" + steps(Path(work))
+        machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+        text = f"{machine}; seconds of the whole process, median of {REPEATS}\n\n{table(figures)}"
+        text += f"\nWhat else slides:\n\n{table(others)}\n{steps(Path(work))}"
+    figures += others
     for target, content in zip(targets, (text.encode(), draw(figures), archived(figures))):
         target.write(content)
     print(text, end="")

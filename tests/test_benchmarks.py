@@ -1,6 +1,7 @@
 """What measures the program is careful with files, as the program is."""
 
 import importlib
+import math
 import os
 import sys
 
@@ -8,16 +9,23 @@ import h5py
 import pytest
 from support import HOME
 
+from galinx import template
+from galinx.app.plan.plan import make_plan
 from galinx.postprocess.errors import Occupied
 
 
 @pytest.fixture
-def bench(tmp_path, monkeypatch):
-    """``./run.sh bench -o FOLDER``, which measures nothing."""
+def measure(monkeypatch):
     monkeypatch.syspath_prepend(HOME / "benchmarks")
-    measure = importlib.import_module("measure")
+    return importlib.import_module("measure")
+
+
+@pytest.fixture
+def bench(measure, tmp_path, monkeypatch):
+    """``./run.sh bench -o FOLDER``, which measures nothing."""
     found = measure.Figures("1 state", 1, 2, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
     monkeypatch.setattr(measure, "CASES", measure.CASES[:1])
+    monkeypatch.setattr(measure, "OTHERS", [])
     monkeypatch.setattr(measure, "run", lambda *_: found)
     monkeypatch.setattr(measure, "without_start", lambda: [])
     monkeypatch.setattr(measure, "steps", lambda _: "steps\n")
@@ -45,3 +53,30 @@ def test_what_cannot_be_replaced_is_found_before_the_work(bench, tmp_path, monke
     monkeypatch.setattr(sys.modules["measure"], "run", None)
     with pytest.raises(Occupied, match="is a FIFO"):
         bench()
+
+
+@pytest.fixture
+def energy(monkeypatch):
+    monkeypatch.syspath_prepend(HOME / "benchmarks")
+    return importlib.import_module("energy")
+
+
+def test_energy_is_that_of_all_packages(energy, tmp_path):
+    for package, start in (("intel-rapl:0", 100), ("intel-rapl:1", 9_000_000), ("intel-rapl:0:0", 7)):
+        (tmp_path / package).mkdir()
+        (tmp_path / package / "energy_uj").write_text(f"{start}\n")
+        (tmp_path / package / "max_energy_range_uj").write_text("10000000\n")
+    before = energy.counters(tmp_path)
+    (tmp_path / "intel-rapl:0" / "energy_uj").write_text("2000100\n")
+    (tmp_path / "intel-rapl:1" / "energy_uj").write_text("500000\n")  # went round
+    assert energy.joules(before, energy.counters(tmp_path)) == pytest.approx(2.0 + 1.5, rel=1e-15)
+
+
+def test_where_the_machine_tells_no_energy_none_is_told(energy, tmp_path):
+    assert energy.counters(tmp_path) == {}
+    assert math.isnan(energy.joules({}, {}))
+
+
+def test_each_case_can_be_computed(measure):
+    for case in measure.CASES + measure.OTHERS:
+        make_plan(template(case.scene, case.changes))

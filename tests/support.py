@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 HOME = Path(__file__).parent.parent
+#: As many kills, random scenes and fine tolerances as before a release?
+THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 #: The scene of the study's Tables 4 and 5.
 SCENE = HOME / "scenes" / "tables4_5.toml"
 #: With these a run compiles the forms of three degrees only.

@@ -72,15 +72,15 @@ RULES.register(
     ALONG,
     Rule(
         "σ_XX and σ_YY along the surface over time against the integral equation, over the largest "
-        "0.01 a from the edges",
+        "further than 0.01 a from the edges",
         tuple(row[method] for row in TOLD for method in (FEM, SIE)), _both, tolerances=1.0,
     ),
 )  # fmt: skip
 RULES.register(
     OF_FEM,
     Rule(
-        "estimated error of σ_XX and σ_YY along the surface over time, over the largest 0.01 a from the "
-        "edges", (rows.ESTIMATE,), _estimate, tolerances=1.0,
+        "estimated error of σ_XX and σ_YY along the surface over time, over the largest further than "
+        "0.01 a from the edges", (rows.ESTIMATE,), _estimate, tolerances=1.0,
     ),
 )  # fmt: skip
 RULES.register(

@@ -236,8 +236,8 @@ def sliders_sheet(data: dict[str, Any]) -> Sheet:
 
 
 def starts_sheet(data: dict[str, Any]) -> Sheet:
-    """Where the first starts from rest have come to at the end, by the better method that there is."""
-    title = "Starts from rest, at the end"
+    """Where the first starts have come to at the end, by the better method that there is."""
+    title = "In time, at the end"
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
         return Sheet(title, [], [], [])

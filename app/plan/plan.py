@@ -144,6 +144,8 @@ def _skipped(
 ) -> list[str]:
     """What is not done, and why."""
     if not _contact(scene):
+        if scene.time:
+            return ["contact mechanics of steady motion: only friction and time are asked for"]
         return ["contact mechanics: only friction is asked for"]
     skipped = [
         f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"

@@ -19,9 +19,9 @@ from galinx.app.study.published import (
 from galinx.postprocess.figures.canvas import in_a_page
 from galinx.postprocess.page import render
 from galinx.postprocess.quantities import runs
-from galinx.postprocess.tables import Sheet
+from galinx.postprocess.tables import Sheet, starts_sheet
 
-#: What words of a report mean.
+#: What words of a report mean; those that it does not use are left out.
 TERMS = (
     ("a, N", "half-width of the punch, and load per unit of depth"),
     ("c", "speed over the shear wave speed of the solid, dimensionless"),
@@ -76,30 +76,31 @@ class Report:
         attributes, data, scene = self._attributes, self._data, self._scene
         seconds = data[runs.SECONDS.path]
         longest = max(float(seconds.max()), 1e-9)
-        return render(
-            {
-                "title": attributes["title"] or "A sliding punch",
-                "verdict": attributes["verdict"],
-                "summary": summary(data, scene),
-                "warnings": json.loads(attributes["warnings"]),
-                "answers": answers(data, scene),
-                "reasons": json.loads(attributes["verdict_reasons"]),
-                "sheets": self._sheets,
-                "states": states_table(data, self._scaling),
-                "curves": curves(data, self._scaling),
-                "pictures": self._pictures,
-                "times": [
-                    (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
-                    for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
-                ],
-                "done": list(Counter(data[runs.DONE.path].tolist()).items()),
-                "skipped": data[runs.SKIPPED.path].tolist(),
-                "versions": _versions(attributes),
-                "terms": TERMS,
-                "scene": data[runs.SCENE.path],
-                "program": program(),
-            }
-        )
+        content = {
+            "title": attributes["title"] or "A sliding punch",
+            "verdict": attributes["verdict"],
+            "summary": summary(data, scene),
+            "warnings": json.loads(attributes["warnings"]),
+            "answers": answers(data, scene),
+            "reasons": json.loads(attributes["verdict_reasons"]),
+            "starts": [sheet for sheet in (starts_sheet(data),) if sheet.rows],
+            "sheets": self._sheets,
+            "states": states_table(data, self._scaling),
+            "curves": curves(data, self._scaling),
+            "pictures": self._pictures,
+            "times": [
+                (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
+                for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
+            ],
+            "done": list(Counter(data[runs.DONE.path].tolist()).items()),
+            "skipped": data[runs.SKIPPED.path].tolist(),
+            "versions": _versions(attributes),
+            "scene": data[runs.SCENE.path],
+            "program": program(),
+        }
+        words = str(content | {"pictures": [picture["caption"] for picture in self._pictures]})
+        terms = [(term, told) for term, told in TERMS if any(word in words for word in term.split(", "))]
+        return render(content | {"terms": terms})
 
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:

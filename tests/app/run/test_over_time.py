@@ -61,7 +61,7 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert command("plot", tmp_path / "s.h5", *words).returncode == 0
     assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = command("show", tmp_path / "s.h5").stdout
-    assert "Starts from rest" in shown
+    assert "In time, at the end" in shown
 
 
 def surface_and_energies_are_told(data):

@@ -33,17 +33,24 @@ from galinx.app.scene.sections import SECTIONS
 from galinx.app.scene.templates import templates
 from galinx.postprocess.quantities import table
 
+README = HOME / "README.md"
+
 
 @pytest.fixture(scope="module")
-def outputs(request, tmp_path_factory):
+def folder(tmp_path_factory):
+    """Of the pages' folders."""
+    return tmp_path_factory.mktemp("pages")
+
+
+@pytest.fixture(scope="module")
+def outputs(request, tmp_path_factory, folder):
     """What the examples print, by page; the pages that are tested run side by side."""
-    folder = tmp_path_factory.mktemp("pages")
     shelf = Shelf(tmp_path_factory.mktemp("shelf"))
-    pages = [
-        item.callspec.params["page"]
+    pages = {
+        item.callspec.params["page"]: None
         for item in request.session.items
         if "outputs" in getattr(item, "fixturenames", ()) and item.path == Path(__file__)
-    ]
+    }
     with ThreadPoolExecutor(min(4, os.cpu_count() or 1)) as pool:
         yield {page: pool.submit(run_page, page, shelf, folder_for(page, folder)) for page in pages}
         pool.shutdown(cancel_futures=True)
@@ -59,6 +66,16 @@ def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
         if (found := fault(piece, told))
     ]
     assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page", [README], ids=name_of)
+def test_the_first_command_reproduces_the_study(page, outputs, folder):
+    assert outputs[page].result().count(" ≤ 0.01 ") == 8
+    names = [*(f"fig{n}" for n in (2, 5, 6, 7, 8, 9, 10)), "inside", "mesh"]
+    figures = {f"{name}.{kind}" for name in names for kind in ("pdf", "png")}
+    assert figures | {"study.h5", "inside.h5", "tables.txt", "report.html"} == {
+        path.name for path in (folder / page.name / "results").iterdir()
+    }
 
 
 def test_only_long_words_are_left_out():

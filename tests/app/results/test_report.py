@@ -66,7 +66,8 @@ def test_a_report_tells_of_a_scene_without_finite_elements(tmp_path):
     assert "not judged" in text and "contact mechanics: only friction is asked for" in text
     # Of the terms those that the page has words for.
     told = text.partition('id="terms"')[2]
-    assert "positive in forward motion" in told and "yields" not in told and "edge of the punch" not in told
+    assert "positive in forward motion" in told
+    assert "yields" not in told and "edge of the punch" not in told
 
 
 def test_text_of_a_scene_cannot_break_the_page(tmp_path):

@@ -1,4 +1,4 @@
-"""The whole study in one command on two ranks; on one, tests/docs/test_pages.py runs it as the README does."""
+"""The whole study on two ranks; on one, tests/docs/test_pages.py runs it as the README does."""
 
 import pytest
 from support import THOROUGH, command

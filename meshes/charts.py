@@ -17,6 +17,7 @@ class Physical:
 
     name: str = "physical"
     contracts: bool = False
+    similar: bool = True
 
     def rotation(self, x: NDArray) -> tuple[Any, Any]:
         return 1.0, 0.0
@@ -56,6 +57,7 @@ class Confocal:
 
     name: str = "confocal"
     contracts: bool = True
+    similar: bool = False
 
     def rotation(self, x: NDArray) -> tuple[Any, Any]:
         A = np.tanh(x[0]) * np.cos(x[1])

@@ -18,6 +18,10 @@ class Chart(Protocol):
     def contracts(self) -> bool:
         """Is a mesh drawn for what the solid makes of the plane, see :class:`Contracted`?"""
 
+    @property
+    def similar(self) -> bool:
+        """Have cells that are alike in the chart, moved and scaled, the same matrix?"""
+
     def rotation(self, x: NDArray) -> tuple[Any, Any]:
         """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n)."""
 

@@ -1,0 +1,42 @@
+"""Which cells of a mesh are another one, moved and scaled: in a plane they have the same matrix.
+
+The energy of a displacement does not change where lengths are scaled, nor does that of pressures over a
+cell's size. Rings around an edge, each a share of the one outside it, and cells of one size cut from a
+larger one need one matrix each kind, not one each cell.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Digits of a shape by which cells that may be alike are found; whether they are is looked at then.
+_DIGITS = 3
+
+#: How many roundings the vertices of cells that are alike may be apart.
+_ROUNDINGS = 64.0
+
+
+def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cells that stand for others, and which of these each cell is like.
+
+    Args:
+        corners: vertices, (n, 4, 2 or 3).
+        kinds: whole numbers that differ where cells have to be told apart whatever their shape, (n,).
+
+    Returns:
+        Arrays (m,) and (n,): numbers of the largest cell of each kind, and a place among these for each
+        cell.
+    """
+    n = len(corners)
+    relative = (corners - corners[:, :1]).reshape(n, -1)
+    size = np.abs(relative).max(axis=1)
+    shape = relative / size[:, None]
+    key = np.column_stack([kinds, np.round(shape * 10**_DIGITS)])
+    _, group = np.unique(key, axis=0, return_inverse=True)
+    by_group = np.lexsort([-size, group])
+    largest = by_group[np.flatnonzero(np.diff(group[by_group], prepend=-1))]
+    model = largest[group]
+    # Vertices of a small cell far from the origin have few digits of its shape.
+    rounding = np.finfo(float).eps * np.abs(corners).reshape(n, -1).max(axis=1) / size
+    alone = np.abs(shape - shape[model]).max(axis=1) > _ROUNDINGS * rounding
+    model[alone] = np.flatnonzero(alone)
+    return np.unique(model, return_inverse=True)

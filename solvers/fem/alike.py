@@ -5,8 +5,13 @@ cell's size. Rings around an edge, each a share of the one outside it, and cells
 larger one need one matrix each kind, not one each cell.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
+
+from galinx.solvers.fem.chart import Chart
+from galinx.solvers.solids.solid import ByCells, Response
 
 #: Digits of a shape by which cells that may be alike are found; whether they are is looked at then.
 _DIGITS = 3
@@ -40,3 +45,26 @@ def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[
     alone = np.abs(shape - shape[model]).max(axis=1) > _ROUNDINGS * rounding
     model[alone] = np.flatnonzero(alone)
     return np.unique(model, return_inverse=True)
+
+
+def standing_for(
+    corners: NDArray, chart: Chart, response: Response, constants: Sequence[str]
+) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
+    """Cells whose matrices are those of all, and the cells that have the matrix of each.
+
+    Args:
+        corners: vertices in the chart, (n, 4, 3).
+        chart: of the mesh.
+        response: of the half-plane.
+        constants: that the weak form has.
+    """
+    each = np.arange(len(corners))
+    if not chart.similar or not len(each):
+        return each, list(each[:, None])
+    kinds = np.zeros_like(each)
+    if isinstance(response, ByCells):
+        solid = response.solids(corners[..., 1].mean(axis=1))
+        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
+        kinds = np.where(graded[solid], len(graded) + each, solid)
+    models, like = alike(corners, kinds)
+    return models, np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])

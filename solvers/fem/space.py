@@ -14,7 +14,7 @@ from petsc4py import PETSc
 from galinx.clock import Clock
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import adapter
-from galinx.solvers.fem.alike import alike
+from galinx.solvers.fem.alike import standing_for
 from galinx.solvers.fem.chart import Chart, Contracted
 from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CellMatrices
@@ -144,8 +144,7 @@ class Space:
         numbers = self.outer_numbers
         with self.clock("assembly"):
             A = empty_matrix(numbers, *self._range, self.comm)
-            models, like = self._alike(response)
-            members = np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])
+            models, members = standing_for(self.vertices, self.chart, response, self.form.constants)
             for some in self.pieces(len(models)):
                 for S, cells in zip(self.condensed(response, models[some]), members[some]):
                     for rows in numbers[cells]:
@@ -262,17 +261,6 @@ class Space:
     def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
         return self._kept[0][cells] if self._kept else self._cells(self.kernel.condense, response, cells)
-
-    def _alike(self, response: Response) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """This rank's cells that stand for others, and which of these each is like, see :func:`alike`."""
-        each = np.arange(len(self.vertices))
-        if not self.chart.similar or not len(each):
-            return each, each
-        if not isinstance(response, ByCells):
-            return alike(self.vertices, np.zeros_like(each))
-        solid = response.solids(self.vertices[..., 1].mean(axis=1))
-        graded = [len(rows) > 1 for rows in response.constants(self.form.constants)]
-        return alike(self.vertices, np.where(np.array(graded)[solid], len(graded) + each, solid))
 
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]

@@ -9,7 +9,7 @@ from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem import space as spaces
-from galinx.solvers.fem.alike import alike
+from galinx.solvers.fem.alike import alike, standing_for
 from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.space import Space
 from galinx.solvers.layers.in_cells import LayersInCells
@@ -58,10 +58,12 @@ def test_the_matrix_is_that_of_each_cell_by_itself(solid, fewer, monkeypatch):
     response = LayersInCells(solid, 0.2)
     mesh = on_layers((1.0,)).drawn(Wanted(1e-6, nearest=1e-2))
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), 5, solid.form)
-    models, like = space._alike(response)
-    assert len(like) == space.cells > fewer * len(models)
+    models, members = standing_for(space.vertices, space.chart, response, space.form.constants)
+    assert sorted(np.concatenate(members)) == list(range(space.cells))
+    assert space.cells > fewer * len(models)
     A = space.assemble(response)
-    monkeypatch.setattr(spaces, "alike", lambda corners, _: (np.arange(len(corners)),) * 2)
+    each = np.arange(space.cells)
+    monkeypatch.setattr(spaces, "standing_for", lambda *_: (each, each[:, None]))
     B = space.assemble(response)
     size = B.norm()
     B.axpy(-1.0, A)

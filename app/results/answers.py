@@ -46,6 +46,7 @@ def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
         *_of_states(data),
         *_of_contact(data, scene),
         *_of_surface(data, scene),
+        *_of_interfaces(data, scene),
         *_of_limits(data, scene),
     ]
 
@@ -98,6 +99,30 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
                     f"Largest in-plane {name} σ_XX on the surface, {beyond}",
                     _engineering(abs(float(σ[state, point])), "Pa"),
                     f"state {state}, X/a = {places[point]:.4g}",
+                )
+
+
+def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    """What may part a layer from what it lies on: shear, and tension across and along."""
+    method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
+    if method is None:
+        return
+    stress, X = stress_of_states(data, scene), data[layers.ALONG_X.path]
+    YY, XY, above, below = (stress[..., None] * data[row.path] for row in layers.INTERFACES[method])
+    depths = np.cumsum([layer.thickness for layer in scene.layers])
+    for i, depth in enumerate(depths.tolist()):
+        parts = {
+            "shear |σ_XY| at": np.abs(XY), "tension σ_YY at": YY,
+            "in-plane tension σ_XX just above": above, "in-plane tension σ_XX just below": below,
+        }  # fmt: skip
+        where = f"the interface {_engineering(depth, 'm')} deep"
+        for name, σ in parts.items():
+            state, point = np.unravel_index(int(σ[:, i].argmax()), σ[:, i].shape)
+            if (largest := float(σ[state, i, point])) > 0.0:
+                yield Answer(
+                    f"Largest {name} {where}",
+                    _engineering(largest, "Pa"),
+                    f"state {state}, X/a = {X[point]:.4g}",
                 )
 
 

@@ -10,6 +10,7 @@ from scipy.integrate import trapezoid
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
+from galinx.app.results.answers import answers
 from galinx.app.scene.read import parse
 from galinx.app.scene.schema import schema
 from galinx.solvers.errors import SolveError
@@ -69,6 +70,17 @@ def test_the_example_from_scene_to_archive(tmp_path):
     assert again.scene.layers == result.scene.layers
     told = json.loads(again.attributes["solid"])
     assert told["layer 1"].startswith("0.001 m of E = 7.5e+09 Pa")
+
+
+def test_results_begin_with_what_may_part_a_layer_from_what_it_lies_on():
+    half = COAT.replace("1 mm", "0.5 mm")
+    result = galinx.compute(scene(layers=half + COAT, quantities=("interfaces",), tolerance=1e-4))
+    found = {answer.name: answer.value for answer in answers(result.data, result.scene)}
+    ends = [result.data[f"interfaces/sie/sigma_XY_{end}"][0] for end in ("max", "min")]
+    shear = np.abs(ends).max(axis=0) * result.scene.punch.load / 2e-3
+    for depth, expected in zip(("500.0 µm", "1.500 mm"), shear):
+        told, unit = found[f"Largest shear |σ_XY| at the interface {depth} deep"].split()
+        assert float(told) * {"kPa": 1e3, "MPa": 1e6}[unit] == pytest.approx(expected, rel=1e-3)
 
 
 def test_layers_of_the_substrates_solid_give_the_closed_form():

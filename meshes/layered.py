@@ -233,5 +233,5 @@ def on_layers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, roots=roots, changes=changes, places=places,
+        far_length=far_length, roots=roots, changes=changes, places=places, followed=1,
     )  # fmt: skip

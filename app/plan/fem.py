@@ -33,9 +33,6 @@ _NEAR_FREE_END = 1e-2
 #: which every state of another has a mesh of its own.
 LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 
-#: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
-#: without it grows towards these.
-_FARTHER = 1e3
 #: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
 FOLLOWED = "meshes that follow the contact"
 #: And that in which a pressure is put in over layers.
@@ -166,8 +163,6 @@ def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
         wanted = replace(wanted, bends=_mode(scene) == FOUND)
-    if _mode(scene) == OWN_MESHES:
-        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     return wanted

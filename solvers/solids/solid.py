@@ -66,6 +66,14 @@ class Response(Protocol):
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
 
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
+
+        Args:
+            X, Y: positions over a, (n,).
+            terms: how many moments at most, the resultants first.
+        """
+
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), below a pressure.
 
@@ -111,9 +119,6 @@ class ByCells(Protocol):
         Returns:
             Array (3, ..., n).
         """
-
-    def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Displacements far away under line loads, (2, 2, n): of ∫σ_YY = -2, and of ∫σ_XY = -2."""
 
 
 class Solid(Protocol):

@@ -167,7 +167,10 @@ class MeasuredError:
         nearer /= 1.0 if kind.chart.contracts else response.contraction.imag
         far = nearer * kind.truncation(wanted, margin)
         lean = response.n12 / response.n
-        of_edges = compliance * (np.abs(g) + 0.5 * abs(lean)) / np.abs(1.0 + g * lean) + 1.8 * far
+        # Without friction nothing leans to a side: what is left of it is squared. Of higher moments half are
+        # even.
+        leaning = 1.0 if kind.terms > 1 else np.abs(g) + 0.5 * abs(lean)
+        of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
         found = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:

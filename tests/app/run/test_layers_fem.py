@@ -16,7 +16,7 @@ from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.postprocess import scale
-from galinx.solvers.layers.far import line_load
+from galinx.solvers.solids.line_loads import line_loads
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.medium import Medium

@@ -130,7 +130,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
-    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread))
+    planes = [response.contraction for response in responses]
+    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread, planes))
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -176,14 +177,16 @@ def _mode(scene: Scene) -> str:
     return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
 
 
-def wanted_for(tolerance: float, places: Places, exponent: float, spread: float) -> Wanted:
-    """What a mesh has to be good for where stresses are asked for at some places."""
+def wanted_for(
+    tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
+) -> Wanted:
+    """What a mesh has to be good for where stresses are asked for at some places; drawn in which planes."""
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
         return Wanted(tolerance, exponent=exponent, spread=spread)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
-    farthest = float(np.hypot(X, Y).max())
+    farthest = max(float(np.abs(X + p * Y).max()) for p in {1j, *planes})
     around, inside = bool(len(places.around)), bool(len(places.points))
     return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread)
 

@@ -42,9 +42,14 @@ _LOOSE = 2e-4
 _SPARING = 3
 
 #: Distance of a far boundary over a that follows the forces at the contact, in the plane where the nearer
-#: fields live; over that of the farthest place where stresses are wanted; and what it costs in K_I over
-#: its inverse to the power of one more than the moments that it follows, times the margin: measured.
-_FAR, _BEYOND, _LEFT_OUT = 17.0, 1.7, 0.02
+#: fields live; over that of the farthest place where stresses are wanted; what it costs in K_I over
+#: its inverse to the power of one more than the moments that it follows, times the margin: measured; and
+#: the share of the tolerance that is left to it at rest.
+_FAR, _BEYOND, _LEFT_OUT, _OF_FAR = 17.0, 1.7, 0.02, 1e-4
+
+#: What confocal cells leave in stresses at the nearest place, over their size squared over its distance,
+#: both in ξ and η, and over the degree's third power; measured.
+_LEFT_BESIDE = 0.05
 
 #: How far sectors crowd where they are more: planes apart turn fields along the axes, where legs end.
 _CROWDING = 0.3
@@ -111,7 +116,6 @@ class MeshKind:
             positions leaves enough digits.
         sectors: cells along each leg of an L.
         walls: distance over a of a far boundary that is held; None where it follows the contact.
-        followed: moments of the forces at the contact that it follows otherwise.
     """
 
     about: str
@@ -130,12 +134,6 @@ class MeshKind:
     smallest: float = 1e-6
     sectors: int = 2
     walls: float | None = None
-    followed: int = 8
-
-    @property
-    def terms(self) -> int:
-        """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
-        return 0 if self.walls else self.followed
 
     def build(self, refinement: Refinement, cuts: int = 1, part: int = 0, parts: int = 1) -> QuadMesh:
         """The mesh, or a piece of it.
@@ -258,24 +256,40 @@ class MeshKind:
         degree -= spared or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
+    def terms(self, wanted: Wanted) -> int:
+        """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
+        if self.walls:
+            return 0
+        digits = log(_LEFT_OUT / (_OF_FAR * wanted.tolerance)) / log(self._radius(wanted))
+        return max(ceil(digits) - 1, 1)
+
     def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
         return exp(self._outer_ξ(wanted)) / 2.0
 
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Estimated relative error of K_I from the finite outer radius R; times σ_XY/σ_YY where it is held.
+        """Estimated relative error of K_I from the finite outer radius R; over σ_XY/σ_YY where it is held.
 
-        Held it costs a/R at rest, which was seen to grow as the cubic root of the response's margin falls.
+        Held it costs a/R at rest, seen to grow as the cubic root of the response's margin falls.
         """
         if self.walls:
             return 1.0 / (self.walls * margin ** (1.0 / 3.0))
-        return _LEFT_OUT / (self._radius(wanted) ** (self.followed + 1) * margin)
+        return _LEFT_OUT / (self._radius(wanted) ** (self.terms(wanted) + 1) * margin)
 
-    def unseen_beside(self, wanted: Wanted) -> float:
-        """Estimated relative error of the stresses nearest to an edge that these cells leave there."""
-        if not self.fan or wanted.nearest is None:
+    def unseen_beside(self, wanted: Wanted, degree: int, cuts: int) -> float:
+        """Estimated relative error of the stresses nearest to an edge that these cells leave there.
+
+        Straight cells leave it at any degree; of others it was seen to fall with the third power only.
+
+        Args:
+            wanted: what the mesh is for.
+            degree, cuts: of the cells.
+        """
+        if wanted.nearest is None:
             return 0.0
-        return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / wanted.nearest
+        if self.fan:
+            return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / wanted.nearest
+        return _LEFT_BESIDE * self._innermost(wanted) ** 2 / (2.0 * wanted.nearest * cuts**2 * degree**3)
 
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         """Estimated relative error of K_I that the innermost cells leave, and that no level sees.

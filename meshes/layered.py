@@ -97,6 +97,10 @@ class OnLayers(MeshKind):
         R = self.radius(wanted)
         return _MOMENT / R**2 + self._cubed * (self.far_length / R) ** 3
 
+    def terms(self, wanted: Wanted) -> int:
+        """Of the resultants alone it is known what layers do to their fields."""
+        return 1
+
     @property
     def _cubed(self) -> float:
         return _CUBED * min(1.0, _LONG / self.far_length)
@@ -233,5 +237,5 @@ def on_layers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, roots=roots, changes=changes, places=places, followed=1,
+        far_length=far_length, roots=roots, changes=changes, places=places,
     )  # fmt: skip

@@ -92,6 +92,11 @@ class FemPlan:
         return self.wanted.tolerance
 
     @property
+    def terms(self) -> int:
+        """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
+        return self.kind.terms(self.wanted)
+
+    @property
     def pattern(self) -> QuadMesh:
         """The mesh before it is cut."""
         return self.drawn or self.kind.build(self.refinement)
@@ -180,7 +185,7 @@ def _mode(scene: Scene) -> str:
 def wanted_for(
     tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
 ) -> Wanted:
-    """What a mesh has to be good for where stresses are asked for at some places; drawn in which planes."""
+    """What a mesh, drawn in some planes, has to be good for where stresses are asked for at some places."""
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):

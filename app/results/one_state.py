@@ -138,9 +138,7 @@ def reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
     return replace(fem, wanted=wanted, refinement=fem.kind.refinement(wanted))
 
 
-def displacement(
-    scene: Scene, number: int, degree: int | None = None, extent: float = 0.0
-) -> Any:
+def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
     """The displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
 
     Arguments are those of :func:`chosen`.

@@ -1,13 +1,13 @@
-"""What the far boundary does: it moves as in an infinite solid under whatever forces there are at the contact.
+"""What the far boundary does: it moves as in an infinite solid under the forces that are at the contact.
 
-Far away a displacement is known by moments of these, Mₙ = ∫ (X/a)ⁿ σ d(X/a): of each of the first ones there is
-a field, of a far boundary that moves as under it. What forces f cause is then that with the far boundary
-held, f₀, and the sum of these fields with the moments that both together have,
+Far away a displacement is known by moments of these, Mₙ = ∫ (X/a)ⁿ σ d(X/a): for each of the first ones
+there is a field, of a far boundary that moves as under it. What forces f₀ cause while the boundary is held
+becomes what they cause in the solid by the sum of these fields with the moments that both together have,
 
     M = M(f₀) + B M,   B of the moments that the fields' own forces at the contact have.
 
-What is left at the distance R is of the size R⁻²ⁿ after n moments: each falls like R⁻ⁿ out to there, and so
-does what comes back.
+After n moments the error goes as R⁻ⁿ⁻¹, R the distance over a: the first one that is left out has fallen
+like R⁻ⁿ there, and what holds it reaches the contact as a strain, with R⁻¹.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from petsc4py import PETSc
 
 from galinx.solvers.fem.held import forces_of_far
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import Far, Response
 
 #: Displacement at the far boundary over that of line loads, below which a moment is not followed: its
 #: square is what would be seen at the contact.
@@ -43,6 +43,7 @@ class FarBoundary:
         self.fields: list[PETSc.Vec] = []
         self.loads: list[PETSc.Vec] = []
         if space.terms:
+            assert isinstance(response, Far)
             X, Y = space.contracted(response).to_physical(space.coordinates[space.far_nodes]).T
             moved = response.far(X, Y, space.terms)
             size = np.abs(moved).max(axis=(1, 2, 3), initial=0.0)
@@ -50,10 +51,9 @@ class FarBoundary:
             followed = moved[size > _NEGLIGIBLE * size[0]].reshape(-1, *moved.shape[2:])
             self.loads = [forces_of_far(A, space, one) for one in followed]
 
-    def moments(self, X: NDArray[np.float64], forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Moments that are followed of forces (2, n) in X and Y at positions X over a, of σ_YY and σ_XY in turn."""
-        powers = X ** np.arange(len(self.loads) // 2)[:, None]
-        return np.asarray((powers @ forces[::-1].T).ravel())
+    def tests(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Powers of positions X over a that forces are tested with, (moments, n)."""
+        return np.vander(X, len(self.loads) // 2, increasing=True).T
 
     def found(self, fields: Sequence[PETSc.Vec]) -> None:
         """Take the fields, and free the loads."""
@@ -63,19 +63,23 @@ class FarBoundary:
 
     def take(self, X: NDArray[np.float64], forces: Sequence[NDArray[np.float64]]) -> None:
         """Learn the forces (2, n) of each field at contact nodes at X over a."""
-        self._X, self._forces = X, np.array(forces)
-        own = np.array([self.moments(X, one) for one in forces]).T
+        self._tests, self._forces = self.tests(X), np.array(forces)
+        own = np.array([self._moments(one) for one in forces]).T
         self._all = np.linalg.inv(np.eye(len(own)) - own)
 
+    def _moments(self, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Those that are followed of forces (2, n), of σ_YY and σ_XY in turn."""
+        return np.asarray((self._tests @ forces[::-1].T).ravel())
+
     def follow(self, field: PETSc.Vec, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Let a field, in place, have a far boundary that moves, not one that is held; returns its forces.
+        """Let the far boundary of a field, in place, move, not be held; returns the field's forces.
 
         Args:
             field, forces: displacement, and forces (2, n) at the contact nodes.
         """
         if not self.fields:
             return forces
-        amplitudes = self._all @ self.moments(self._X, forces)
+        amplitudes = self._all @ self._moments(forces)
         field.maxpy(amplitudes.tolist(), self.fields)
         return np.asarray(forces + np.tensordot(amplitudes, self._forces, 1))
 

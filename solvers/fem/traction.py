@@ -25,7 +25,7 @@ _POINTS = 48
 
 
 class LoadedHalfPlane:
-    """Half-plane without punch at one speed: one factor for many loads, each of which the far boundary follows.
+    """Half-plane without punch at one speed: one factor for many loads, which the far boundary follows.
 
     Args:
         space: the finite element space.
@@ -61,8 +61,7 @@ class LoadedHalfPlane:
         node = self.space.numbers[self._facets.nodes.ravel()]
         comm, X = self.space.comm, self.space.chart.surface_position(self._facets.s)
         resultant = comm.allreduce(float(load.sum()))
-        forces = np.stack([np.zeros(load.size), load.ravel()])
-        moments = comm.allreduce(self._far.moments(X.ravel(), forces))[::2]
+        moments = comm.allreduce(self._far.tests(X.ravel()) @ load.ravel())
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(

@@ -38,7 +38,7 @@ class FarField:
     through: Callable[[float], NDArray[np.float64]]
 
     def __call__(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Under ∫σ_YY = 1 and ∫σ_XY = 1, relative to the surface where layers are no longer seen: (2, 2, n)."""
+        """Under ∫σ_YY = 1 and ∫σ_XY = 1, relative to where layers are no longer seen: (2, 2, n)."""
         below, datum = np.minimum(Y + self.D, 0.0), DATUM * max(1.0, self.length)
         (found,) = line_loads(self.substrate.response, X, below, datum=datum) / self.substrate.modulus
         z = X[:, None, None] * np.eye(2) + below[:, None, None] * self.substrate.G.conj()

@@ -4,7 +4,7 @@ Tractions t(s) at |s| <= a move a point z = X + Y G, a matrix with the eigenvalu
 
     u = Im[log(z) 𝐘 M₀ - Σ z⁻ⁿ 𝐘 Mₙ/n]/π,   Mₙ = ∫ sⁿ t ds,   𝐘 = L⁻¹,
 
-where all |X + pY| > a. Functions of matrices by those of their eigenvalues: nothing happens where these meet.
+where all |X + pY| > a. Functions of matrices by those of eigenvalues: nothing happens where these meet.
 """
 
 from typing import Any

@@ -66,14 +66,6 @@ class Response(Protocol):
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
 
-    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
-        """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
-
-        Args:
-            X, Y: positions over a, (n,).
-            terms: how many moments at most, the resultants first.
-        """
-
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), below a pressure.
 
@@ -81,6 +73,19 @@ class Response(Protocol):
             Φ: its potential.
             g: σ_XY/σ_YY on the surface.
             X, Y: positions, Y < 0.
+        """
+
+
+@runtime_checkable
+class Far(Protocol):
+    """A response that is known far from the contact."""
+
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
+
+        Args:
+            X, Y: positions over a, (n,).
+            terms: how many moments at most, the resultants first.
         """
 
 

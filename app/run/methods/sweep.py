@@ -271,9 +271,7 @@ class _Training:
                 off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(told, true))
                 if off <= _BETWEEN:
                     break
-        return Fit(
-            self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery
-        )
+        return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
         """Solve a speed that the fit tells."""

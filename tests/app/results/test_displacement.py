@@ -14,7 +14,7 @@ ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0}
     "mesh, c, tolerance", [("confocal", 0.0, 1e-8), ("confocal", 0.6, 1e-8), ("graded", 0.6, 1e-4)]
 )
 def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
-    """Without friction: of strain less motion, N v₀/2 and that of what is beyond. Forms are in the physical plane."""
+    """Without friction: of strain less motion, N v₀/2 and that of what is beyond; in the physical plane."""
     import ufl
     from dolfinx import fem
     from dolfinx.mesh import locate_entities_boundary, meshtags
@@ -48,7 +48,7 @@ def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
 @pytest.mark.parametrize("mesh, tolerance", [("confocal", 1e-4), ("confocal", 1e-7), ("graded", 1e-4)])
 @pytest.mark.parametrize("c", [0.0, 0.8])
 def test_indentation_is_alike_at_all_tolerances(mesh, tolerance, c):
-    """From far away a flat punch without friction looks like a line load at 2X: v = (2n/π) log 2X - v₀."""
+    """Without friction v = (2n/π) arcosh X - v₀ beside a flat punch, far away (2n/π) log 2X - v₀."""
     changes = {"motion.c": c, "solve.mesh": mesh, "solve.tolerance": tolerance}
     result = computed("tables4_5", ALONE | changes)
     solid, N = result.scene.solid, result.scene.punch.load

@@ -33,7 +33,9 @@ def error(R, terms):
     return np.abs(pressure.K_I / local.K_I[:, None] - 1.0).max()
 
 
-@pytest.mark.parametrize("terms, R", [(0, (30.0, 90.0)), (1, (30.0, 90.0)), (2, (10.0, 30.0)), (3, (8.0, 24.0))])
+@pytest.mark.parametrize(
+    "terms, R", [(0, (30.0, 90.0)), (1, (30.0, 90.0)), (2, (10.0, 30.0)), (3, (8.0, 24.0))]
+)
 def test_the_error_falls_with_one_power_more_than_moments_are_followed(terms, R):
     near, far = (error(one, terms) for one in R)
     rate = np.log(near / far) / np.log(R[1] / R[0])

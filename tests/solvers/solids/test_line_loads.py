@@ -54,9 +54,7 @@ def test_moments_are_those_of_line_loads_side_by_side(response):
     p = response.contraction  # a circle of the plane midway
     Y = 8.0 * np.sin(angle) / p.imag
     X = 8.0 * np.cos(angle) - p.real * Y
-    wanted = sum(
-        np.tensordot(t[:, i], line_loads(response, X - s[i], Y)[0], 1) for i in range(len(s))
-    )
+    wanted = sum(np.tensordot(t[:, i], line_loads(response, X - s[i], Y)[0], 1) for i in range(len(s)))
     found = line_loads(response, X, Y, terms=9)
     moments = np.array([[np.sum(one * s**n) for one in t] for n in range(9)])
     left = np.abs(np.einsum("ij,ijkn->kn", moments, found) - wanted).max()

@@ -268,7 +268,7 @@ class MeshKind:
         return exp(self._outer_ξ(wanted)) / 2.0
 
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Estimated relative error of K_I from the finite outer radius R; over σ_XY/σ_YY where it is held.
+        """Estimated relative error of K_I from the outer radius R; over σ_XY/σ_YY where it is held.
 
         Held it costs a/R at rest, seen to grow as the cubic root of the response's margin falls.
         """

@@ -239,7 +239,7 @@ def check_places(scene: Scene, places: Places) -> None:
 
 
 def inner(scene: Scene) -> float:
-    """Distance over a up to which finite elements tell fields inside: well inside walls, if there are any."""
+    """Distance over a up to which finite elements tell fields inside: well inside walls, if there are."""
     walls = MESHES[scene.solve.mesh].walls
     return _INNER * walls if walls else _OUTERMOST
 

@@ -1,8 +1,8 @@
 """What the far boundary does: it moves as in an infinite solid under the forces that are at the contact.
 
 Far away a displacement is known by moments of these, Mₙ = ∫ (X/a)ⁿ σ d(X/a): for each of the first ones
-there is a field, of a far boundary that moves as under it. What forces f₀ cause while the boundary is held
-becomes what they cause in the solid by the sum of these fields with the moments that both together have,
+there is a field, of a far boundary that moves as under it. What forces f₀ cause while the boundary is
+held becomes what they cause in the solid by adding these fields with the moments that both have together,
 
     M = M(f₀) + B M,   B of the moments that the fields' own forces at the contact have.
 

@@ -46,8 +46,8 @@ class ContactStates(Part):
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).
-        v0: indentation over N/(2μ), (states,), relative to the surface at :data:`.line_loads.DATUM`, or to
-            a far boundary that is held.
+        v0: indentation over N/(2μ), (states,), relative to the surface at :data:`.line_loads.DATUM`, or
+            to a far boundary that is held.
     """
 
     g: NDArray[np.float64]

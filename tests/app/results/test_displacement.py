@@ -14,7 +14,7 @@ ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0}
     "mesh, c, tolerance", [("confocal", 0.0, 1e-8), ("confocal", 0.6, 1e-8), ("graded", 0.6, 1e-4)]
 )
 def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
-    """Without friction: of strain less motion, N v₀/2 and that of what is beyond; in the physical plane."""
+    """Without friction: of strain less motion, N v₀/2 and that of what is beyond; in physical space."""
     import ufl
     from dolfinx import fem
     from dolfinx.mesh import locate_entities_boundary, meshtags

@@ -48,7 +48,7 @@ def test_line_loads_balance_and_solve_the_equations(response):
 
 @pytest.mark.parametrize("response", RESPONSES)
 def test_moments_are_those_of_line_loads_side_by_side(response):
-    """Some of these at |s| < 1 look from r = 8 like their moments, but for what the ninth one does there."""
+    """Some of these at |s| < 1 look from r = 8 like their moments, but for what the ninth does."""
     s, t = np.array([-0.9, -0.2, 0.3, 0.8]), np.array([[1.0, -0.4, 0.2, 0.7], [0.3, 0.5, -1.0, 0.1]])
     angle = np.linspace(-np.pi, 0.0, 13)
     p = response.contraction  # a circle of the plane midway

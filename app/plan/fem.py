@@ -185,7 +185,7 @@ def _mode(scene: Scene) -> str:
 def wanted_for(
     tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
 ) -> Wanted:
-    """What a mesh, drawn in some planes, has to be good for by the places where stresses are asked for."""
+    """What a mesh drawn in some planes is to be good for, by the places where stresses are wanted."""
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):

@@ -6,6 +6,7 @@ from math import ceil, exp, log, log10, pi, sqrt
 
 from numpy.typing import NDArray
 
+from galinx.meshes import far
 from galinx.meshes.charts import Confocal, Physical
 from galinx.meshes.pieces import cut
 from galinx.meshes.rings import QuadMesh, Refinement, rectangle
@@ -40,12 +41,6 @@ _LOOSE = 2e-4
 
 #: Sectors up to which, being more than isotropic solids need, they spare a degree.
 _SPARING = 3
-
-#: Distance of a far boundary over a that follows the forces at the contact, in the plane where the nearer
-#: fields live; over that of the farthest place where stresses are wanted; what it costs in K_I over
-#: its inverse to the power of one more than the moments that it follows, times the margin: measured; and
-#: the share of the tolerance that is left to it at rest.
-_FAR, _BEYOND, _LEFT_OUT, _OF_FAR = 17.0, 1.7, 0.02, 1e-4
 
 #: What confocal cells leave in stresses at the nearest place, over their size squared over its distance,
 #: both in ξ and η, and over the degree's third power; measured.
@@ -260,8 +255,7 @@ class MeshKind:
         """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
         if self.walls:
             return 0
-        digits = log(_LEFT_OUT / (_OF_FAR * wanted.tolerance)) / log(self._radius(wanted))
-        return max(ceil(digits) - 1, 1)
+        return far.moments(far.radius(wanted.farthest), wanted.tolerance)
 
     def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
@@ -274,7 +268,7 @@ class MeshKind:
         """
         if self.walls:
             return 1.0 / (self.walls * margin ** (1.0 / 3.0))
-        return _LEFT_OUT / (self._radius(wanted) ** (self.terms(wanted) + 1) * margin)
+        return far.left(far.radius(wanted.farthest), self.terms(wanted), margin)
 
     def unseen_beside(self, wanted: Wanted, degree: int, cuts: int) -> float:
         """Estimated relative error of the stresses nearest to an edge that these cells leave there.
@@ -319,11 +313,7 @@ class MeshKind:
         if self.walls:
             return log(2.0 * self.walls)
         # What lives in other planes is nearer there by half their distance.
-        return log(2.0 * self._radius(wanted)) + wanted.spread / 2.0
-
-    def _radius(self, wanted: Wanted) -> float:
-        """Distance of the far boundary over a, in the plane where it is nearest."""
-        return max(_FAR, _BEYOND * wanted.farthest)
+        return log(2.0 * far.radius(wanted.farthest)) + wanted.spread / 2.0
 
     def _of_cells(self, wanted: Wanted) -> float:
         """What the cells have to reach: beside walls, which set the error, nothing more."""

@@ -6,7 +6,7 @@ from galinx.meshes.charts import Confocal
 from galinx.meshes.kind import MESHES, MeshKind
 
 CONFOCAL = MeshKind(
-    "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=4.3,
+    "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=2.2,
     stressed=0.5, tight=0.6,
 )  # fmt: skip
 

@@ -6,6 +6,7 @@ from math import ceil, exp, log, log10, pi, sqrt
 
 from numpy.typing import NDArray
 
+from galinx.meshes import far
 from galinx.meshes.charts import Confocal, Physical
 from galinx.meshes.pieces import cut
 from galinx.meshes.rings import QuadMesh, Refinement, rectangle
@@ -41,8 +42,9 @@ _LOOSE = 2e-4
 #: Sectors up to which, being more than isotropic solids need, they spare a degree.
 _SPARING = 3
 
-#: How much narrower far columns are for each sector more.
-_NARROWER = 0.4
+#: What confocal cells leave in stresses at the nearest place, over their size squared over its distance,
+#: both in ξ and η, and over the degree's third power; measured.
+_LEFT_BESIDE = 0.05
 
 #: How far sectors crowd where they are more: planes apart turn fields along the axes, where legs end.
 _CROWDING = 0.3
@@ -92,8 +94,7 @@ class MeshKind:
         ratio: size of a ring over that of the ring outside it. Straight cells in the physical plane need
             gentler rings than confocal ones: a ratio t there is t² in distance.
         column: largest width in ξ of a column outside the rings.
-        alone: the same where K_I and the pressure's moments are wanted alone, for isotropic solids; see
-            ``column`` if None.
+        alone: width in ξ up to which there is one column outside the rings, and no other.
         stressed: ratio of rings for stresses, at a degree less on the surface; 0 for ``ratio``.
         tight: the same on the surface below the tolerance ``gentle``, of solids that need more.
         place: puts points (n, 2) of the pattern with a refinement into that chart.
@@ -109,14 +110,14 @@ class MeshKind:
         smallest: least size of the innermost cells, of whose square, a distance over a, rounding of
             positions leaves enough digits.
         sectors: cells along each leg of an L.
-        walls: distance of the far boundary over a; None where the tolerance sets it.
+        walls: distance over a of a far boundary that is held; None where it follows the contact.
     """
 
     about: str
     chart: Confocal | Physical
     ratio: float
     column: float
-    alone: float | None = None
+    alone: float = 0.0
     stressed: float = 0.0
     tight: float = 0.0
     place: Callable[[NDArray, Refinement], NDArray] = as_drawn
@@ -155,20 +156,22 @@ class MeshKind:
         if finer and wanted.nearest is None:
             ratio **= _STEEPER
         levels = ceil(log(pi / 2.0 / self._innermost(wanted)) / -log(ratio))
-        reach = self._outer_ξ(wanted) - pi / 2.0
-        # The column next to the rings is narrow: the field still turns there.
-        widest = self.column
-        if self.alone and wanted.nearest is None:
-            widest = max(self.alone - _NARROWER * finer, widest)
-        first = min(widest, 1.0)
-        count = ceil((reach - first) / widest)
-        columns = (first, *((reach - first) / count,) * count)
+        columns = self._columns(self._outer_ξ(wanted) - pi / 2.0)
         if not self.rings:
-            levels, columns = 0, (reach / (count + 1),) * (count + 1)
+            levels, columns = 0, (sum(columns) / len(columns),) * len(columns)
         parts = (finer + 3) // 2 if finer else int(self._apart(wanted) > _TURNED)
         pieces = 1 + parts + self._cuts_middle(wanted)
         crowding = _CROWDING if finer and wanted.nearest is None else 0.0
         return Refinement(levels, ratio, sectors, columns, pieces, crowding)
+
+    def _columns(self, reach: float) -> tuple[float, ...]:
+        """Widths in ξ of the columns from the rings to the far boundary."""
+        if reach <= self.alone:
+            return (reach,)
+        # The column next to the rings is narrow: the field still turns there.
+        first = min(self.column, 1.0)
+        count = ceil((reach - first) / self.column)
+        return (first, *((reach - first) / count,) * count)
 
     def _gentler(self, wanted: Wanted) -> bool:
         """Do stresses ask for gentler rings, and more cells in angle?"""
@@ -248,22 +251,39 @@ class MeshKind:
         degree -= spared or self._cuts_middle(wanted)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
+    def terms(self, wanted: Wanted) -> int:
+        """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
+        if self.walls:
+            return 0
+        return far.moments(far.radius(wanted.farthest), wanted.tolerance)
+
     def reach(self, wanted: Wanted) -> float:
         """Distance of the far boundary over a, the least where it is no circle."""
         return exp(self._outer_ξ(wanted)) / 2.0
 
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Estimated relative error of K_I from the finite outer radius R, times σ_XY/σ_YY.
+        """Estimated relative error of K_I from the outer radius R; over σ_XY/σ_YY where it is held.
 
-        a/R at rest; it was seen to grow as the cubic root of the response's margin falls.
+        Held it costs a/R at rest, seen to grow as the cubic root of the response's margin falls.
         """
-        return 1.0 / (self.reach(wanted) * margin ** (1.0 / 3.0))
+        if self.walls:
+            return 1.0 / (self.walls * margin ** (1.0 / 3.0))
+        return far.left(far.radius(wanted.farthest), self.terms(wanted), margin)
 
-    def unseen_beside(self, wanted: Wanted) -> float:
-        """Estimated relative error of the stresses nearest to an edge that these cells leave there."""
-        if not self.fan or wanted.nearest is None:
+    def unseen_beside(self, wanted: Wanted, degree: int, cuts: int) -> float:
+        """Estimated relative error of the stresses nearest to an edge that these cells leave there.
+
+        Straight cells leave it at any degree; of others it was seen to fall with the third power only.
+
+        Args:
+            wanted: what the mesh is for.
+            degree, cuts: of the cells.
+        """
+        if wanted.nearest is None:
             return 0.0
-        return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / wanted.nearest
+        if self.fan:
+            return (self._innermost(wanted) / (2.0 * self.beside)) ** 2 / wanted.nearest
+        return _LEFT_BESIDE * self._innermost(wanted) ** 2 / (2.0 * wanted.nearest * cuts**2 * degree**3)
 
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         """Estimated relative error of K_I that the innermost cells leave, and that no level sees.
@@ -292,9 +312,8 @@ class MeshKind:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
         if self.walls:
             return log(2.0 * self.walls)
-        # Truncation at radius R costs about a/R in K_I and, at a distance r, r/R in the stresses; a
-        # hundredth of the tolerance is left to it.
-        return log(2.0 * 100.0 / wanted.tolerance * max(1.0, wanted.farthest))
+        # What lives in other planes is nearer there by half their distance.
+        return log(2.0 * far.radius(wanted.farthest)) + wanted.spread / 2.0
 
     def _of_cells(self, wanted: Wanted) -> float:
         """What the cells have to reach: beside walls, which set the error, nothing more."""

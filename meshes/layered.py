@@ -97,6 +97,10 @@ class OnLayers(MeshKind):
         R = self.radius(wanted)
         return _MOMENT / R**2 + self._cubed * (self.far_length / R) ** 3
 
+    def terms(self, wanted: Wanted) -> int:
+        """Of the resultants alone it is known what layers do to their fields."""
+        return 1
+
     @property
     def _cubed(self) -> float:
         return _CUBED * min(1.0, _LONG / self.far_length)

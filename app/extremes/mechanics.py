@@ -64,7 +64,7 @@ def _slope_error(κ: float, c: float, degree: int, g: float = -0.5) -> float:
     """Error of v,X for 1.1 <= |X/a| <= 5 over its largest value there; v,X knows the Rayleigh speed."""
     fem, kind = make_plan(parse(scene(c=[c]))).fem, MESHES["confocal"]
     assert fem
-    space = Space(*distribute(fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree)
+    space = Space(*distribute(fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree, terms=fem.terms)
     punch = SlidingPunch(space, MovingFrame(κ, c))
     weights = punch.states(g).weights
     X = np.concatenate([-np.linspace(1.1, 5.0, 40), np.linspace(1.1, 5.0, 40)])

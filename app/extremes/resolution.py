@@ -16,6 +16,8 @@ from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 _RATIO = 0.35
+#: That the far boundary follows.
+_MOMENTS = 8
 #: Rounding may add this to an error, relative.
 _ROUNDING = 1e-8
 
@@ -26,7 +28,7 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     count = int(np.ceil(reach / 3.0))
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, _RATIO, 2, (reach / count,) * count))
-    space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, kind.chart, degree)
+    space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, kind.chart, degree, terms=_MOMENTS)
     punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
     recovery = contact_recovery(space.contact.s, degree, space.chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), g)

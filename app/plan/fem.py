@@ -33,9 +33,6 @@ _NEAR_FREE_END = 1e-2
 #: which every state of another has a mesh of its own.
 LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 
-#: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
-#: without it grows towards these.
-_FARTHER = 1e3
 #: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
 FOLLOWED = "meshes that follow the contact"
 #: And that in which a pressure is put in over layers.
@@ -95,6 +92,11 @@ class FemPlan:
         return self.wanted.tolerance
 
     @property
+    def terms(self) -> int:
+        """Moments of the forces at the contact that the far boundary follows; 0 where it is held."""
+        return self.kind.terms(self.wanted)
+
+    @property
     def pattern(self) -> QuadMesh:
         """The mesh before it is cut."""
         return self.drawn or self.kind.build(self.refinement)
@@ -133,7 +135,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
-    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread))
+    planes = [response.contraction for response in responses]
+    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread, planes))
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -166,8 +169,6 @@ def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
         wanted = replace(wanted, bends=_mode(scene) == FOUND)
-    if _mode(scene) == OWN_MESHES:
-        wanted = replace(wanted, farthest=_FARTHER * max(wanted.farthest, 1.0))
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     return wanted
@@ -181,14 +182,16 @@ def _mode(scene: Scene) -> str:
     return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
 
 
-def wanted_for(tolerance: float, places: Places, exponent: float, spread: float) -> Wanted:
-    """What a mesh has to be good for where stresses are asked for at some places."""
+def wanted_for(
+    tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
+) -> Wanted:
+    """What a mesh drawn in some planes is to be good for, by the places where stresses are wanted."""
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
         return Wanted(tolerance, exponent=exponent, spread=spread)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
-    farthest = float(np.hypot(X, Y).max())
+    farthest = max(float(np.abs(X + p * Y).max()) for p in {1j, *planes})
     around, inside = bool(len(places.around)), bool(len(places.points))
     return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread)
 

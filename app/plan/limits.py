@@ -14,15 +14,16 @@ from galinx.app.plan.fem import FemPlan
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body, Places
 
-#: Share of the far boundary's distance up to which points inside are asked for.
-_INNER = 0.6
+#: Share of the distance of walls up to which points inside are asked for; and distance over a up to which
+#: meshes without walls reach.
+_INNER, _OUTERMOST = 0.6, 1e6
 
 #: Knots of a pressure over layers at most, and how near to one another, over a.
 _KNOTS, _APART = 12, 0.02
@@ -224,7 +225,7 @@ def check_places(scene: Scene, places: Places) -> None:
         return
     key = "output.points" if len(places.points) else "output.quantities"
     far = float(np.abs(asked).max())
-    limit = inner(scene, far)
+    limit = inner(scene)
     if far > limit:
         raise BadInput(
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
@@ -237,14 +238,10 @@ def check_places(scene: Scene, places: Places) -> None:
         )
 
 
-def inner(scene: Scene, far: float = 0.0) -> float:
-    """Distance over a up to which finite elements tell fields inside: well inside the scene's mesh.
-
-    Args:
-        scene: the scene.
-        far: distance that its mesh has to reach, if it can.
-    """
-    return _INNER * MESHES[scene.solve.mesh].reach(Wanted(scene.solve.tolerance, farthest=far))
+def inner(scene: Scene) -> float:
+    """Distance over a up to which finite elements tell fields inside: well inside walls, if there are."""
+    walls = MESHES[scene.solve.mesh].walls
+    return _INNER * walls if walls else _OUTERMOST
 
 
 def warnings_of_size(numbers: int) -> Iterator[str]:

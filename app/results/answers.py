@@ -64,7 +64,7 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
             *_words(smallest[low], largest[high], low, high, "", "{:.4f}"),
         )
     if states.INDENTATION.path in data:
-        name = "Indentation v_0 relative to the far boundary"
+        name = "Indentation v_0 relative to the surface far away"
         yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
 
 

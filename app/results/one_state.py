@@ -1,6 +1,6 @@
 """Single states of a scene, solved once more by finite elements to see all of their fields."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.errors import BadInput, finite_elements_installed
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
 from galinx.app.plan.task import Plan, Task
@@ -63,7 +64,10 @@ class Solved:
 
 
 def chosen(
-    scene: Scene, numbers: Sequence[int], degrees: Sequence[int | None] | None = None
+    scene: Scene,
+    numbers: Sequence[int],
+    degrees: Sequence[int | None] | None = None,
+    extent: float = 0.0,
 ) -> list[OneState]:
     """States of a scene, whatever it asks for and by whichever method.
 
@@ -71,6 +75,7 @@ def chosen(
         scene: the scene.
         numbers: of the states, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
         degrees: polynomial degrees, one a state; None for that which the scene's tolerance suggests.
+        extent: |X| and |Y| over a that the mesh holds, if it has no walls.
 
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
@@ -95,7 +100,7 @@ def chosen(
     columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
     plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
     assert plan.fem
-    fem = replace(plan.fem, shared_speeds=False)
+    fem = replace(reaching(plan.fem, extent, plan.tasks), shared_speeds=False)
     tasks = {task.response.c: task for task in plan.tasks}
     # Given tractions are solved one degree above the rule: no measured error corrects it here.
     more = scene.solve.mode == "traction"
@@ -124,8 +129,19 @@ def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
             yield Solved(state, space, fields, weights, pressure, fem.work.comm)
 
 
-def displacement(scene: Scene, number: int, degree: int | None = None) -> Any:
+def reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
+    """The same with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
+    corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
+    if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):
+        return fem
+    wanted = replace(fem.wanted, farthest=corner)
+    return replace(fem, wanted=wanted, refinement=fem.kind.refinement(wanted))
+
+
+def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
     """The displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
+
+    Arguments are those of :func:`chosen`.
 
     Raises:
         BadInput: no such state, finite elements have no answer there, or there are several ranks.
@@ -136,7 +152,7 @@ def displacement(scene: Scene, number: int, degree: int | None = None) -> Any:
         raise BadInput(
             f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
         )
-    (state,) = chosen(scene, [number], [degree])
+    (state,) = chosen(scene, [number], [degree], extent)
     body, response = state.task.body, state.task.response
     with closing(solved([state])) as states:
         from galinx.solvers.fem.physical import in_physical_plane

@@ -23,7 +23,7 @@ from galinx.solvers.sie.linear import GivenPressure
 
 #: What a field may hold, by name: (unit, long name).
 ABOUT = {
-    "displacement": ("m", "displacement relative to the far boundary"),
+    "displacement": ("m", "displacement relative to the surface 100 a away"),
     "sigma_XX": ("Pa", "in-plane normal stress along X"),
     "sigma_YY": ("Pa", "normal stress along Y"),
     "sigma_XY": ("Pa", "shear stress"),
@@ -78,8 +78,8 @@ def write_fields(
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    states = chosen(scene, numbers, degrees)
     _check(scene, extent)
+    states = chosen(scene, numbers, degrees, extent)
     with finite_elements_installed():
         from mpi4py import MPI
     if MPI.COMM_WORLD.rank > 0:
@@ -119,8 +119,8 @@ def state_field(
         BadInput: there is no such state, or finite elements have no answer for it.
         SolveError: the equations could not be solved.
     """
-    (state,) = chosen(scene, [number], [degree])
     _check(scene, extent)
+    (state,) = chosen(scene, [number], [degree], extent)
     with closing(solved([state])) as states:
         found = next(states)
         whole = _sampled(found, extent).gathered(found.comm)

@@ -33,8 +33,8 @@ TERMS = (
     ("von Mises stress", "what a solid in this state of stress bears like a bar under tension; it yields "
      "where that is its yield strength"),
     ("X/L", "place on a stroke over the pre-sliding displacement L, along which friction builds up"),
-    ("v_0", "indentation, relative to the far boundary, which is held: in the plane it grows with its "
-     "distance like a logarithm"),
+    ("v_0", "indentation, relative to the surface 100 a away, or 100 times the length over which layers "
+     "are seen: in the plane it grows with that distance like a logarithm"),
     ("estimate", "error of finite elements measured on other degrees, the closed form not used"),
     ("verdict", "PASS where every comparison above is within what is allowed; not judged where one "
      "method alone was asked for"),

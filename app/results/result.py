@@ -173,15 +173,16 @@ class Result:
         numbers = [state] if isinstance(state, int) else list(state)
         write_fields(self.scene, numbers, target, extent, [self._degree(one) for one in numbers])
 
-    def displacement(self, state: int = 0) -> Any:
+    def displacement(self, state: int = 0, extent: float = 10.0) -> Any:
         """The displacement of a state as a dolfinx function, to go on with in dolfinx; on one rank only.
 
         The state is solved once more by finite elements, at the degree that was used. Of the function
         ``u``, ``u.function_space.mesh`` is the mesh of the solid, in m, the punch's centre at the origin
-        and the solid below; ``u`` itself is in m, relative to the far boundary.
+        and the solid below; ``u`` itself is in m, relative to the surface 100 a away.
 
         Args:
             state: which, from 0.
+            extent: how far from the punch's centre the mesh reaches at least, over a.
 
         Raises:
             BadInput: no such state, finite elements have no answer there, or there are several ranks.
@@ -189,7 +190,7 @@ class Result:
         """
         from galinx.app.results.one_state import displacement
 
-        return displacement(self.scene, state, self._degree(state))
+        return displacement(self.scene, state, self._degree(state), extent)
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.

@@ -225,7 +225,7 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     response = solid.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock)
+    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)
     motion = Motion(space, response, starts.sharp)
     solver, seen = SlidingInTime(motion, clock), Seen(starts, level, motion)
     phases = [Phase(way.direction, way.duration, way.steps // level.every) for way in starts.ways]

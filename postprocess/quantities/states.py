@@ -105,7 +105,7 @@ TANGENTIAL_FORCE = Quantity(
     (STATE,), lambda s, body: s.tangential_force * body.force, FEM, compared=("force balance",),
 )  # fmt: skip
 INDENTATION = Quantity(
-    "states/fem/v0", "m", "indentation relative to the far boundary", (STATE,),
+    "states/fem/v0", "m", "indentation relative to the surface far away", (STATE,),
     lambda s, body: s.v0 * body.displacement, FEM, _CONTACT,
 )  # fmt: skip
 ESTIMATE = Quantity(

@@ -137,14 +137,11 @@ class FittedPunch(Punch):
         response: of the half-plane.
         at: frictions at which the parts are known.
         known: the parts.
-        moved: by how many parts the far boundary is moved.
     """
 
-    def __init__(
-        self, space: Space, response: Response, at: Frictions, known: Sampled, moved: int
-    ) -> None:
+    def __init__(self, space: Space, response: Response, at: Frictions, known: Sampled) -> None:
         self.space, self.response = space, response
-        self._at, self._known, self._moved = at, known, moved
+        self._at, self._known = at, known
         self._fields = _Fields(np.concatenate(list(known.fields)), space)
 
     @property

@@ -23,19 +23,15 @@ class KrylovSpace:
         forces: its forces in X and Y at the contact nodes, (2, n).
         refines: solutions are refined.
         left: relative residual of the contact forces that may be left, if it is above the least.
-        beside: size of other forces that these are added to, where they are small beside them; residuals
-            are relative to it.
 
     Attributes:
         fields, forces: the first, then those of each tangential load.
         complete: the space holds every answer.
     """
 
-    def __init__(
-        self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float, beside: float = 0.0
-    ) -> None:
+    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float) -> None:
         self.fields, self.forces, self.refines = [field], [forces], refines
-        self._left, self._beside = max(left, LEAST), beside
+        self._left = max(left, LEAST)
         self._size = np.linalg.norm(forces[1])
         self._V = [forces[1] / self._size]
         self._H = np.zeros((LIMIT + 1, LIMIT))
@@ -104,5 +100,4 @@ class KrylovSpace:
     def _residuals(self, g: NDArray, y: NDArray) -> NDArray[np.float64]:
         """Of coefficients (states, m), relative, (states,)."""
         m = y.shape[1]
-        size = np.maximum(np.linalg.norm(y, axis=1), self._beside)
-        return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / size)
+        return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1))

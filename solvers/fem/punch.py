@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.solvers.fem.direct import Factor
-from galinx.solvers.fem.held import forces_of_far, forces_of_profile, hold, ones, product, set_zero
+from galinx.solvers.fem.far import FarBoundary
+from galinx.solvers.fem.held import forces_of_profile, hold, ones, product, set_zero
 from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.states import Part, Punch
-from galinx.solvers.solids.solid import ByCells, Response
+from galinx.solvers.solids.solid import Response
 
 #: Frictions for which a basis is completed at most.
 _SPREAD = 33
@@ -69,10 +70,7 @@ class SlidingPunch(Punch):
         self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
         shaped = [forces_of_profile(A, space, height) for height in shapes]
-        if isinstance(response, ByCells):
-            moved = response.far(*space.coordinates[space.far_nodes].T)
-            shaped += [forces_of_far(A, space, one) for one in moved]
-            self._moved = len(moved)
+        self._boundary = FarBoundary(space, response, A)
         b = hold(A, space)
         self.factor: Factor | Multigrid
         if solver == "direct":
@@ -80,6 +78,7 @@ class SlidingPunch(Punch):
         else:
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
         self._nodal: tuple[NDArray, NDArray] | None = None
+        self._take_boundary()
         #: Of the flat punch, and of each shape.
         self._spaces = self._krylov_spaces([b, *shaped], negligible)
 
@@ -114,8 +113,19 @@ class SlidingPunch(Punch):
 
     def destroy(self) -> None:
         self._nodal = None
-        for held in (self.factor, *self._rows, *self._motions, *self._far, *self.fields):
+        for held in (self.factor, self._boundary, *self._rows, *self._motions, *self._far, *self.fields):
             held.destroy()
+
+    def _take_boundary(self) -> None:
+        """Solve for a far boundary that moves."""
+        loads, contact = self._boundary.loads, self.space.contact
+        if loads:
+            fields = self._displacements(loads)
+            # Moments after the resultants are felt too little to need that.
+            self._refine(fields[:2], loads[:2], [0.0, 0.0])
+            self._boundary.found(fields)
+            X = self.space.chart.surface_position(contact.s)
+            self._boundary.take(X, [self._reactions(field) for field in fields])
 
     def _krylov_spaces(self, forces: list[PETSc.Vec], negligible: float) -> list[KrylovSpace]:
         """Those of punches without friction: of the flat one at v = -1, and of shapes.
@@ -128,35 +138,14 @@ class SlidingPunch(Punch):
         rough = [self._reactions(field) for field in fields]
         # Under the flat punch all of the contact moves alike, and no other load acts.
         self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
-        flat = self._reactions(fields[0])
-        # Of the whole load, -2; what the far boundary's motion does to it is small.
-        load = float(2.0 * np.linalg.norm(flat) / abs(flat[1].sum()))
         spaces = []
-        for i, (field, before, b) in enumerate(zip(fields, rough, forces)):
-            after, moved = self._reactions(field), i >= len(fields) - self._moved
-            change = np.linalg.norm(after - before) / (load if moved else np.linalg.norm(before))
-            if moved:
-                after = self._without_load(field, after, fields[0], flat)
-            refines = bool(change > negligible)
-            spaces.append(KrylovSpace(field, after, refines, self._left, load * moved))
+        for field, before, b in zip(fields, rough, forces):
+            after = self._reactions(field)
+            change = np.linalg.norm(after - before) / np.linalg.norm(before)
+            after = self._boundary.follow(field, after)
+            spaces.append(KrylovSpace(field, after, bool(change > negligible), self._left))
             b.destroy()
         return spaces
-
-    def _without_load(
-        self, field: PETSc.Vec, forces: NDArray, flat: PETSc.Vec, of_flat: NDArray
-    ) -> NDArray[np.float64]:
-        """Shift what moves the far boundary, whose zero is free, until the contact carries no load.
-
-        Args:
-            field, forces: displacement, changed in place, and forces at the contact.
-            flat, of_flat: those of the flat punch at v = -1.
-
-        Returns:
-            The forces that are left.
-        """
-        shift = -forces[1].sum() / of_flat[1].sum()
-        field.maxpy((shift, shift), (flat, self._motions[1]))
-        return np.asarray(forces + shift * of_flat)
 
     def _contact_forces(
         self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]
@@ -187,29 +176,31 @@ class SlidingPunch(Punch):
                 space.take(field, forces @ space.last)
             return
         loads = self._tangential([space.last for space in spaces])
-        found = self._answers(loads, [space.refines for space in spaces])
-        for space, field in zip(spaces, found):
-            space.take(field, self._reactions(field))
+        found, forces = self._answers(loads, [space.refines for space in spaces])
+        for space, field, of_field in zip(spaces, found, forces):
+            space.take(field, of_field)
 
     def _of_nodes(self, refines: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Displacements (rows, n) and forces (2, n, n) that a tangential load at each node causes."""
         if self._nodal is None:
             n = len(self.space.contact.s)
-            found = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
-            forces = np.array([self._reactions(field) for field in found])
-            self._nodal = np.array([field.array_r for field in found]).T, np.moveaxis(forces, 0, 2)
+            found, forces = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
+            of_nodes = np.moveaxis(np.array(forces), 0, 2)
+            self._nodal = np.array([field.array_r for field in found]).T, of_nodes
             for field in found:
                 field.destroy()
         return self._nodal
 
-    def _answers(self, loads: Sequence[PETSc.Vec], refines: Sequence[bool]) -> list[PETSc.Vec]:
-        """Displacements that loads cause, which are no longer needed, refined where that is wanted."""
+    def _answers(
+        self, loads: Sequence[PETSc.Vec], refines: Sequence[bool]
+    ) -> tuple[list[PETSc.Vec], list[NDArray[np.float64]]]:
+        """Displacements that loads cause, refined where that is wanted, and forces; frees the loads."""
         found = self._displacements(loads)
         refined = [i for i, wanted in enumerate(refines) if wanted]
         self._refine([found[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
         for b in loads:
             b.destroy()
-        return found
+        return found, [self._boundary.follow(field, self._reactions(field)) for field in found]
 
     def _tangential(self, forces: Sequence[NDArray]) -> list[PETSc.Vec]:
         """Loads of tangential forces at the contact nodes, (n,) each."""

@@ -34,6 +34,7 @@ class Space:
         chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
         form: name of the weak form that a solid asks for.
+        terms: moments of the forces at the contact that the far boundary follows; 0 where it is held.
         clock: takes the time of what is done with the space.
         say: is told on rank 0 what the user should know of the compiler.
 
@@ -49,10 +50,12 @@ class Space:
         chart: Chart,
         degree: int,
         form: str = "isotropic",
+        terms: int = 0,
         clock: Clock | None = None,
         say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
+        self.terms = terms
         self.mixed = self.form.pressure
         self.clock, self._say = Clock() if clock is None else clock, say
         self._kept: tuple[NDArray, ...] | None = None

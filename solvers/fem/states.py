@@ -46,7 +46,8 @@ class ContactStates(Part):
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).
-        v0: indentation relative to the far boundary over N/(2μ), (states,).
+        v0: indentation over N/(2μ), (states,), relative to the surface at :data:`.line_loads.DATUM`, or
+            to a far boundary that is held.
     """
 
     g: NDArray[np.float64]
@@ -69,13 +70,6 @@ class Punch:
 
     space: Space
     response: Response
-    #: Of how many parts the far boundary is moved: by a line load's normal and tangential force.
-    _moved = 0
-
-    @property
-    def moved(self) -> int:
-        """By how many parts, the last ones, the far boundary is moved."""
-        return self._moved
 
     @property
     def fields(self) -> Sequence[PETSc.Vec]:
@@ -109,10 +103,8 @@ class Punch:
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
         heights = np.asarray(share, dtype=float) * np.ones(len(g))
-        parts = self.parts(g, 0 if flat and not self._moved else None)
-        shapes = len(parts) - 1 - self._moved
-        # A flat punch has none of the profile; a line load's tangential force is g times the other.
-        amplitudes = [heights * (not flat)] * shapes + [np.ones_like(g), g][: self._moved]
+        parts = self.parts(g, 0 if flat else None)
+        amplitudes = [heights] * (len(parts) - 1)
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
         carried = sum(of * part.load for of, part in zip(amplitudes, parts[1:]))
         v0 = (-2.0 - carried) / parts[0].load

@@ -9,11 +9,11 @@ from petsc4py import PETSc
 
 from galinx.solvers.fem.deformation import forces
 from galinx.solvers.fem.direct import Factor
-from galinx.solvers.fem.held import forces_of_far
+from galinx.solvers.fem.far import FarBoundary
 from galinx.solvers.fem.lagrange import lagrange
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceFacets, surface_facets
-from galinx.solvers.solids.solid import ByCells, Response
+from galinx.solvers.solids.solid import Response
 
 #: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
 #: because next to an edge X/a itself no longer tells the distance.
@@ -25,9 +25,7 @@ _POINTS = 48
 
 
 class LoadedHalfPlane:
-    """Half-plane without punch at one speed, held far away: one factor for many loads.
-
-    Over layers the far boundary moves as under a line load with each load's resultant.
+    """Half-plane without punch at one speed: one factor for many loads, which the far boundary follows.
 
     Args:
         space: the finite element space.
@@ -38,10 +36,7 @@ class LoadedHalfPlane:
     def __init__(self, space: Space, response: Response, corrected: bool = False) -> None:
         self.space, self.response = space, response
         A = space.assemble(response)
-        moved = np.empty((0, 2, 0))
-        if isinstance(response, ByCells):
-            moved = response.far(*space.coordinates[space.far_nodes].T)
-        far = [forces_of_far(A, space, one) for one in moved]
+        self._far = FarBoundary(space, response, A)
         A.zeroRowsColumns(space.far_dofs, 1.0)
         self.factor = Factor(A, space.clock, definite=not space.mixed)
         #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
@@ -51,10 +46,8 @@ class LoadedHalfPlane:
         #: What each field lacks where cells are small: its last digit is one of the motion of all.
         self.corrections: list[PETSc.Vec] = []
         self._corrected = corrected
-        #: Of a far boundary that moves as under the resultants (0, -2) and (-2, 0) of (σ_XY, σ_YY).
-        self._far = [self.factor.solve(b) for b in far]
-        for b in far:
-            b.destroy()
+        if self._far.loads:
+            self._far.found(self.factor.solve_all(self._far.loads))
         self._facets = surface_facets(space, ("contact",))
 
     def load(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> None:
@@ -66,7 +59,9 @@ class LoadedHalfPlane:
         """
         load = consistent_forces(self.space, self._facets, σ_YY, knots)
         node = self.space.numbers[self._facets.nodes.ravel()]
-        resultant = self.space.comm.allreduce(float(load.sum()))
+        comm, X = self.space.comm, self.space.chart.surface_position(self._facets.s)
+        resultant = comm.allreduce(float(load.sum()))
+        moments = comm.allreduce(self._far.tests(X.ravel()) @ load.ravel())
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(
@@ -76,8 +71,8 @@ class LoadedHalfPlane:
             )
             b.assemble()
             self.fields.append(self.factor.solve(b))
-            if self._far:
-                self.fields[-1].axpy(-resultant / 2.0, self._far[1 - component])
+            if self._far.fields:
+                self.fields[-1].maxpy(moments.tolist(), self._far.fields[1 - component :: 2])
             if self._corrected:
                 self.corrections.append(self._correction(self.fields[-1], b))
             b.destroy()
@@ -95,7 +90,7 @@ class LoadedHalfPlane:
 
     def destroy(self) -> None:
         """Free factor and fields."""
-        for held in (self.factor, *self.fields, *self.corrections, *self._far):
+        for held in (self.factor, self._far, *self.fields, *self.corrections):
             held.destroy()
 
 

@@ -18,12 +18,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
 from galinx.solvers.layers.medium import Medium, inverse
-
-#: Unit loads: ∫σ_YY = 1 and ∫σ_XY = 1, as (σ_XY, σ_YY).
-_LOADS = ((0.0, 1.0), (1.0, 0.0))
+from galinx.solvers.solids.line_loads import DATUM, LOADS, line_loads
 
 
 @dataclass(frozen=True)
@@ -41,15 +38,15 @@ class FarField:
     through: Callable[[float], NDArray[np.float64]]
 
     def __call__(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Under ∫σ_YY = 1 and ∫σ_XY = 1, up to a translation: (2, 2, n)."""
-        below = np.minimum(Y + self.D, 0.0)
-        found = line_load(self.substrate, X, below)
+        """Under ∫σ_YY = 1 and ∫σ_XY = 1, relative to where layers are no longer seen: (2, 2, n)."""
+        below, datum = np.minimum(Y + self.D, 0.0), DATUM * max(1.0, self.length)
+        (found,) = line_loads(self.substrate.response, X, below, datum=datum) / self.substrate.modulus
         z = X[:, None, None] * np.eye(2) + below[:, None, None] * self.substrate.G.conj()
         heights, which = np.unique(np.maximum(Y, -self.D), return_inverse=True)
         more = np.array([self._moved(height) for height in heights.tolist()])[which]
         w = inverse(z) @ (self._below + more)
-        for load, t in zip(found, _LOADS):
-            load += (1j * w @ np.array(t)).real.T / np.pi
+        for load, t in zip(found, LOADS):
+            load += (1j * w @ t).real.T / np.pi
         return found
 
     @cached_property
@@ -79,22 +76,3 @@ class FarField:
         """∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY from the substrate up to a height."""
         _, B, T_inverse = self.through(height)
         return np.asarray(T_inverse - 1j * B.T @ self._compliance)
-
-
-def line_load(medium: Medium, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-    """Displacements under moving line loads at the origin, ∫σ_YY = 1 and ∫σ_XY = 1: (2, 2, n).
-
-    u = Im[log(X + Y G) 𝐘 t]/π, the logarithm of a matrix by that of its eigenvalues; up to a translation.
-    """
-    p, other = medium.response.roots.each
-    z = X + p * np.minimum(Y, 0.0) - 0.0j
-    z = np.where(Y < 0.0, z, X + np.where(X < 0.0, -1e-300j, 0.0))
-    step = (other - p) * Y / z
-    log, change = np.log(z), np.where(step == 0.0, Y / z, log1p(step) / np.where(step == 0, 1, other - p))
-    beyond = medium.G - p * np.eye(2)
-    Y_surface = inverse(medium.modulus * np.asarray(medium.response.L))
-    found = []
-    for t in _LOADS:
-        one, two = Y_surface @ t, beyond @ Y_surface @ t
-        found.append([(log * one[i] + change * two[i]).imag / np.pi for i in (0, 1)])
-    return np.array(found)

@@ -85,8 +85,8 @@ class LayersInCells(LayeredResponse):
         strain = np.stack([G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]], axis=-1)
         return np.moveaxis(np.einsum("nij,...nj->...ni", C, strain, optimize=True), -1, 0)
 
-    def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        return self.far_field(X, Y) * np.array(-2.0)
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        return self.far_field(X, Y)[None]
 
     @cached_property
     def far_field(self) -> FarField:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.solids.line_loads import line_loads
 from galinx.solvers.solids.roots import Roots, roots
 from galinx.solvers.solids.solid import Potential
 
@@ -169,6 +170,10 @@ class AnisotropicFrame:
         """Hooke's law: σ_XX, σ_YY, σ_XY over c₆₆ of displacement gradients (..., 2, 2)."""
         strains = [G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]]
         return np.einsum("ij,j...->i...", self._C, np.array(strains))
+
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements far away by moments of tractions."""
+        return line_loads(self, X, Y, terms)
 
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Stresses below a pressure by its potential at the matrix X + Y G; Y < 0.

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.parameters import check, parameter
 from galinx.solvers.solids.constants import density, in_plane, modulus
+from galinx.solvers.solids.line_loads import line_loads
 from galinx.solvers.solids.potentials import stresses
 from galinx.solvers.solids.roots import Roots
 from galinx.solvers.solids.solid import SOLIDS, Potential
@@ -226,6 +227,10 @@ class MovingFrame:
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Stresses from a pressure's potential at the two z_j = X + i β_j Y."""
         return stresses(self, Φ, g, X, Y)
+
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements far away by moments of tractions."""
+        return line_loads(self, X, Y, terms)
 
     @cached_property
     def G(self) -> NDArray[Any]:

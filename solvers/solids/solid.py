@@ -77,6 +77,19 @@ class Response(Protocol):
 
 
 @runtime_checkable
+class Far(Protocol):
+    """A response that is known far from the contact."""
+
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
+
+        Args:
+            X, Y: positions over a, (n,).
+            terms: how many moments at most, the resultants first.
+        """
+
+
+@runtime_checkable
 class ByCells(Protocol):
     """A response whose constants in the weak form change with depth: solids one below another."""
 
@@ -111,9 +124,6 @@ class ByCells(Protocol):
         Returns:
             Array (3, ..., n).
         """
-
-    def far(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Displacements far away under line loads, (2, 2, n): of ∫σ_YY = -2, and of ∫σ_XY = -2."""
 
 
 class Solid(Protocol):

@@ -73,7 +73,7 @@ class Discretisation:
             with quiet_compiler():
                 self._spaces[degree, cuts] = Space(
                     *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
-                    self.clock, self._progress.warn,
+                    self.plan.terms, self.clock, self._progress.warn,
                 )  # fmt: skip
         return self._spaces[degree, cuts]
 
@@ -91,8 +91,8 @@ class Discretisation:
         """The space of a degree on such a mesh."""
         with quiet_compiler():
             return Space(
-                *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.clock,
-                self._progress.warn,
+                *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
+                self.clock, self._progress.warn,
             )  # fmt: skip
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:

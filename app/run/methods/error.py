@@ -167,7 +167,9 @@ class MeasuredError:
         nearer /= 1.0 if kind.chart.contracts else response.contraction.imag
         far = nearer * kind.truncation(wanted, margin)
         lean = response.n12 / response.n
-        of_edges = compliance * (np.abs(g) + 0.5 * abs(lean)) / np.abs(1.0 + g * lean) + 1.8 * far
+        # Without friction nothing leans to a side, but every other of the higher moments needs no side.
+        leaning = 1.0 if kind.terms(wanted) > 1 else np.abs(g) + 0.5 * abs(lean)
+        of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
         found = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:
@@ -175,7 +177,8 @@ class MeasuredError:
             else:
                 of_places = compliance * (0.3 + 1.9 / gauge.scale.min(axis=1)) / margin ** (1.0 / 6.0)
                 # No interface is near an edge.
-                beside = kind.unseen_beside(wanted) * (gauge.word != AT_INTERFACES)
+                beside = kind.unseen_beside(wanted, self._ladder.degree, plan.cuts)
+                beside *= gauge.word != AT_INTERFACES
                 found[gauge.word] = innermost + beside + far * (of_edges + of_places)
         return found
 

@@ -45,7 +45,6 @@ class Fit:
         space: of the last degree.
         at: frictions at which punches are sampled.
         recovery: how pressure is read off nodal forces.
-        moved: by how many parts of a punch the far boundary is moved.
         solved: numbers of the speeds, in the order in which they were solved.
         samples: of these, without what edges do.
         records: of the work, by a speed's number.
@@ -59,7 +58,6 @@ class Fit:
     space: Space
     at: Frictions
     recovery: Any
-    moved: int
     solved: list[int] = field(default_factory=list)
     samples: list[Sampled] = field(default_factory=list)
     records: dict[int, dict[str, Any]] = field(default_factory=dict)
@@ -126,7 +124,7 @@ class Fit:
         """A speed as the fit, or other shares of the samples, tell it."""
         shares = self.shares(task.number) if shares is None else shares
         known = together(self.samples, shares).singular(self.singular(task))
-        punch = FittedPunch(self.space, task.response, self.at, known, self.moved)
+        punch = FittedPunch(self.space, task.response, self.at, known)
         try:
             yield self.mode.Level(self.work, task, self.space, self.at.g, punch, self.recovery)
         finally:

@@ -216,9 +216,7 @@ def _balanced(
     parts = solved.parts(g)
     K = np.stack([K_I(part) for part in parts], axis=1)
     loads = np.array([part.load[0] for part in parts])
-    moved = np.array([1.0, float(g[0])])  # of the far boundary, by the line load's two forces
-    rows = np.vstack([loads, K])
-    amplitudes = np.linalg.solve(rows[:, :3], np.array([-2.0, 0.0, 0.0]) - rows[:, 3:] @ moved)
+    amplitudes = np.linalg.solve(np.vstack([loads, K]), np.array([-2.0, 0.0, 0.0]))
     _, shift, bend = amplitudes.tolist()
     if not bend > 0.0:
         raise SolveError(
@@ -227,5 +225,5 @@ def _balanced(
     body = task.body
     # Over N/(2μ) the parabola is (m + h s)²/(2R).
     taken = body.half_width**2 * body.solid.μ / (punch.radius * bend)
-    states = combined(g, parts, np.append(amplitudes, moved)[None])
+    states = combined(g, parts, amplitudes[None])
     return states, float(np.log(taken / body.load)), shift / (2.0 * bend)

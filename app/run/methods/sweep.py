@@ -261,7 +261,7 @@ class _Training:
 
     def _begun(self, level: Any) -> Fit:
         """A fit without samples: at as many frictions as tell those between."""
-        moved, at = level.punch.moved, self._frictions(_FRICTIONS[-1])
+        at = self._frictions(_FRICTIONS[-1])
         if not self._sweep.few:
             true = [part.normal for part in level.punch.parts(self._probes)]
             for count in _FRICTIONS:
@@ -271,9 +271,7 @@ class _Training:
                 off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(told, true))
                 if off <= _BETWEEN:
                     break
-        return Fit(
-            self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery, moved
-        )
+        return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
         """Solve a speed that the fit tells."""

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import trapezoid
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
@@ -16,11 +15,10 @@ from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.postprocess import scale
-from galinx.solvers.layers.far import line_load
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.layers.medium import Medium
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.solids.line_loads import DATUM, line_loads
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers import COAT, GRADED, scene
@@ -136,8 +134,9 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
 
     def left(R):
         X, Y = R * np.array([1.0, -1.0, 0.3, -0.7]), np.array([-0.4, -1.0, -R, -0.8 * R])
-        exact = -2.0 * line_load(response.medium(solid), X, Y)
-        return np.abs(response.far(X, Y) - exact).max()
+        datum = DATUM * max(1.0, response.far_field.length)
+        exact = line_loads(solid.response(response.c), X, Y, datum=datum)
+        return np.abs(response.far(X, Y, 1) - exact).max()
 
     near, far = left(50.0), left(100.0)
     assert near < 1e-3
@@ -162,35 +161,3 @@ def test_meshes_follow_interfaces(depths):
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]
         assert np.abs(contact[:, 1, 0] - contact[:, 0, 0]).sum() == pytest.approx(2.0)
-
-
-@pytest.mark.parametrize("V", [0.0, 0.6])
-def test_line_load_balances_and_solves_the_equations(V):
-    """Its displacements answer the tractions of a moving line load on the surface, and no others."""
-    solid = Isotropic(2.5, 0.25, 1.0)
-    medium = Medium(solid.response(V / solid.c_s), 1.0)
-    h = 1e-4
-    points = np.array([[2.0, -1.0], [-3.0, -0.5], [0.4, -2.0]])
-    X, Y = points.T
-
-    def gradients(x, y):
-        along = (line_load(medium, x + h, y) - line_load(medium, x - h, y)) / (2.0 * h)
-        across = (line_load(medium, x, y + h) - line_load(medium, x, y - h)) / (2.0 * h)
-        return np.stack([along, across], axis=-1)  # (loads, component, n, axis)
-
-    def stresses(x, y):
-        return medium.response.stresses(np.moveaxis(gradients(x, y), 1, 2))
-
-    # Equation of motion along X and Y, ρV² over μ times the second derivative along X.
-    step = 1e-2
-    σ_X = (stresses(X + step, Y) - stresses(X - step, Y)) / (2.0 * step)
-    σ_Y = (stresses(X, Y + step) - stresses(X, Y - step)) / (2.0 * step)
-    u = [line_load(medium, X + shift * step, Y) for shift in (-1.0, 0.0, 1.0)]
-    inertia = (V / solid.c_s) ** 2 * (u[0] - 2.0 * u[1] + u[2]) / step**2
-    assert np.abs(σ_X[0] + σ_Y[2] - inertia[:, 0]).max() <= 2e-4
-    assert np.abs(σ_X[2] + σ_Y[1] - inertia[:, 1]).max() <= 2e-4
-    # All of the load passes through a line below.
-    x = np.tan(np.linspace(-1.57, 1.57, 20001))
-    through = stresses(x, np.full_like(x, -1.0))
-    resultants = trapezoid(through[[1, 2]], x, axis=-1)
-    assert np.abs(resultants - [[1.0, 0.0], [0.0, 1.0]]).max() <= 2e-3

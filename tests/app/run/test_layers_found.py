@@ -15,7 +15,8 @@ from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
 from galinx.solvers.layers.contact import Equation
-from galinx.solvers.layers.found import SHAPES, FoundSpeed, Parabola
+from galinx.solvers.layers.ends import Punch, conditions
+from galinx.solvers.layers.found import FoundSpeed
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body
 
@@ -48,11 +49,10 @@ def random_scene(seed, graded, quantities=("sif",), tolerance=1e-6):
     base = scene_of(solid, c, f, quantities, tolerance)
     load, response = 1e-3, solid.response(0.0)
     speed = FoundSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
-    parts = Equation(response, speed.kernel, 0.0, np.zeros_like).parts(
-        0.5 if speed.kernel.rough else 60, SHAPES, (-2.0, 0.0, 0.0)
-    )
-    _, _, off = Parabola(1.0, load / solid.μ).balanced(parts.ends, 1.0)
-    profile = Parabolic(float(np.exp(off)))
+    equation = Equation(response, speed.kernel, 0.0, np.zeros_like)
+    punch = Punch(Parabolic(1.0), 1.0, load / solid.μ)
+    contact = conditions(equation, 0.5 if speed.kernel.rough else 60, punch, 1.0)
+    profile = Parabolic(float(np.exp(contact.off(contact.middle()))))
     return replace(base, punch=replace(base.punch, profile=profile, loads=(load,)))
 
 

@@ -43,6 +43,9 @@ from galinx.solvers.sie.found import local_exponents as of_the_surface
 _AT_REST = 1e-5
 #: And with which it is told whether an edge has lifted off.
 _OF_ENDS = 1e-6
+#: Distances from a free end at which pressures are compared besides, places between, and how much more
+#: they have to agree there.
+_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 #: How much farther kernels are tabulated than the largest contact so far asks for.
 _FARTHER = 1.5
 
@@ -78,6 +81,20 @@ class _Tried:
     pressure: Pressure
     left: float = 0.0
     free: tuple[bool, bool] = (True, True)
+
+    def moved(self, before: "_Tried") -> float:
+        """What changed since then: the lengths, the pressure, and this next to free ends more than others.
+
+        In-plane stresses there follow the pressure with a factor.
+        """
+        lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
+        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
+        at = np.concatenate([*ends, _ACROSS])
+        one, other = (
+            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
+        )
+        near = np.abs(one - other)[: -len(_ACROSS)].max(initial=0.0) / np.abs(other).max()
+        return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
 
     @cached_property
     def settled(self) -> Pressure:
@@ -149,8 +166,7 @@ class FoundSpeed(Speed):
             now = self._tried(g, h, resolution)
             h = now.h
             if before is not None:
-                moved = max(abs(h - before.h), abs(now.m - before.m)) / h
-                left = max(change(before.settled, now.settled), moved, now.left)
+                left = max(now.moved(before), now.left)
                 if met(left, self.tolerance):
                     unit = self.punch.unit
                     check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))

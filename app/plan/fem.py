@@ -36,9 +36,8 @@ LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
 #: How much farther away the far boundary of own meshes is: what it does to a state whose ends are known
 #: without it grows towards these.
 _FARTHER = 1e3
-#: What plans call the mode in which meshes over layers follow the contact, whose ends are found, and of
-#: which profiles.
-FOLLOWED, FOLLOWED_PROFILES = "meshes that follow the contact", (Parabolic,)
+#: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
+FOLLOWED = "meshes that follow the contact"
 #: And that in which a pressure is put in over layers.
 LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import galinx
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
@@ -218,3 +220,53 @@ def test_both_methods_tell_all_of_a_cylinder_and_the_archive_is_whole(tmp_path):
     again.report(tmp_path / "r.html")
     assert "Half-width of the contact" in (tmp_path / "r.html").read_text(encoding="utf-8")
     assert any(drawing.name == "interfaces" for drawing in again.drawings())
+
+
+#: Punches other than cylinders, by what a scene says of them.
+OTHERS = {
+    "wedge": 'profile = "wedge"\nslope = "1 deg"\n',
+    "shoulders": 'profile = "rounded_flat"\nflat_half_width = "0.5 mm"\nradius = "20 mm"\n',
+    "tilted": 'profile = "flat"\nhalf_width = "1 mm"\ntilt = "4 deg"\n',
+    "cusp": 'profile = "power"\nexponent = 1.5\ncoefficient = 0.3\n',
+    "quartic": 'profile = "power"\nexponent = 4.0\ncoefficient = 1e7\n',
+}
+
+
+def under(punch, load=2e5, **options):
+    """A scene with another punch."""
+    base = scene(load=load, **options)
+    text = f"[punch]\n{OTHERS[punch]}load = {load}\n"
+    other = parse(SCENE.format(layers=COAT, mu=0.4, tolerance=1e-6, methods='["sie"]', quantities='["sif"]')
+                  .replace("[friction]", text + "[friction]"))  # fmt: skip
+    return replace(base, punch=other.punch)
+
+
+@pytest.mark.parametrize("punch", OTHERS if THOROUGH else ["wedge", "tilted"])
+def test_the_integral_equation_tells_all_of_every_punch(punch):
+    """By its own estimates; between the half-planes of both solids."""
+    asked = ("sif", "surface", "interior", "interfaces")
+    more = "points = [[0.2, -0.5], [-1.0, -1.4]]\n"
+    result = galinx.compute(under(punch, quantities=asked, more=more))
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    infinite = np.isnan(result.data["states/sie/largest_pressure"][0])
+    assert infinite == (punch in ("wedge", "tilted"))
+    α, β = (result.data[f"states/{name}"][0] for name in ("alpha", "beta"))
+    assert (β < 0.0 < α and α + β == pytest.approx(0.0)) if punch == "tilted" else α + β == pytest.approx(1)
+
+
+def test_finite_elements_follow_other_smooth_punches():
+    asked = ("sif", "surface")
+    result = galinx.compute(under("quartic", methods=("sie", "fem"), tolerance=1e-3, quantities=asked))
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    for what, difference in apart(result.data).items():
+        assert 0.0 < difference <= sum(
+            result.data[f"states/{by}/estimate{what}"][0] for by in ("fem", "sie")
+        )
+
+
+def test_finite_elements_say_what_they_do_not_follow():
+    with pytest.raises(BadInput, match="with a wedge.*all punches by methods"):
+        galinx.compute(under("wedge", methods=("fem",)))
+    plan = make_plan(under("wedge", methods=("sie", "fem")))
+    assert plan.methods == ("sie",)
+    assert any("smooth punches with two free ends" in text for text in plan.skipped)

@@ -137,8 +137,9 @@ class Body:
         """Half-width over layers under a load [m]."""
         from galinx.solvers.layers.found import half_width_at_rest
 
+        profile: Any = self.profile
         assert isinstance(self.solid, Layered)
-        return half_width_at_rest(self.solid, self.profile, load / self.solid.μ)
+        return half_width_at_rest(self.solid, profile, load / self.solid.μ)
 
     @property
     def compression(self) -> Any:

@@ -196,9 +196,7 @@ def _local(task: Task, g: NDArray, body: Body) -> Any:
         return local_exponents(task.response, g, body.profile, body.compression)
     from galinx.solvers.layers import found  # SciPy's special functions, a slow import
 
-    return found.local_exponents(
-        task.response, g, body.profile, task.body.half_width, body.compression
-    )
+    return found.local_exponents(task.response, g, body.profile, task.body.half_width, body.compression)
 
 
 #: What the time to read a method's solutions is told as.

@@ -192,10 +192,8 @@ class FoundSpeed(Speed):
         h = float(np.exp(x))
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
-            pressure, left = kinked(equation, resolution, self.punch, m, h)
-        else:
-            pressure, left = vanishing(equation, resolution)
-        return _Tried(h, m, pressure, left)
+            return _Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return _Tried(h, m, *vanishing(equation, resolution))
 
     def _tilted(self, g: float, h: float, resolution: Resolution) -> _Tried:
         """Of a tilted flat punch, the higher edge of which may have lifted off."""

@@ -101,7 +101,9 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if scene.solve.degree or scene.solve.mesh != "confocal":
         return "layers have meshes of their own: no mesh, and no degree"
     if body.found and not (body.free and smooth(body.profile)):
-        return "over layers meshes follow contacts of smooth punches with two free ends alone; sie takes all"
+        return (
+            "over layers meshes follow contacts of smooth punches with two free ends alone; sie takes all"
+        )
     if quantity is None:
         return ""
     if quantity is states.INDENTATION:

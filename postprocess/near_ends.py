@@ -3,6 +3,8 @@
 By the local analysis they are smooth functions there, one of them times a power of the distance.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -39,26 +41,41 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
 _SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), (1e-3, 5e-2), 12, 3
+#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more than
+#: it is elsewhere.
+_CLEARED = 0.1
 
 
 def _two_series(
-    gap: float, seen: tuple[float, float], exponent: float, wanted: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distances (m,) at which A(d) + d^a B(d) is to be known, and what multiplies it, (n, m).
+    gap: float, seen: tuple[float, float], exponent: float, at_end: bool = False
+) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
+    """Where A(d) + d^a B(d) is to be known, and what it is by what it is there.
 
     Args:
         gap: that distances are over.
         seen: the nearest and the farthest.
         exponent: a.
-        wanted: distances that are asked for, (n,).
+        at_end: are there what solids graded from the surface on add, d^(a + 1) log d and d^(a + 2) log d,
+            and what is left of an intensity, d^(a - 1), the last of the terms?
+
+    Returns:
+        Distances (m,), the terms at other distances, of (n,) (n, terms), and what gives their amplitudes,
+        (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
     t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
     known, powers = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2, np.arange(_TERMS_OF_EACH)
-    at_known, at_wanted = (
-        np.power.outer(d / high**2, np.concatenate([powers, exponent + powers])) for d in (known, wanted)
-    )
-    return known, at_wanted @ np.linalg.pinv(at_known)
+
+    def terms(d: NDArray) -> NDArray[np.float64]:
+        x = d / high**2
+        found = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        if not at_end:
+            return found
+        more = np.power.outer(x, exponent + np.array([1.0, 2.0, -1.0]))
+        more[:, :2] *= np.log(x)[:, None]
+        return np.concatenate([found, more], axis=1)
+
+    return known, terms, np.linalg.pinv(terms(known))
 
 
 def towards_cusp(gap: float, exponent: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -69,8 +86,8 @@ def towards_cusp(gap: float, exponent: float) -> tuple[NDArray[np.float64], NDAr
         gap: distance of the next kink or end, over a.
         exponent: of the distance from the kink, in (0, 1).
     """
-    known, weights = _two_series(gap, _SEEN_AT_CUSP, exponent, np.zeros(1))
-    return known, weights[0]
+    known, terms, amplitudes = _two_series(gap, _SEEN_AT_CUSP, exponent)
+    return known, (terms(np.zeros(1)) @ amplitudes)[0]
 
 
 def slopes_towards_ends(
@@ -79,6 +96,8 @@ def slopes_towards_ends(
     """How displacement gradients next to free ends follow from those a little farther away.
 
     Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
+    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end does
+    not have, is taken away up to ``_CLEARED``.
 
     Args:
         X: positions that are wanted, over a, (n,).
@@ -92,12 +111,14 @@ def slopes_towards_ends(
     for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
         for side in (-1.0, 1.0):
             d = side * (X - end)
-            near = (d > 0.0) & (d < _SEEN[0] * min(gap, 1.0))
-            if near.any():
-                known, weights = _two_series(gap, _SEEN, a, d[near])
+            length = min(gap, 1.0)
+            near, cleared = ((d > 0.0) & (d < share * length) for share in (_SEEN[0], _CLEARED))
+            if cleared.any():
+                known, terms, amplitudes = _two_series(gap, _SEEN, a, at_end=True)
                 rows[0][near] = 0.0
                 more = np.zeros((len(X), _SEEN_AT))
-                more[near] = weights
+                more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
+                more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
                 places.append(end + side * known)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)

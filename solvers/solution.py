@@ -11,7 +11,6 @@ from galinx.solvers.contact import under_punch
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
-from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.linear import LinearPressure
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.solid import Response
@@ -125,7 +124,7 @@ class Body:
         if np.ndim(self.load) and self.alike:
             first = self.loaded(float(self.load[0]))
             return first.half_width * first.growth(self.load)
-        if isinstance(self.solid, Layered) and isinstance(self.profile, Parabolic):
+        if isinstance(self.solid, Layered):
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
         from galinx.solvers.sie.found import contacts
@@ -138,8 +137,9 @@ class Body:
         """Half-width over layers under a load [m]."""
         from galinx.solvers.layers.found import half_width_at_rest
 
-        assert isinstance(self.solid, Layered) and isinstance(self.profile, Parabolic)
-        return half_width_at_rest(self.solid, self.profile, load / self.solid.μ)
+        profile: Any = self.profile
+        assert isinstance(self.solid, Layered)
+        return half_width_at_rest(self.solid, profile, load / self.solid.μ)
 
     @property
     def compression(self) -> Any:

@@ -18,7 +18,6 @@ from galinx.meshes import MESHES
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
-from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body, Places
 
 #: Share of the distance of walls up to which points inside are asked for; and distance over a up to which
@@ -159,15 +158,15 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
         faults.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
         )
-    if body.found and not isinstance(body.profile, Parabolic):
-        faults.append(f"the punch is a {body.profile.words()}, whose contact ends are found")
     if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
-        faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}")
+        about = f" with a {body.profile.words()}" * body.found
+        faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
     if faults:
         raise BadInput(
-            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are punches with "
-            'two sharp edges, by methods = ["sie", "fem"] or one of them, with the quantities friction, '
-            "sif, surface, interior and interfaces"
+            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are all "
+            'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones by '
+            '["fem"] too, with '
+            "the quantities friction, sif, surface, interior and interfaces"
         )
 
 

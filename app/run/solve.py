@@ -131,8 +131,7 @@ class Work:
             load = np.concatenate([self.plan.load(rows) for rows in some])
         body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
-            local = local_exponents(task.response, g, body.profile, body.compression)
-            data = self._of(LOCAL, Edges(local), body)
+            data = self._of(LOCAL, Edges(_local(task, g, body)), body)
         for name in self.methods:
             try:
                 if name not in failures:
@@ -189,6 +188,15 @@ class Work:
     def _compared(self, data: dict[str, NDArray], g: NDArray, load: Any) -> list[compare.Comparison]:
         given = {states.RATIO.path: g} | self.plan.positions
         return compare.comparisons(data | given, load, self.plan.rules)
+
+
+def _local(task: Task, g: NDArray, body: Body) -> Any:
+    """Exponents at the ends of states."""
+    if not body.layered:
+        return local_exponents(task.response, g, body.profile, body.compression)
+    from galinx.solvers.layers import found  # SciPy's special functions, a slow import
+
+    return found.local_exponents(task.response, g, body.profile, task.body.half_width, body.compression)
 
 
 #: What the time to read a method's solutions is told as.

@@ -27,6 +27,8 @@ FIRST, _MORE, MOST = 24, 1.5, 1400
 #: Where pressures of two numbers of polynomials are compared.
 _ENDS = np.array([-1.0, 1.0])
 _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
+#: Distance from a tip of the punch within which they are not.
+NEAR_TIP = 0.02
 #: Least distance from -1 of the pressure's exponents: points of quadrature fall on the edges beyond it.
 _STRONGEST = 1e-4
 
@@ -73,12 +75,14 @@ class Equation:
         kernel: of the layers.
         g: σ_XY/σ_YY under the punch.
         slope: μ v,X under the punch over N/(2a) at given r.
+        kinks: places r next to which the slope is not smooth.
     """
 
     response: Any
     kernel: Kernel | Scaled
     g: float
     slope: Slope
+    kinks: tuple[float, ...] = ()
 
     @property
     def n(self) -> float:
@@ -203,7 +207,9 @@ def ever_finer(rough: bool, first: int) -> Iterator[Resolution]:
 
 
 def change(before: Pressure, now: Pressure) -> float:
-    """Of intensities and pressure without its weight, over the larger one."""
+    """Of intensities and pressure without its weight, over the larger one; not next to its tips."""
     at = np.concatenate([_ENDS, _LOOKED_AT])
+    for tip in now.tips:
+        at = at[np.abs(at - tip) > NEAR_TIP]
     one, other = before.series(at), now.series(at)
     return float(np.abs(one - other).max() / np.abs(other).max())

@@ -1,9 +1,9 @@
 """Contacts over layers whose ends are found, by the singular integral equation.
 
-The equation of a contact from m - h to m + h whose ends were sharp edges is linear in the slope there:
-under a parabola, of (m + h r)/R. The intensities at both ends vanish for one sum of three pressures, that
-of a flat punch and those under the slopes 1 and r; their shares tell m and the load that makes a contact
-of the half-width h. It grows with h, which is found for the load that is wanted.
+Where both ends are free, two conditions on the slope alone tell the middle and the load that makes a
+contact of the half-width h (:mod:`galinx.solvers.layers.ends`). Where an edge of a tilted punch lifts off,
+the contact starts at the other one, and no intensity is left at its end for one sum of two pressures, that
+of a flat punch and that under the slope 1. The load grows with h, which is found for the one wanted.
 """
 
 from collections.abc import Callable
@@ -26,56 +26,28 @@ from galinx.solvers.layers.contact import (
     met,
     not_met,
 )
+from galinx.solvers.layers.ends import Punch, balanced, conditions, vanishing
 from galinx.solvers.layers.kernel import REACH, Kernel, Scaled
+from galinx.solvers.layers.kinked import Kinked, kinked
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.layers.panelled import PanelledPressure
 from galinx.solvers.layers.pressure import Pressure
 from galinx.solvers.layers.states import Frictions, Speed
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles import check_reach, kinks
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.found import Exponents, contacts
+from galinx.solvers.sie.found import local_exponents as of_the_surface
 
-#: Slopes under a parabola, the flat punch's first.
-SHAPES = (np.zeros_like, np.ones_like, np.asarray)
-#: Steps in which a half-width is found, the largest of its logarithm, and what is rounding of it.
-_STEPS, _LARGEST, _ROUNDING = 60, 1.5, 1e-13
-#: By how much the load's logarithm grows with that of the half-width, before it is known.
-_GROWTH = 2.0
 #: Accuracy of a half-width that others are told over.
 _AT_REST = 1e-5
+#: And with which it is told whether an edge has lifted off.
+_OF_ENDS = 1e-6
+#: Distances from a free end at which pressures are compared besides, places between, and how much more
+#: they have to agree there.
+_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 #: How much farther kernels are tabulated than the largest contact so far asks for.
 _FARTHER = 1.5
-
-
-@dataclass(frozen=True)
-class Parabola:
-    """A parabolic punch and its load.
-
-    Attributes:
-        radius: over the length that lengths are over.
-        compression: N/μ over that length.
-    """
-
-    radius: float
-    compression: float
-
-    def balanced(self, K: NDArray, h: float) -> tuple[NDArray[np.float64], float, float]:
-        """What leaves no intensity at both ends of a contact of the half-width h.
-
-        Args:
-            K: intensities of the flat punch's pressure and of those under the slopes 1 and r, (2, 3).
-            h: half-width.
-
-        Returns:
-            The amplitudes of these three, the middle, and the logarithm of the load that it takes over
-            the wanted one; infinite where it takes tension.
-        """
-        shift, bend = np.linalg.solve(K[:, 1:], -K[:, 0])
-        # The slope over N/(2h) is (2h/(N/μ)) (m + h r)/R.
-        taken = 2.0 * h**2 / (self.radius * bend) if bend > 0.0 else np.inf
-        return (
-            np.array([1.0, shift, bend]),
-            float(h * shift / bend),
-            float(np.log(taken / self.compression)),
-        )
 
 
 @dataclass(frozen=True)
@@ -85,10 +57,52 @@ class Contact(Found):
     Attributes:
         half_width: of the contact.
         centre: its middle, from the punch's axis.
+        free: were the left and the right end found?
     """
 
     half_width: float = 1.0
     centre: float = 0.0
+    free: tuple[bool, bool] = (True, True)
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A contact with so many unknowns.
+
+    Attributes:
+        h, m: half-width and middle.
+        pressure: the contact's.
+        left: share of it that was taken away so that no intensity is left at free ends.
+        free: were the left and the right end found?
+    """
+
+    h: float
+    m: float
+    pressure: Pressure
+    left: float = 0.0
+    free: tuple[bool, bool] = (True, True)
+
+    def moved(self, before: "_Tried") -> float:
+        """What changed since then: the lengths, the pressure, and this next to free ends more than others.
+
+        In-plane stresses there follow the pressure with a factor.
+        """
+        lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
+        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
+        at = np.concatenate([*ends, _ACROSS])
+        one, other = (
+            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
+        )
+        near = np.abs(one - other)[: -len(_ACROSS)].max(initial=0.0) / np.abs(other).max()
+        return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
+
+    @cached_property
+    def settled(self) -> Pressure:
+        """The pressure, made to vanish at free ends where panels leave digits."""
+        pressure, free = self.pressure, self.free
+        if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
+            return replace(pressure, more=pressure.more.vanishing(free))
+        return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
 
 
 @dataclass(frozen=True)
@@ -119,7 +133,8 @@ class FoundSpeed(Speed):
         return Scaled(self.kernel, h)
 
     def solved(self, g: NDArray) -> tuple[Frictions, NDArray[np.float64]]:
-        if self.every:
+        # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
+        if self.every or len(kinks(self.punch.profile)) or isinstance(self.punch.profile, Flat):
             return Contacts(g, self._each(g)), np.zeros(1)
         return super().solved(g)
 
@@ -145,64 +160,64 @@ class FoundSpeed(Speed):
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
         """
-        check_exponents(Equation(self.response, self.kernel, g, self.slope))
+        check_exponents(self._equation(g, 1.0))
         before, left = None, np.inf
         for resolution in ever_finer(self.kernel.rough, FIRST):
-            h, m, pressure = self._balanced(g, h, resolution)
+            now = self._tried(g, h, resolution)
+            h = now.h
             if before is not None:
-                h_before, m_before, pressure_before = before
-                moved = max(abs(h - h_before), abs(m - m_before)) / h
-                left = max(change(pressure_before, pressure), moved)
+                left = max(now.moved(before), now.left)
                 if met(left, self.tolerance):
-                    return Contact(pressure, pressure_before, left, h, m)
-            before = h, m, pressure
+                    unit = self.punch.unit
+                    check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))
+                    return Contact(now.settled, before.settled, left, h, now.m, now.free)
+            before = now
         raise not_met(left, self.tolerance)
 
-    def _balanced(self, g: float, h: float, resolution: Resolution) -> tuple[float, float, Pressure]:
-        """Half-width, middle and pressure with so many unknowns."""
+    def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
+        return Equation(self.response, self.scaled(h), g, slope)
 
-        def at(x: float) -> tuple[float, Any, float]:
+    def _tried(self, g: float, h: float, resolution: Resolution) -> _Tried:
+        """With so many unknowns."""
+        if isinstance(self.punch.profile, Flat):
+            return self._tilted(g, h, resolution)
+
+        def at(x: float) -> tuple[float, float]:
             h = float(np.exp(x))
-            equation = Equation(self.response, self.scaled(h), g, self.slope)
-            parts = equation.parts(resolution, SHAPES, (-2.0, 0.0, 0.0))
-            amplitudes, m, off = self.punch.balanced(parts.ends, h)
-            return off, (parts, amplitudes), m
+            here = conditions(self._equation(g, h), resolution, self.punch, h)
+            m = here.middle()
+            return here.off(m), m
 
-        x, (parts, amplitudes), m = balanced(at, float(np.log(h)))
-        pressure = parts.pressure(amplitudes)
-        if isinstance(pressure, PanelledPressure):
-            pressure = pressure.vanishing()
-        return float(np.exp(x)), m, pressure
+        x, m = balanced(at, float(np.log(h)))
+        h = float(np.exp(x))
+        equation = self._equation(g, h, self.punch.slope(m, h))
+        if self.punch.kinks(m, h):
+            return _Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return _Tried(h, m, *vanishing(equation, resolution))
 
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> _Tried:
+        """Of a tilted flat punch, the higher edge of which may have lifted off."""
+        punch = self.punch
+        whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
+        side = 1 if rise > 0.0 else 0
 
-def balanced(at: Callable[[float], tuple[float, Any, float]], x: float) -> tuple[float, Any, float]:
-    """Where a growing function vanishes, by secants; what else it gives there.
+        def at(x: float) -> tuple[float, Any]:
+            h = float(np.exp(x))
+            parts = self._equation(g, h).parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
+            flat, bent = parts.ends[side]
+            # The slope over N/(2h) that leaves no intensity is (2h/(N/μ)) θ.
+            share = -flat / bent / rise
+            taken = 2.0 * h * punch.unit / (share * punch.compression)
+            return float(np.log(taken)) if share > 0.0 else np.inf, (parts, -flat / bent)
 
-    Args:
-        at: of the logarithm of a half-width gives that of the load over the wanted one, and more.
-        x: to begin with.
-
-    Raises:
-        SolveError: it does not vanish.
-    """
-    growth, before = _GROWTH, None
-    for _ in range(_STEPS):
-        off, *more = at(x)
-        if before is not None and np.isfinite(off) and x != before[0]:
-            secant = (off - before[1]) / (x - before[0])
-            growth = secant if 0.3 < secant < 20.0 else growth
-        step = -off / growth if np.isfinite(off) else -_LARGEST
-        step = float(np.clip(step, -_LARGEST, _LARGEST))
-        if abs(step) <= _ROUNDING or (
-            before is not None and abs(off) <= 1e-12 and abs(off) >= abs(before[1])
-        ):
-            return x, more[0], more[1]
-        before, x = (x, off), x + step
-    raise SolveError(
-        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
-        f"came to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the "
-        "limit"
-    )
+        off, (parts, _) = at(float(np.log(whole)))
+        if off <= 0.0:
+            slope = 2.0 * whole * punch.unit / punch.compression * rise
+            return _Tried(whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False))
+        x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
+        h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
+        m = float(np.sign(rise)) * (h - whole)
+        return _Tried(h, m, pressure, free=(side == 0, side == 1))
 
 
 @dataclass(frozen=True)
@@ -220,6 +235,20 @@ class Contacts(Frictions):
     def centre(self) -> NDArray[np.float64]:
         """Middle of every contact, (nodes,)."""
         return np.array([one.centre for one in self.each])
+
+    @cached_property
+    def free(self) -> NDArray[np.float64]:
+        """1 where the left and the right end were found, 0 at others, (nodes, 2)."""
+        return np.array([one.free for one in self.each], dtype=float)
+
+    @cached_property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
+        each = [one.pressure.tips for one in self.each]
+        found = np.full((len(each), max(map(len, each))), np.inf)
+        for row, tips in zip(found, each):
+            row[: len(tips)] = tips
+        return found
 
     def of_each(self, what: Callable[[Pressure, float, float], NDArray]) -> NDArray[np.float64]:
         """What is read off every pressure, its friction and half-width, and off that with fewer unknowns,
@@ -239,18 +268,48 @@ class Contacts(Frictions):
         return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
 
+def local_exponents(
+    response: Any, g: NDArray, profile: Any, unit: float, compression: NDArray
+) -> Exponents | FlatPunch:
+    """What the local analysis says of the ends: those of the surface's solid, one more at ends that are free.
+
+    Args:
+        response: of the layers at a speed.
+        g: σ_XY/σ_YY, (states,).
+        profile: of the punch.
+        unit: length to solve with where that is needed [m].
+        compression: N/μ of all or of each [m].
+    """
+    if not (isinstance(profile, Flat) and profile.rise):
+        return of_the_surface(response, g, profile, compression)
+    flat, free = FlatPunch(response, g), np.zeros((len(g), 2))
+    each = np.broadcast_to(compression, g.shape)
+    for N in np.unique(each).tolist():
+        punch, some = Punch(profile, unit, N), each == N
+        speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
+        try:
+            free[some] = [speed.contact(value).free for value in g[some].tolist()]
+        except SolveError:
+            continue  # told of by the method that solves
+    left, right = free.T
+    return Exponents(flat.α + right, flat.β + left)
+
+
 @lru_cache(maxsize=256)
-def half_width_at_rest(solid: Layered, punch: Parabolic, compression: float) -> float:
+def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> float:
     """Half-width [m] of a contact at rest without friction, to some digits: what others are told over.
 
     Args:
         solid: the layers.
-        punch: the parabola.
+        profile: of the punch.
         compression: N/μ [m].
+
+    Raises:
+        SolveError: no contact carries the load.
     """
     response = solid.response(0.0)
     # That on the surface's solid alone is near enough to measure lengths by.
-    unit = float((2.0 * compression * punch.radius * response.n / np.pi) ** 0.5)
-    parabola = Parabola(punch.radius / unit, compression / unit)
-    speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, parabola)
+    (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
+    punch = Punch(profile, unit, compression)
+    speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, punch)
     return unit * speed.contact(0.0).half_width

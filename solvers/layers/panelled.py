@@ -12,7 +12,7 @@ for what p(r) alone contributes is what the exponents make vanish.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -28,6 +28,9 @@ _DERIVATIVE = (
 )
 #: |x| beyond which the pressure is that of the ends; longest panels up to some |x|.
 _REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
+#: Panels towards a kink: their grading, and their number where the pressure itself is infinite or has a
+#: cusp, and where it is only that which layers add to it.
+_TO_KINK, _TO_TIP, TO_BEND = 0.2, 18, 5
 #: Panels towards a place where a kernel is rough: their grading, number, points; within how many lengths
 #: of a panel a place is near.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
@@ -36,15 +39,41 @@ _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
 
 
-def ends_of_panels(finest: float) -> NDArray[np.float64]:
-    """In x, none longer than ``finest`` in t, and that times the usual length in x."""
-    ends = [0.0]
-    while ends[-1] < _REACH - 1e-9:
-        x = ends[-1]
-        longest = next(length for up_to, length in _LONGEST if x < up_to)
-        there = 2.0 * finest * np.cosh(x / 2.0) ** 2
-        ends.append(min(x + min(finest * longest, there), _REACH))
-    return np.concatenate([-np.array(ends[:0:-1]), ends])
+def ends_of_panels(
+    finest: float, kinks: Sequence[float] = (), steps: int = _TO_TIP
+) -> NDArray[np.float64]:
+    """In x, none longer than ``finest`` in t, and that times the usual length in x.
+
+    Args:
+        finest: that.
+        kinks: places in t towards which panels get shorter.
+        steps: how often they do.
+    """
+    half = [0.0]
+    while half[-1] < _REACH - 1e-9:
+        half.append(min(half[-1] + float(_longest(half[-1], finest)), _REACH))
+    ends = np.concatenate([-np.array(half[:0:-1]), half])
+    at = _x(np.array(kinks, dtype=float))
+    at = at[np.abs(at) < _REACH]
+    if not len(at):
+        return ends
+    towards = np.append(_TO_KINK ** np.arange(steps + 1), 0.0)
+    graded = (at[:, None] + np.concatenate([-towards, towards])).ravel()
+    others = ends[np.abs(ends[:, None] - at).min(axis=1) > 1.0]
+    ends = np.unique(np.concatenate([others, graded[np.abs(graded) < _REACH], [-_REACH, _REACH]]))
+    while True:
+        middle = (ends[1:] + ends[:-1]) / 2.0
+        long = np.diff(ends) > 1.5 * _longest(middle, finest)
+        if not long.any():
+            return ends
+        ends = np.sort(np.append(ends, middle[long]))
+
+
+def _longest(x: Any, finest: float) -> NDArray[np.float64]:
+    """Usual length of a panel from x on."""
+    limits, lengths = np.array(_LONGEST).T
+    longest = lengths[np.searchsorted(limits, np.abs(x), side="right")]
+    return np.asarray(np.minimum(finest * longest, 2.0 * finest * np.cosh(np.abs(x) / 2.0) ** 2))
 
 
 @dataclass(frozen=True)
@@ -54,15 +83,19 @@ class Panels:
     Attributes:
         α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
         finest: longest panel in t.
+        kinks: places in t towards which panels get shorter.
+        steps: how often they do.
     """
 
     α: float
     β: float
     finest: float
+    kinks: tuple[float, ...] = ()
+    steps: int = _TO_TIP
 
     @cached_property
     def ends(self) -> NDArray[np.float64]:
-        return ends_of_panels(self.finest)
+        return ends_of_panels(self.finest, self.kinks, self.steps)
 
     @cached_property
     def half(self) -> NDArray[np.float64]:
@@ -162,16 +195,17 @@ class PanelledPressure:
     panels: Panels
     p: NDArray[np.float64]
 
-    near = 1.0
+    near: ClassVar[float] = 1.0
+    tips: ClassVar[tuple[float, ...]] = ()
 
-    def vanishing(self) -> "PanelledPressure":
-        """The same of a contact whose ends are free: p falls to them like d and d log d.
+    def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
+        """The same of a contact whose left and right end are free or not: p falls there like d and d log d.
 
         Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
         for, leaves digits of the largest p.
         """
         p = self.p.copy()
-        for x in (self.panels.x, -self.panels.x):
+        for x in [side * self.panels.x for side, one in zip((-1.0, 1.0), free) if one]:
             d = 2.0 / (1.0 + np.exp(x))
             known, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
             c, *_ = np.linalg.lstsq(_to_end(d[known]), self.p[known] / d[known], rcond=None)
@@ -247,7 +281,7 @@ def parts(
     Returns:
         The panels, and the values, (n, slopes).
     """
-    panels = Panels(equation.α, equation.β, finest)
+    panels = Panels(equation.α, equation.β, finest, equation.kinks, TO_BEND)
     n, count = equation.n, len(panels.x)
     apart = panels.apart(panels.x[:, None], panels.x - panels.x[:, None])
     np.fill_diagonal(apart, np.inf)

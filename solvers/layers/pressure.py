@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ class Pressure(Protocol):
     Attributes:
         α, β: exponents.
         near: |r| up to which p is known.
+        tips: places under the punch at which it is infinite.
     """
 
     @property
@@ -30,6 +31,8 @@ class Pressure(Protocol):
     def β(self) -> float: ...
     @property
     def near(self) -> float: ...
+    @property
+    def tips(self) -> tuple[float, ...]: ...
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         """p at |r| <= near."""
@@ -56,6 +59,8 @@ class Polynomial:
     """A pressure by Jacobi polynomials."""
 
     expansion: Expansion
+
+    tips: ClassVar[tuple[float, ...]] = ()
 
     @property
     def near(self) -> float:

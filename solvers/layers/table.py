@@ -42,7 +42,7 @@ class Table:
         for n in range(_NODES - 1, 0, -1):
             one, two = self.coefficients[panel, n] + 2.0 * ξ * one - two, one
         found = self.coefficients[panel, 0] + ξ * one - two
-        return np.asarray(found.reshape(*x.shape, -1))
+        return np.asarray(found.reshape(*x.shape, self.coefficients.shape[-1]))
 
 
 def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:

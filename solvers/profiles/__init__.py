@@ -18,9 +18,10 @@ from galinx.solvers.profiles.profile import (
     half_width,
     jumps,
     kinks,
+    smooth,
 )
 
 __all__ = [
     "PROFILES", "Profile", "check_reach", "cusp", "ends_are_found", "exponent", "half_width", "jumps",
-    "kinks",
+    "kinks", "smooth",
 ]  # fmt: skip

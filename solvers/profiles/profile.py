@@ -60,6 +60,11 @@ def jumps(profile: Any) -> bool:
     return getattr(profile, "jumps", False)
 
 
+def smooth(profile: Any) -> bool:
+    """Has the slope all derivatives wherever there is a contact?"""
+    return not len(kinks(profile)) or (exponent(profile) or 1.0) % 2.0 == 0.0
+
+
 def exponent(profile: Any) -> float | None:
     """Of a height that is a power of |X|; None if it is none."""
     return getattr(profile, "exponent", None)

@@ -4,7 +4,7 @@ Exact for parabolas and tilted flat punches, by quadrature for every other conve
 over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,7 +24,7 @@ from galinx.solvers.solids.solid import Response
 #: Positions nearer than this to where the pressure is infinite are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6
 #: Distance over a from a cusp of the pressure at which it is looked at.
-_CUSP = 1e-5
+_CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
 #: Places at which a largest pressure is looked for, and how often nearer.
 _LOOKED_AT, _ROUNDS = 41, 8
 
@@ -152,14 +152,27 @@ class Contacts:
 
 
 def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest pressure and its place, by looking nearer and nearer; a parabola at last."""
+    """Largest pressure and its place."""
     if isinstance(group.pressure, Weighted):
         place = (group.β - group.α) / (group.β + group.α)
         return -group.pressure.σ_YY(place[:, None])[:, 0], place
+    value, place = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
+    return np.array([value]), np.array([place])
+
+
+def largest(
+    pressure: Callable[[NDArray], NDArray], cusps: tuple[Sequence[float], float] = ((), 0.0)
+) -> tuple[float, float]:
+    """The largest pressure under a punch and its place, by looking nearer and nearer; a parabola at last.
+
+    Args:
+        pressure: at r in (-1, 1), (points,).
+        cusps: places at which it has a cusp, and the exponent there.
+    """
     low, high = -1.0, 1.0
     for _ in range(_ROUNDS):
         r = np.linspace(low, high, _LOOKED_AT)[1:-1]
-        p = -group.pressure.σ_YY(group.off(r))
+        p = pressure(r)
         i = int(np.clip(np.argmax(p), 1, len(r) - 2))
         step = r[1] - r[0]
         low, high = r[i] - step, r[i] + step
@@ -169,16 +182,13 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     bend = left - 2.0 * middle + right
     u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
     top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
-    found = [(max(top, middle), r[i] + u * step)]
-    places, exponent = group.cusps
+    found = [(float(max(top, middle)), float(r[i] + u * step))]
+    places, exponent = cusps
     if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
         for at in places:
-            near, far = (
-                -group.pressure.σ_YY(at + d * np.array([-1.0, 1.0])).mean() for d in (_CUSP, 2.0 * _CUSP)
-            )
-            found.append((near + (near - far) / (2.0**exponent - 1.0), at))
-    value, place = max(found)
-    return np.array([value]), np.array([place])
+            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
+            found.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
+    return max(found)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from galinx.clock import Clock
 from galinx.postprocess.quantities import Quantity, states, strata, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
-from galinx.solvers.profiles import exponent
+from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.solution import Body
 
 __all__ = ["METHODS", "MODES", "Method", "MethodKind"]
@@ -100,6 +100,10 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
         return "a solid is nearly incompressible; the integral equation takes such layers"
     if scene.solve.degree or scene.solve.mesh != "confocal":
         return "layers have meshes of their own: no mesh, and no degree"
+    if body.found and not (body.free and smooth(body.profile)):
+        return (
+            "over layers meshes follow contacts of smooth punches with two free ends alone; sie takes all"
+        )
     if quantity is None:
         return ""
     if quantity is states.INDENTATION:

@@ -1,7 +1,9 @@
 """A contact over layers at one degree on a mesh drawn for its half-width; what its error is measured on.
 
-Held under the punch are the shapes 1, s and s²; what they carry and the intensities at both ends are
-linear in their amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left.
+Held under the punch are its height around a middle that is nearly known, what that changes by where the
+middle moves, and a constant; what they carry and the intensities at both ends are linear in their
+amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left, and a middle: of a
+parabola at once, of others once that hardly moves.
 """
 
 from dataclasses import dataclass, replace
@@ -29,7 +31,6 @@ from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.states import ContactStates, Part, combined
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Places
 
@@ -118,7 +119,8 @@ class FollowedLevel:
         task: with lengths over the mesh's half-width, under the load that is wanted.
         space: of the degree.
         g: σ_XY/σ_YY.
-        punch: the punch.
+        profile: of the punch.
+        near: middle of the contact near by [m].
 
     Attributes:
         contact: nodal forces of the state, over that load.
@@ -129,18 +131,16 @@ class FollowedLevel:
         factor: of the linear system, freed, with numbers of its work.
     """
 
-    def __init__(self, work: FollowingMesh, task: Task, space: Space, g: float, punch: Parabolic) -> None:
+    def __init__(
+        self, work: FollowingMesh, task: Task, space: Space, g: float, profile: Any, near: float
+    ) -> None:
         self.space, self._g, self._task, plan = space, np.array([g]), task, work.plan
         assert plan.tests
         stretch = plan.tests.stretch
         r = space.chart.surface_position(space.contact.s)
-        solved = SlidingPunch(
-            space,
-            task.response,
-            plan.solver,
-            negligible(work),
-            np.stack([r, r**2]),  # type: ignore[arg-type]
-        )
+        h, unit = task.body.half_width, task.body.displacement
+        shapes = profile.height(near + h * r) / unit, h * profile.slope(near + h * r) / unit
+        solved = SlidingPunch(space, task.response, plan.solver, negligible(work), np.stack(shapes))  # type: ignore[arg-type]
         more = space.degree - plan.degrees[task.number]
         recovery = contact_recovery(
             space.contact.s, space.degree, space.chart, np.empty(0), tests=tests_of(plan, more)
@@ -153,7 +153,8 @@ class FollowedLevel:
                 moments = part.tested(recovery.moments)
                 return from_moments(moments, local.α, local.β, stretch).K_I[0]
 
-            self.contact, self.off, self.centre = _balanced(solved, self._g, K_I, task, punch)
+            self.contact, self.off, moved = _balanced(solved, self._g, K_I, h)
+            self.centre = near / h + moved
             self.field = solved.fields[0].duplicate()
             self.field.zeroEntries()
             self.field.maxpy(self.contact.weights[0].tolist(), solved.fields)
@@ -206,9 +207,10 @@ class FollowedLevel:
 
 
 def _balanced(
-    solved: SlidingPunch, g: NDArray, K_I: Any, task: Task, punch: Parabolic
+    solved: SlidingPunch, g: NDArray, K_I: Any, half_width: float
 ) -> tuple[ContactStates, float, float]:
-    """The state without intensities, the logarithm of its load over the task's, and the middle.
+    """The state without intensities, the logarithm of its load over the wanted one, and by how much its
+    middle is moved, over the half-width [m].
 
     Raises:
         SolveError: no load makes such a contact.
@@ -217,13 +219,11 @@ def _balanced(
     K = np.stack([K_I(part) for part in parts], axis=1)
     loads = np.array([part.load[0] for part in parts])
     amplitudes = np.linalg.solve(np.vstack([loads, K]), np.array([-2.0, 0.0, 0.0]))
-    _, shift, bend = amplitudes.tolist()
-    if not bend > 0.0:
+    # Over the load that it takes the punch's height is that over the wanted one times their quotient.
+    _, share, slope = amplitudes.tolist()
+    if not share > 0.0:
         raise SolveError(
-            f"finite elements found no load for a contact of the half-width {task.body.half_width:g} m"
+            f"finite elements found no load for a contact of the half-width {half_width:g} m"
         )
-    body = task.body
-    # Over N/(2μ) the parabola is (m + h s)²/(2R).
-    taken = body.half_width**2 * body.solid.μ / (punch.radius * bend)
     states = combined(g, parts, amplitudes[None])
-    return states, float(np.log(taken / body.load)), shift / (2.0 * bend)
+    return states, float(-np.log(share)), slope / share

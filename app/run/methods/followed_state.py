@@ -15,7 +15,7 @@ from galinx.app.run.methods.ladder import Ladder, WorkDone
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles import check_reach
 from galinx.solvers.solution import Surface
 
 #: Meshes at most, the largest step of the half-width's logarithm, and the least and the most by which the
@@ -83,9 +83,8 @@ class _Contact:
     """
 
     def __init__(self, work: Discretisation, task: Task, g: float, done: WorkDone) -> None:
-        assert isinstance(task.body.profile, Parabolic)
         self.work, self.task, self.g, self.done = work, task, g, done
-        self._punch, self._growth = task.body.profile, GROWTH
+        self._growth, self._centre = GROWTH, 0.0
         self._before: tuple[float, float] | None = None
 
     def settled(self, h: float) -> float:
@@ -96,10 +95,11 @@ class _Contact:
         """
         x, tolerance, rough = float(np.log(h)), self.work.plan.tolerance, True
         for _ in range(_MESHES):
-            off = self._off(float(np.exp(x)), rough)
+            off, lean = self._off(float(np.exp(x)), rough)
             self._learn(x, off)
             x_next = self.moved(x, off)
-            step = abs(x_next - x)
+            # What the middle moves by is known to the square of that.
+            step = max(abs(x_next - x), lean**2)
             if not rough and step <= _SETTLED * tolerance:
                 return float(np.exp(x_next))
             if rough and step <= max(_ROUGH, _SETTLED * tolerance):
@@ -122,8 +122,9 @@ class _Contact:
             self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
         self._before = x, off
 
-    def _off(self, h: float, rough: bool) -> float:
-        """Logarithm of the load that makes a contact of this half-width, over the one that is wanted."""
+    def _off(self, h: float, rough: bool) -> tuple[float, float]:
+        """Logarithm of the load that makes a contact of this half-width, over the one that is wanted; and
+        by how much the middle moves, over the half-width."""
         sized = Sized(self.task, h)
         plan = sized.plan(self.work.plan, _NONE, self.work.plan.tolerance)
         degree = plan.degrees[self.task.number]
@@ -131,11 +132,13 @@ class _Contact:
         space = mesh.space(max(degree - _LOWER, DEGREES[0]) if rough else degree)
         level = self.level(mesh, sized.seen, space)
         level.destroy()
-        return level.off
+        before, self._centre = self._centre, h * level.centre
+        return level.off, (self._centre - before) / h
 
     def level(self, mesh: FollowingMesh, task: Task, space: Any) -> FollowedLevel:
         """The contact on a space."""
-        found = FollowedLevel(mesh, task, space, self.g, self._punch)
+        profile = self.task.body.profile
+        found = FollowedLevel(mesh, task, space, self.g, profile, self._centre)
         self.done.count(found)
         return found
 
@@ -179,6 +182,7 @@ def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDo
         sized, ladder, estimates = contact.solved(h)
         last = ladder.levels[-1]
         h = float(np.exp(contact.moved(float(np.log(h)), last.off)))
+    check_reach(task.body.profile, h * (last.centre - 1.0), h * (last.centre + 1.0))
     off = abs(h / sized.half_width - 1.0)
     estimates = {word: value + off for word, value in estimates.items()}
     assert INTENSITIES in estimates

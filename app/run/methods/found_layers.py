@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.layers import AtSpeed, Punches, in_plane
 from galinx.postprocess.largest import largest
-from galinx.solvers.layers.found import Contacts, FoundSpeed, Parabola
+from galinx.solvers.layers.ends import Punch
+from galinx.solvers.layers.found import Contacts, FoundSpeed
 from galinx.solvers.layers.inside import Level
 from galinx.solvers.layers.stack import Stack
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles import cusp, kinks
 from galinx.solvers.sie.found import Exponents
+from galinx.solvers.sie.found import largest as largest_next_to_kinks
 
 
 def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAtSpeed":
@@ -31,9 +33,7 @@ def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAt
         g: all values of σ_XY/σ_YY that will be asked for, sorted.
     """
     body = task.body
-    assert isinstance(body.profile, Parabolic)
-    a = body.half_width
-    punch = Parabola(body.profile.radius / a, body.compression / a)
+    punch = Punch(body.profile, body.half_width, body.compression)
     # A place inside is in one layer with one friction and in another with the next.
     every = bool(len(task.places.points))
     speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
@@ -111,10 +111,23 @@ class FoundPunches(Punches):
 
     at: FoundAtSpeed
 
+    @cached_property
+    def free(self) -> NDArray[np.bool_]:
+        """Were the left and the right end found? (states, 2)."""
+        return self._by_nodes @ self.at.nodes.free > 0.5
+
     @property
     def local(self) -> Exponents:
         """Exponents at the ends."""
-        return Exponents(self.edges.α + 1.0, self.edges.β + 1.0)
+        left, right = self.free.T
+        return Exponents(self.edges.α + right, self.edges.β + left)
+
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (states, k)."""
+        tips = self.at.nodes.tips
+        # They are those of one node each: with kinks each friction is solved.
+        return tips[self._by_nodes.argmax(axis=1)] if tips.shape[1] else np.empty((len(self.g), 0))
 
     @property
     def half_width(self) -> NDArray[np.float64]:
@@ -126,21 +139,41 @@ class FoundPunches(Punches):
         """Middle of the contact from the punch's axis [m], (states,)."""
         return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
 
-    @property
+    @cached_property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end: none, by condition, (states, 2)."""
-        return np.zeros((len(self.g), 2))
+        """At the left and the right end: none at those that are found, by condition, (states, 2)."""
+        return np.where(self.free, 0.0, super().K_I)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, (states,)."""
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        profile = self.at.task.body.profile
+        if self.tips.shape[1] or not self.free.all():
+            finite = self.free.all(axis=1) & np.isinf(self.tips).all(axis=1)
+            value, place = self._largest if finite.any() else np.zeros((2, len(finite)))
+            return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
+        if not len(kinks(profile)):
+            return self._largest
+        each = []
+        for i, (m, h) in enumerate(zip(self.centre.tolist(), self.half_width.tolist())):
+            at = [(x - m) / h for x in kinks(profile) if abs(x - m) < h]
+            each.append(
+                largest_next_to_kinks(lambda r: self._pressure(r, i)[0], (at, cusp(profile)))  # noqa: B023
+            )
+        value, place = np.array(each).T
+        return value, place
 
-        def pressure(r: NDArray) -> NDArray[np.float64]:
-            p = self._by_nodes @ self.at.nodes.read(lambda pressure: pressure.series(r))
-            α, β = self.edges.α[:, None], self.edges.β[:, None]
-            return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
+    @property
+    def _largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Of pressures that are smooth."""
+        return largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
 
-        return largest(pressure, lambda i, r: pressure(r)[i])
+    def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
+        """Of one state or of all of them, (states, n)."""
+        some = slice(None) if i is None else slice(i, i + 1)
+        p = self._by_nodes[some] @ self.at.nodes.read(lambda pressure: pressure.series(r))
+        α, β = self.edges.α[some, None], self.edges.β[some, None]
+        return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
 
     @cached_property
     def σ_ZZ(self) -> NDArray[np.float64]:

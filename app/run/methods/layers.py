@@ -151,6 +151,11 @@ class Punches:
         """Exponents at the ends."""
         return self.edges
 
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (states, k)."""
+        return np.empty((len(self.g), 0))
+
     @cached_property
     def _by_nodes(self) -> NDArray[np.float64]:
         return self.at.nodes.at(self.g)
@@ -241,7 +246,9 @@ class Estimates:
         _, (now, before) = self.of.both_on_surface
         size = scale.of_in_plane(now, self.of.places.X)
         kernel = 2.0 * self.of.at.speed.kernel.error
-        return self._changed(now, before, size, kernel)
+        # Next to a tip stresses are infinite, and what they are is that of the distance to it.
+        told = scale.off_tips(self.of.places.X, self.of.tips)
+        return self._changed(np.where(told, now, 0.0), np.where(told, before, 0.0), size, kernel)
 
     def _at_interfaces(self) -> NDArray[np.float64]:
         now, before = np.moveaxis(self.of.both_interfaces, 1, 0)

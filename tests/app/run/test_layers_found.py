@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 
 import galinx
+from galinx.app.errors import BadInput
+from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess import scale
 from galinx.solvers.layers.contact import Equation
-from galinx.solvers.layers.found import SHAPES, FoundSpeed, Parabola
+from galinx.solvers.layers.ends import Punch, conditions
+from galinx.solvers.layers.found import FoundSpeed
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body
 
@@ -48,11 +51,10 @@ def random_scene(seed, graded, quantities=("sif",), tolerance=1e-6):
     base = scene_of(solid, c, f, quantities, tolerance)
     load, response = 1e-3, solid.response(0.0)
     speed = FoundSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
-    parts = Equation(response, speed.kernel, 0.0, np.zeros_like).parts(
-        0.5 if speed.kernel.rough else 60, SHAPES, (-2.0, 0.0, 0.0)
-    )
-    _, _, off = Parabola(1.0, load / solid.μ).balanced(parts.ends, 1.0)
-    profile = Parabolic(float(np.exp(off)))
+    equation = Equation(response, speed.kernel, 0.0, np.zeros_like)
+    punch = Punch(Parabolic(1.0), 1.0, load / solid.μ)
+    contact = conditions(equation, 0.5 if speed.kernel.rough else 60, punch, 1.0)
+    profile = Parabolic(float(np.exp(contact.off(contact.middle()))))
     return replace(base, punch=replace(base.punch, profile=profile, loads=(load,)))
 
 
@@ -218,3 +220,52 @@ def test_both_methods_tell_all_of_a_cylinder_and_the_archive_is_whole(tmp_path):
     again.report(tmp_path / "r.html")
     assert "Half-width of the contact" in (tmp_path / "r.html").read_text(encoding="utf-8")
     assert any(drawing.name == "interfaces" for drawing in again.drawings())
+
+
+#: Punches other than cylinders, by what a scene says of them.
+OTHERS = {
+    "wedge": 'profile = "wedge"\nslope = "1 deg"\n',
+    "shoulders": 'profile = "rounded_flat"\nflat_half_width = "0.5 mm"\nradius = "20 mm"\n',
+    "tilted": 'profile = "flat"\nhalf_width = "1 mm"\ntilt = "4 deg"\n',
+    "cusp": 'profile = "power"\nexponent = 1.5\ncoefficient = 0.3\n',
+    "quartic": 'profile = "power"\nexponent = 4.0\ncoefficient = 1e7\n',
+}
+
+
+def under(punch, load=2e5, **options):
+    """A scene with another punch."""
+    base = scene(load=load, **options)
+    text = f"[punch]\n{OTHERS[punch]}load = {load}\n"
+    other = parse(SCENE.format(layers=COAT, mu=0.4, tolerance=1e-6, methods='["sie"]', quantities='["sif"]')
+                  .replace("[friction]", text + "[friction]"))  # fmt: skip
+    return replace(base, punch=other.punch)
+
+
+@pytest.mark.parametrize("punch", OTHERS if THOROUGH else ["wedge", "tilted"])
+def test_the_integral_equation_tells_all_of_every_punch(punch):
+    """By its own estimates; between the half-planes of both solids."""
+    asked = ("sif", "surface", "interior", "interfaces")
+    more = "points = [[0.2, -0.5], [-1.0, -1.4]]\n"
+    result = galinx.compute(under(punch, quantities=asked, more=more))
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    infinite = np.isnan(result.data["states/sie/largest_pressure"][0])
+    assert infinite == (punch in ("wedge", "tilted"))
+    α, β = (result.data[f"states/{name}"][0] for name in ("alpha", "beta"))
+    assert α + β == pytest.approx(0.0 if punch == "tilted" else 1.0)
+
+
+def test_finite_elements_follow_other_smooth_punches():
+    asked = ("sif", "surface")
+    result = galinx.compute(under("quartic", methods=("sie", "fem"), tolerance=1e-3, quantities=asked))
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    for what, difference in apart(result.data).items():
+        estimates = [result.data[f"states/{by}/estimate{what}"][0] for by in ("fem", "sie")]
+        assert 0.0 < difference <= sum(estimates)
+
+
+def test_finite_elements_say_what_they_do_not_follow():
+    with pytest.raises(BadInput, match="with a wedge.*all punches by methods"):
+        galinx.compute(under("wedge", methods=("fem",)))
+    plan = make_plan(under("wedge", methods=("sie", "fem")))
+    assert plan.methods == ("sie",)
+    assert any("smooth punches with two free ends" in text for text in plan.skipped)

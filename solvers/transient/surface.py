@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis, Weighted
-from galinx.solvers.transient.kernel import both_sides
+from galinx.solvers.transient.sides import both_sides
 from galinx.solvers.transient.transform import at_any
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis, Weighted, shared
-from galinx.solvers.transient.kernel import Kernel, both_sides
+from galinx.solvers.transient.sides import Side, both_sides
 
 #: Octaves of panels towards distances 0 and 2 of points under the punch (so many fewer there), and
 #: Gauss's points of each.
@@ -159,6 +159,6 @@ class Transformed:
         return found[0], found[1]
 
 
-def at_any(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+def at_any(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
     """Where Im s < 0 the transform of what is real is the conjugate."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

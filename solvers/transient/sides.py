@@ -35,6 +35,12 @@ class OnLayers:
         return np.asarray(self.uniform(x, s, slopes) + self.echoes(x, s, slopes))
 
 
+def fastest(response: Any) -> float:
+    """Largest speed of a wave inside over c_s."""
+    of = Sheets if isinstance(response, LayersInCells) else Admittance
+    return of.of(response).fastest
+
+
 def both_sides(response: Any, rayleigh: float) -> tuple[Side, Side]:
     """Ahead and behind of a load that moves over a solid.
 

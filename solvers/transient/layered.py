@@ -29,6 +29,8 @@ _GONE, _LOOKED = 34.0, np.geomspace(1e-3, 1e5, 161)
 _POINTS, _TURN, _HALVINGS, _ACCURACY = 12, 5.0, 14, 1e-10
 #: Panels at first at least, and where a panel is looked at.
 _FEWEST, _BETWEEN = 8, np.linspace(-0.9, 0.9, 4)
+#: Wavenumbers whose exponentials are made at once.
+_TOGETHER = 512
 _ONE = np.eye(2)
 
 
@@ -159,7 +161,9 @@ class Echoes:
             fine = (off <= _ACCURACY * most) | (halvings == _HALVINGS)
             k = -κ[fine, :_POINTS].ravel()
             factor = np.tile(length / 2.0 * w, int(fine.sum())) * ((1j * k) if slopes else 1.0)
-            found += (told[:, fine].reshape(4, -1) * factor) @ np.exp(1j * np.outer(k, x))
+            weighted = told[:, fine].reshape(4, -1) * factor
+            for some in (slice(n, n + _TOGETHER) for n in range(0, len(k), _TOGETHER)):
+                found += weighted[:, some] @ np.exp(1j * np.outer(k[some], x))
             starts, length = np.repeat(starts[~fine], 2), length / 2.0
             starts[1::2] += length
             if not len(starts):

@@ -31,6 +31,7 @@ class Reached:
         beyond: half-width and depth of all cells over a, where a steady field is held; 0 for no more than
             waves need.
         ratio: size of a ring at the edges over that of the ring outside it.
+        depths: of interfaces over a, rising, which lines of cells follow.
     """
 
     half_width: float
@@ -40,10 +41,11 @@ class Reached:
     innermost: float
     beyond: float = 0.0
     ratio: float = 0.25
+    depths: tuple[float, ...] = ()
 
     def drawn(self) -> QuadMesh:
         """The mesh."""
-        square = min(_SQUARE, self.size)
+        square = min(_SQUARE, self.size, *self.depths[:1])
         levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
         beside, _ = corner(square, Refinement(levels, self.ratio, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
@@ -51,7 +53,7 @@ class Reached:
         between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / self.size) + 1)
         outwards = np.concatenate([between, [1.0], self._outwards(1.0 + square, self.half_width)])
         X = np.concatenate([-outwards[:0:-1], outwards])
-        Y = -np.concatenate([[0.0], self._outwards(square, self.depth)])
+        Y = -np.concatenate([[0.0], self._downwards(square)])
         boxes = np.array([
             [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
             for x0, x1 in pairwise(X)
@@ -60,11 +62,22 @@ class Reached:
         ])  # fmt: skip
         return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
 
-    def _outwards(self, first: float, last: float) -> NDArray[np.float64]:
-        """Lines from the first distance to the last one."""
+    def _downwards(self, first: float) -> NDArray[np.float64]:
+        """Lines from the first depth to the last one."""
+        between = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
+        lines = [self._lines(*ends, ends[0] - first)[:-1] for ends in pairwise(between)]
+        last = max(self.depth, between[-1] + self.size)
+        return np.concatenate([*lines, self._outwards(between[-1], last, between[-1] - first)])
+
+    def _lines(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+        """From the first distance to the last one, the first so far from the innermost cells."""
         x = [0.0]
         while x[-1] < last - first:
-            x.append(x[-1] + self.size + self.growth * x[-1])
-        lines = first + np.array(x) * ((last - first) / x[-1])
+            x.append(x[-1] + self.size + self.growth * (before + x[-1]))
+        return first + np.array(x) * ((last - first) / x[-1])
+
+    def _outwards(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+        """The same, and on to where a steady field is held."""
+        lines = self._lines(first, last, before)
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
         return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])

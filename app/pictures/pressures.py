@@ -61,6 +61,8 @@ def _start(data: dict[str, Any]) -> int:
 
 
 def _steady(data: dict[str, Any], scene: Scene, start: int) -> NDArray[np.float64]:
+    if scene.layers:  # no closed form
+        return np.full(len(data[of.PLACES.path]), np.nan)
     c, g = (float(data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
     return FlatPunch(scene.solid.response(c), g).σ_YY(data[of.PLACES.path])
 

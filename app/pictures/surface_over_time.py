@@ -24,6 +24,8 @@ _LABELS = {
     "sigma_XX": r"in-plane stress $\sigma_{XX}/(N/2a)$",
     "sigma_YY": r"contact stress $\sigma_{YY}/(N/2a)$",
 }
+#: What a caption says of what is beside it.
+_BESIDE = "; beside it what they were if they were at once those of steady motion"
 
 
 def has(data: dict[str, Any]) -> bool:
@@ -41,12 +43,13 @@ def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     t, methods = data[at.TIMES.path], _methods(data)[::-1]  # what is drawn as lines comes first
     shown = np.unique(np.linspace(0, len(t) - 1, _TIMES).round().astype(int))
     styles, count = looks(len(shown), True), len(shown)
+    sides = [("in time", 0), ("steady motion of that time's friction and load", count)]
     columns = [
         Column(title, [
             Curve(first + n, f"$t = {t[i]:.3g}\\,a/c_s$", look)
             for n, (i, look) in enumerate(zip(shown, styles))
         ])
-        for title, first in (("in time", 0), ("steady motion of that time's friction and load", count))
+        for title, first in sides[: 1 if scene.layers else 2]
     ]  # fmt: skip
     steady = _steady(data, scene, t[shown])
     as_lines = [1.0 if method == methods[0] else np.nan for method in methods]
@@ -60,8 +63,8 @@ def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     c = float(data[rows.SPEED.path][0])
     caption = (
         "Stresses along the surface, under the punch (grey) and beside it, over time, "
-        f"{' and '.join(METHODS[method] for method in methods)}, at c = {c:.4g}; beside it what they "
-        "were if they were at once those of steady motion. At the edges they grow without bound."
+        f"{' and '.join(METHODS[method] for method in methods)}, at c = {c:.4g}"
+        f"{_BESIDE * (not scene.layers)}. At the edges they grow without bound."
     )
     figure = surface_figure(data[at.PLACES.path], found, columns, choice.size)
     return Drawing("stresses", caption, figure, left_out=_left_out(data))
@@ -91,7 +94,10 @@ def _told(data: dict[str, Any], name: str, method: str) -> NDArray[np.float64]:
 
 def _steady(data: dict[str, Any], scene: Scene, t: NDArray) -> dict[str, NDArray[np.float64]]:
     """Stresses of steady motion at the friction and the load of some times, (times, places) each."""
-    response, X = scene.solid.response(float(data[rows.SPEED.path][0])), data[at.PLACES.path]
+    X = data[at.PLACES.path]
+    if scene.layers:  # no closed form
+        return {name: np.full((len(t), len(X)), np.nan) for name in _LABELS}
+    response = scene.solid.response(float(data[rows.SPEED.path][0]))
     found: dict[str, list[NDArray]] = {name: [] for name in _LABELS}
     for i in np.abs(np.subtract.outer(t, data[rows.TIMES.path])).argmin(axis=1):
         punch = FlatPunch(response, float(data[rows.RATIOS.path][0][i]))

@@ -2,11 +2,14 @@
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.scene import Scene
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.transient.admittance import InPlane
 
 #: Tolerances that can be reached.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
+#: Least thickness of a layer over a.
+_THINNEST = 0.1
 
 
 def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
@@ -27,9 +30,11 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append(
             f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
         )
-    if not isinstance(solid.response(0.0), InPlane):
-        faults.append("a start from rest is known of uniform solids, without layers")
-    elif solid.nearly_incompressible:
+    if isinstance(solid, Layered):
+        faults += _of_layers(scene, solid)
+    elif not isinstance(solid.response(0.0), InPlane):
+        faults.append("a start from rest is known of galinx's own solids, not of your own")
+    if solid.nearly_incompressible:
         faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
     if not isinstance(scene.punch.profile, Flat):
         faults.append("a start from rest is known of flat punches")
@@ -39,3 +44,21 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append('a start from rest needs solve.mode = "contact"')
     if faults:
         raise BadInput("time: " + "; ".join(faults))
+
+
+def _of_layers(scene: Scene, solid: Layered) -> list[str]:
+    """What of layers is not known."""
+    faults = []
+    if any(layer.bottom for layer in solid.layers):
+        faults.append("layers: found a graded one, expected uniform ones for motions in time")
+    thinnest = min(layer.thickness for layer in solid.layers) / scene.body.half_width
+    if thinnest < _THINNEST:
+        faults.append(
+            f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a (the punch's "
+            "half-width) for motions in time"
+        )
+    if not all(isinstance(one.response(0.0), InPlane) for one in solid.solids):
+        faults.append("layers: found a solid of your own, expected galinx's for motions in time")
+    if scene.time and scene.time.steady:
+        faults.append('time.start: found "steady" over layers, expected "rest"')
+    return faults

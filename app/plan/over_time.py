@@ -6,31 +6,16 @@ from math import ceil, log10, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.plan.driving import (
-    Friction,
-    Load,
-    Way,
-    constant,
-    frictions_at,
-    load_of,
-    taken,
-    ways_at,
-)
+from galinx.app.plan.driving import Friction, Load, Way, taken
 from galinx.app.plan.judged_over_time import rules
-from galinx.app.plan.known_in_time import check_in_time
-from galinx.app.plan.states import States
-from galinx.app.scene.scene import Scene
 from galinx.meshes.reached import Reached
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.solvers.solids.solid import Solid
-from galinx.solvers.transient.admittance import Admittance
+from galinx.solvers.layers.in_cells import LayersInCells
+from galinx.solvers.layers.layered import Layered
+from galinx.solvers.solids.solid import Response, Solid
+from galinx.solvers.transient.sides import fastest
 from galinx.texts import counted
 
-#: Starts of a scene at most, and unknowns of a mesh.
-MOST, LARGEST = 24, 300_000
-#: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
-_STEP, _OF_RAMP = 0.4, 8
 #: Shortest time over a/c_s of friction that changes along a stroke for which steps and cells are made.
 _QUICK = 1.0
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
@@ -48,6 +33,8 @@ _RATIO, _SHARP_RATIO = 0.25, 0.5
 _SEEN = 2.0, 2.0
 #: Side of cells over a then: waves ahead of the punch are short.
 _SEEN_SIZE = 2.0 / 3.0
+#: The same over the uppermost layer's thickness at most.
+_OF_LAYER = 2.0
 #: Steps by which the end is later for waves.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
@@ -92,6 +79,7 @@ class Starts:
         tolerance: wanted, relative to the largest.
         every: time between those at which the surface is told over a/c_s, None for none.
         stress_ratio: σ_XY/σ_YY over the friction coefficient.
+        a: half-width of the punch [m].
     """
 
     frictions: dict[float, tuple[Friction, ...]]
@@ -102,6 +90,7 @@ class Starts:
     tolerance: float
     every: float | None = None
     stress_ratio: float = -1.0
+    a: float = 1.0
 
     @property
     def steps(self) -> int:
@@ -205,6 +194,10 @@ class Starts:
                 total += _SYMBOL * max(3.0 * self.ways[0].duration, self.ways[0].steps)
         return total
 
+    def response(self, solid: Solid, c: float) -> Response:
+        """Of a half-plane at a speed over c_s; of layers with lengths over a."""
+        return LayersInCells(solid, c, self.a) if isinstance(solid, Layered) else solid.response(c)
+
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
         """A coarser level, which tells the error, and that which is archived.
 
@@ -213,7 +206,7 @@ class Starts:
         """
         digits, gap = -log10(self.tolerance), solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        degree += gap < _SHORT and degree < _HIGHEST
+        degree += (gap < _SHORT or isinstance(solid, Layered)) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         slow = min(1.0, gap / _SLOW) ** 0.5
         long = _LONG + _LONGER * max(digits - 3.0, 0.0)
@@ -222,9 +215,13 @@ class Starts:
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO
-        width, depth = self._reach(Admittance.of(solid.response(c)).fastest, c)
+        width, depth = self._reach(fastest(self.response(solid, c)), c)
+        depths: tuple[float, ...] = ()
+        if isinstance(solid, Layered):
+            depths = tuple((solid.depths / self.a).tolist())
+            size = min(size * min(1.0, solid.slowest / solid.c_s), _OF_LAYER * depths[0])
         coarse, fine = (
-            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio)
+            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths)
             for of in (_GROWN * growth, growth)
         )
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
@@ -244,78 +241,3 @@ class Starts:
         # On the way down and up the punch goes ahead by c T, but for what is looked at.
         down = sqrt((fast * T) ** 2 - max(c * T - 2.0 - 2.0 * beside, 0.0) ** 2) / 2.0
         return ahead + beside, down + below / 2.0
-
-
-def starts(scene: Scene, states: States) -> Starts | None:
-    """The starts of a scene by its friction states, None where it asks for none.
-
-    Raises:
-        BadInput: they are known of other scenes only.
-    """
-    if scene.time is None:
-        return None
-    methods = tuple(name for name in (FEM, SIE) if name in scene.solve.methods)
-    tolerance = scene.solve.tolerance
-    check_in_time(scene, methods)
-    load = load_of(scene)
-    largest = min(_STEP, load.shortest / _OF_RAMP)
-    step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
-    frictions = _frictions(scene, states)
-    ways = ways_at(scene, next(iter(frictions)), step)
-    if methods == (SIE,) and len(ways) > 1:
-        raise BadInput(
-            f"solve.methods: found sie only, which knows no way back, and the punch turns round at "
-            f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
-        )
-    found = Starts(
-        frictions, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
-        scene.friction.stress_ratio,
-    )  # fmt: skip
-    if FEM in methods:
-        _check_size(found, scene)
-    return found
-
-
-def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]]:
-    """Friction of all starts by speed.
-
-    Raises:
-        BadInput: there are too many, or their speed has no answer.
-    """
-    assert scene.time
-    c = states.columns["c"]
-    pairs = np.unique(np.column_stack([c, states.g]), axis=0)
-    found: dict[float, tuple[Friction, ...]] = {}
-    if scene.time.by_law:
-        speeds = np.unique(c).tolist()
-        if len(speeds) > 1 or speeds[0] == 0.0:
-            raise BadInput(
-                f'time.friction = "law": found {len(speeds)} speeds, the first {speeds[0]:g} over c_s; '
-                "expected one that is not 0, for strokes of another take another time"
-            )
-        found[speeds[0]] = frictions_at(scene, speeds[0])
-    else:
-        for speed, ratio in pairs.tolist():
-            found[speed] = (*found.get(speed, ()), constant(ratio))
-    if (many := sum(map(len, found.values()))) > MOST:
-        raise BadInput(
-            f"time: the scene has {many} states of different speed or friction, expected at most "
-            f"{MOST}, each of which is followed in time: shorten its lists"
-        )
-    limit = scene.solid.limit()
-    if fast := [f"{speed:g}" for speed in found if speed >= limit]:
-        raise BadInput(
-            f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)"
-        )
-    return found
-
-
-def _check_size(found: Starts, scene: Scene) -> None:
-    for c in found.frictions:
-        _, level = found.levels(scene.solid, c)
-        if level.unknowns > LARGEST:
-            raise BadInput(
-                f"time.end = {found.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
-                f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
-                "end, a larger solve.tolerance, or a smaller Poisson's ratio"
-            )

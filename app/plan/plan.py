@@ -18,7 +18,7 @@ from galinx.app.plan.limits import (
     warnings_of,
     warnings_of_size,
 )
-from galinx.app.plan.over_time import starts
+from galinx.app.plan.starts import starts
 from galinx.app.plan.states import enumerate_states, laws_followed, order, seconds_to_integrate
 from galinx.app.plan.task import Plan, Tasks
 from galinx.app.run.methods import METHODS

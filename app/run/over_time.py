@@ -10,6 +10,7 @@ from galinx.app import ranks
 from galinx.app.errors import finite_elements_installed
 from galinx.app.plan.driving import Friction
 from galinx.app.plan.over_time import Level, Starts
+from galinx.app.run.at_once import AtOnce
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
@@ -20,6 +21,7 @@ from galinx.postprocess.quantities import energy_over_time, work_over_time
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.quantities.to_steady import APPROACH
+from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.approach import approach
@@ -81,13 +83,14 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
     for c, of_speed in starts.frictions.items():
         for i, friction in enumerate(of_speed):
             g = np.array([friction(at) for at in t])
-            steady = FlatPunch(solid.response(c), g[-1])
+            at_once = AtOnce(starts, solid, c)
+            centres = at_once.centres(g)
             one = {
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
-                rows.STEADY_CENTRE.path: np.array(steady.β - steady.α),
-                rows.STEADY_K_I.path: np.array(steady.K_I),
-                rows.CENTRES.path: _leans(solid.response(c), friction, t),
-                APPROACH.path: np.array(approach(solid, c, g[-1]).within(0.01)),
+                rows.STEADY_CENTRE.path: centres[-1],
+                rows.STEADY_K_I.path: np.array(at_once.K_I(g[-1])),
+                rows.CENTRES.path: centres,
+                APPROACH.path: np.array(_within(solid, c, g[-1])),
                 energy_over_time.DISSIPATED.path: starts.dissipated(c, friction),
             }  # fmt: skip
             for method in (SIE, FEM):
@@ -105,15 +108,13 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
     return whole
 
 
-def _leans(response: Response, friction: Friction, t: NDArray) -> NDArray[np.float64]:
-    """Centre of the pressure over a if it were at once that of steady motion."""
-    ratios, which = np.unique([friction(at) for at in t], return_inverse=True)
-    steady = [FlatPunch(response, ratio) for ratio in ratios]
-    return np.array([one.β - one.α for one in steady])[which]
+def _within(solid: Solid, c: float, g: float) -> float:
+    """Time from which on a start is within 1 % of steady motion, by a formula for uniform solids."""
+    return np.nan if isinstance(solid, Layered) else approach(solid, c, g).within(0.01)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
-    first, response = starts.ways[0], solid.response(c)
+    first, response = starts.ways[0], starts.response(solid, c)
     shortest = min(starts.shortest, *(friction.shortest for friction in starts.frictions[c]))
     largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
@@ -194,7 +195,9 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
     for friction, (before, seen_before), (values, seen) in zip(starts.frictions[c], coarse, fine):
         every_other = [value[1::2] for value in values]
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
-        lean = _leans(solid.response(c), friction, starts.times()) if starts.changing else np.zeros(1)
+        lean = np.zeros(1)
+        if starts.changing:
+            lean = AtOnce(starts, solid, c).centres(np.array([friction(at) for at in starts.times()]))
         found.append(
             _named(FEM, values)
             | {
@@ -222,7 +225,7 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     from galinx.solvers.fem.in_time import Phase, SlidingInTime
     from galinx.solvers.fem.space import Space
 
-    response = solid.response(c)
+    response = starts.response(solid, c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
     space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)

@@ -25,7 +25,9 @@ DIRECTION = _row("direction", "1", "direction of motion over time, 1 or -1", (IN
 TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE)
 STEADY_CENTRE = _row(
-    "steady_centre", "1", "centre of the pressure in steady motion over the half-width, closed form",
+    "steady_centre", "1",
+    "centre of the pressure in steady motion over the half-width, closed form, over layers by their "
+    "integral equation",
     (START,),
 )  # fmt: skip
 CENTRES = _row(
@@ -34,7 +36,9 @@ CENTRES = _row(
     (START, INSTANT),
 )  # fmt: skip
 STEADY_K_I = _row(
-    "steady_K_I", "1", "stress intensity factor in steady motion, both ends, closed form", (START,)
+    "steady_K_I", "1",
+    "stress intensity factor in steady motion, both ends, closed form; none over layers, where they differ",
+    (START,), nan_allowed=ANYWHERE,
 )
 
 

@@ -33,8 +33,8 @@ WITHIN = {
 APPROACH = Quantity(
     "time/steady_within_1_percent", "a/c_s",
     "time from which on a start is within 1 % of steady motion, the formula for late times, under a load "
-    "that came on at once",
-    (START,), asked_by=TIME, range=_NOT_NEGATIVE,
+    "that came on at once; none over layers",
+    (START,), asked_by=TIME, range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -16,7 +16,7 @@ from galinx.solvers.fem.element import Element
 from galinx.solvers.fem.forms import carried_density, momentum_density
 from galinx.solvers.fem.shapes import Shapes
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.solid import ByCells, Response
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Motion:
 
     Args:
         space: the space.
-        response: of the half-plane at a speed.
+        response: of the half-plane at a speed; layers of it are uniform.
         sharp: are there waves that no cell holds, as where a punch turns round?
     """
 
@@ -40,24 +40,41 @@ class Motion:
         """The steady form."""
         space, element = self.space, Element(self.space.reference_nodes)
         dofs = np.arange(element.size)
-        H = space.form.density(self.response)
+        H = space.densities(self.response, space.vertices)
         chart = space.contracted(self.response)
         return self._sum(element.matrices(H, chart, space.vertices, [(dofs, dofs)])[0])
 
     @cached_property
     def M(self) -> csr_matrix:
         """Of momentum, of one component: the other has the same."""
-        return self._sum(_of_component(self._products[0], momentum_density()))
+        return self._sum(self._weighted(_of_component(self._products[0], momentum_density())))
 
     @cached_property
     def B(self) -> csr_matrix:
         """Of what is carried along, u,X·w, of one component."""
-        return self._sum(_of_component(self._products[1], carried_density()))
+        return self._sum(self._weighted(_of_component(self._products[1], carried_density())))
 
     @cached_property
     def D(self) -> csr_matrix:
         """Of waves that far cells are too large for, of one component."""
-        return self._sum(damping(self.space, self.sharp))
+        impedance = np.sqrt(self.ρ * self._of_cells("c66"))
+        return self._sum(impedance[:, None, None] * damping(self.space, self.sharp))
+
+    @property
+    def ρ(self) -> NDArray[np.float64]:
+        """Density of each cell over that of the solid at the surface, (cells,)."""
+        return self._of_cells("ρ")
+
+    def _of_cells(self, name: str) -> NDArray[np.float64]:
+        """A constant of each cell over that of the solid at the surface."""
+        response, Y = self.response, self.space.vertices[:, :, 1].mean(axis=1)
+        if not isinstance(response, ByCells):
+            return np.ones(len(Y))
+        by_solid = np.array([float(rows[0, 0]) for rows in response.constants([name])])
+        return by_solid[response.solids(Y)]
+
+    def _weighted(self, matrices: NDArray) -> NDArray[np.float64]:
+        return np.asarray(self.ρ[:, None, None] * matrices)
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:

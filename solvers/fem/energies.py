@@ -51,7 +51,7 @@ class Energies:
 
     def __init__(self, motion: Motion) -> None:
         space, self._c = motion.space, motion.response.c
-        self._H = space.form.density(motion.response)
+        self._H, self._ρ = space.densities(motion.response, space.vertices), motion.ρ[:, None]
         self._nodes = adapter.cell_nodes(space.V)
         self._shapes = Shapes.of(space.reference_nodes)
         vertices = space.vertices[:, :, :2]
@@ -77,19 +77,20 @@ class Energies:
             way: ±1, in which it goes.
         """
         fields = np.stack([u.reshape(-1, 2), w.reshape(-1, 2)], axis=-1)[self._nodes]
-        whole = self._of(self._all, fields, way)
+        whole = self._of(self._all, fields, way, np.arange(len(fields)))
         cut = np.einsum("mkn,mncf->mkcf", self._onto, fields[self._cut])
-        near = whole[self._inside].sum(axis=0) + self._of(self._parts, cut, way).sum(axis=0)
+        near = whole[self._inside].sum(axis=0) + self._of(self._parts, cut, way, self._cut).sum(axis=0)
         total = whole.sum(axis=0)
         return np.array([near[0], near[1], total[0], total[1], total[2]])
 
-    def _of(self, of: _Cells, fields: NDArray, way: int) -> NDArray[np.float64]:
+    def _of(self, of: _Cells, fields: NDArray, way: int, which: NDArray) -> NDArray[np.float64]:
         """Strain and kinetic energy and momentum of each cell, (cells, 3).
 
         Args:
             of: the cells.
             fields: displacements and velocities at their nodes, (cells, nodes, component, 2).
             way: ±1.
+            which: cells of the mesh they are, or are parts of.
         """
         found = np.empty((len(fields), 3))
         for start in range(0, len(fields), _TOGETHER):
@@ -100,8 +101,10 @@ class Energies:
             u_X = slopes[..., 0]
             moving = self._shapes.values @ w - way * self._c * u_X
             gradients = slopes.reshape(*slopes.shape[:2], 4)
-            strain = ((gradients @ self._H) * gradients).sum(axis=-1) + self._c**2 * (u_X**2).sum(axis=-1)
-            densities = strain / 2.0, (moving**2).sum(axis=-1) / 2.0, -(moving * u_X).sum(axis=-1)
+            H, ρ = self._H if self._H.ndim == 2 else self._H[which[some]], self._ρ[which[some]]
+            strain = ((gradients @ H) * gradients).sum(axis=-1) + ρ * self._c**2 * (u_X**2).sum(axis=-1)
+            momentum, kinetic = -ρ * (moving * u_X).sum(axis=-1), ρ * (moving**2).sum(axis=-1)
+            densities = strain / 2.0, kinetic / 2.0, momentum
             found[some] = np.stack([(one * of.weights[some]).sum(axis=1) for one in densities], axis=-1)
         return found
 

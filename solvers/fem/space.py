@@ -267,18 +267,16 @@ class Space:
 
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]
-        if isinstance(response, ByCells):
-            H = self._densities(response, corners)
-        else:
-            H = self.form.density(response)
-        return part(H, self.contracted(response), corners)
+        return part(self.densities(response, corners), self.contracted(response), corners)
 
     def nodes_on(self, part: str) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
         return self._owned_blocks(part)
 
-    def _densities(self, response: ByCells, corners: NDArray) -> NDArray[np.float64]:
-        """The form at the points of quadrature of cells, or in cells where all of them are uniform."""
+    def densities(self, response: Response, corners: NDArray) -> NDArray[np.float64]:
+        """The form of all cells; of each where they differ; or at the points of quadrature of each."""
+        if not isinstance(response, ByCells):
+            return self.form.density(response)
         solid = response.solids(corners[..., 1].mean(axis=1))
         by_solid = [self.form.densities(rows) for rows in response.constants(self.form.constants)]
         if all(len(by_solid[i]) == 1 for i in np.unique(solid)):

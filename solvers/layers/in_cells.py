@@ -15,8 +15,8 @@ from galinx.solvers.layers.layered import Layer, LayeredResponse
 from galinx.solvers.panel import chebyshev_points, interpolation
 from galinx.solvers.solids.solid import Solid
 
-#: Columns of tables of constants: stiffness row by row, and the speed.
-_COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26", "c66", "c"))}
+#: Columns of tables of constants: stiffness row by row, the speed, and the density.
+_COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26", "c66", "c", "ρ"))}
 #: Points at which a graded solid is tabulated at first and at most, and what may be left between them.
 _FEW, _MANY, _LEFT = 9, 257, 1e-13
 
@@ -46,7 +46,7 @@ class LayersInCells(LayeredResponse):
 
     @cached_property
     def _tables(self) -> list[NDArray[np.float64]]:
-        """Of each solid the columns of ``_COLUMNS`` at points of its share of change, (7, n)."""
+        """Of each solid the columns of ``_COLUMNS`` at points of its share of change, (8, n)."""
         layers = [*self.solid.layers, Layer(1.0, self.solid.substrate)]
         return [self._table(layer) for layer in layers]
 
@@ -54,9 +54,9 @@ class LayersInCells(LayeredResponse):
         return _tabulated(lambda share: self._column(layer.at(share)), layer.bottom is None)
 
     def _column(self, solid: Solid) -> NDArray[np.float64]:
-        """Stiffness over the surface's μ, and the speed over the surface's wave speed by density."""
-        C = stiffness(solid) / self.solid.μ
-        return np.append(C[np.triu_indices(3)], self.c * (solid.ρ / self.solid.ρ) ** 0.5)
+        """Stiffness over the surface's μ, the speed over the surface's wave speed by density, and that."""
+        C, ρ = stiffness(solid) / self.solid.μ, solid.ρ / self.solid.ρ
+        return np.append(C[np.triu_indices(3)], [self.c * ρ**0.5, ρ])
 
     @cached_property
     def _faces(self) -> NDArray[np.float64]:
@@ -80,7 +80,7 @@ class LayersInCells(LayeredResponse):
             here = solid == i
             values = interpolation(self.share(i, Y[here]), self._tables[i].shape[1]) @ self._tables[i].T
             some = np.empty((len(values), 3, 3))
-            some[:, row, column] = some[:, column, row] = values[:, :-1]
+            some[:, row, column] = some[:, column, row] = values[:, : len(row)]
             C[here] = some
         strain = np.stack([G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]], axis=-1)
         return np.moveaxis(np.einsum("nij,...nj->...ni", C, strain, optimize=True), -1, 0)
@@ -102,7 +102,7 @@ class LayersInCells(LayeredResponse):
                 continue
             Y = bottom + (top - bottom) * (_τ + 1.0) / 2.0
             of_share = interpolation(self.share(i, Y), self._tables[i].shape[1])
-            c11, c12, c16, c22, c26, c66, c = self._tables[i] @ of_share.T
+            c11, c12, c16, c22, c26, c66, c, _ = self._tables[i] @ of_share.T
             Q, R, T = (
                 np.moveaxis(np.array(M), 2, 0)
                 for M in ([[c11 - c**2, c16], [c16, c66 - c**2]], [[c16, c12], [c66, c26]],

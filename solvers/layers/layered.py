@@ -118,10 +118,11 @@ class Layered:
 
     @property
     def nearly_incompressible(self) -> bool:
-        return any(solid.nearly_incompressible for solid in self._all)
+        return any(solid.nearly_incompressible for solid in self.solids)
 
     @property
-    def _all(self) -> Sequence[Solid]:
+    def solids(self) -> Sequence[Solid]:
+        """All of them, from the top down, graded ones at both faces."""
         ends = (end for layer in self.layers for end in (layer.solid, layer.bottom) if end is not None)
         return (*ends, self.substrate)
 
@@ -142,8 +143,13 @@ class Layered:
         return self.surface.c_s
 
     @property
+    def slowest(self) -> float:
+        """Least of the wave speeds by which solids' speeds are told [m/s]."""
+        return min(solid.c_s for solid in self.solids)
+
+    @property
     def knows_σ_ZZ(self) -> bool:
-        return all(solid.knows_σ_ZZ for solid in self._all)
+        return all(solid.knows_σ_ZZ for solid in self.solids)
 
     @cached_property
     def depths(self) -> NDArray[np.float64]:
@@ -201,7 +207,7 @@ class Layered:
         Raises:
             ValueError: waves in one of the solids are not faster.
         """
-        for solid in self._all:
+        for solid in self.solids:
             solid.response(c * self.c_s / solid.c_s)
         return LayeredResponse(self, c)
 
@@ -262,7 +268,7 @@ class LayeredResponse:
     def mirrored(self) -> bool:
         """Are all solids their own mirror images?"""
         return all(
-            solid.response(self.c * self.solid.c_s / solid.c_s).mirrored for solid in self.solid._all
+            solid.response(self.c * self.solid.c_s / solid.c_s).mirrored for solid in self.solid.solids
         )
 
     def medium(self, solid: Solid) -> Medium:

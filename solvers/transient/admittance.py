@@ -47,6 +47,40 @@ class InPlane(Protocol):
 
 
 @dataclass(frozen=True)
+class Waves:
+    """Two of the four of a solid at some speeds: fields with u,Y = G u,X and tractions L u,X.
+
+    Attributes:
+        s, d: sum and product of their roots p, (n,).
+        G, L: (n, 2, 2), L over c₆₆.
+    """
+
+    s: NDArray[np.complex128]
+    d: NDArray[np.complex128]
+    G: NDArray[np.complex128]
+    L: NDArray[np.complex128]
+
+    @property
+    def conjugate(self) -> "Waves":
+        """Of the conjugate speeds the two others."""
+        return Waves(self.s.conj(), self.d.conj(), self.G.conj(), self.L.conj())
+
+    def exponential(self, κ: NDArray) -> NDArray[np.complex128]:
+        """e^(iκG), (n, 2, 2), κ (n,) of that sign with which it decays."""
+        middle = self.s / 2.0
+        half = np.sqrt(middle**2 - self.d)
+        one, two = (np.exp(1j * κ * (middle + sign * half)) for sign in (1.0, -1.0))
+        x = κ * half
+        near = np.abs(x) < 0.5
+        by_series = np.exp(1j * κ * middle) * κ * np.sinc(np.where(near, x, 0.0) / pi)
+        by_difference = (one - two) / (2j * np.where(near, 1.0, half))
+        change = np.where(near, by_series, by_difference)
+        beyond = self.G - middle[:, None, None] * np.eye(2)
+        mean = (one + two)[:, None, None] / 2.0 * np.eye(2)
+        return np.asarray(mean + 1j * change[:, None, None] * beyond)
+
+
+@dataclass(frozen=True)
 class Admittance:
     """Of the surface of a uniform solid.
 
@@ -81,6 +115,10 @@ class Admittance:
 
     def __call__(self, C: NDArray) -> NDArray[np.complex128]:
         """𝐘 of the roots with Im p > 0 at speeds (n,): (n, 2, 2)."""
+        return np.asarray(np.linalg.inv(self.waves(C).L), dtype=complex)
+
+    def waves(self, C: NDArray) -> "Waves":
+        """The two with Im p > 0 at speeds (n,)."""
         C = np.asarray(C, dtype=complex)
         s, d = self._sum_and_product(C)
         C2 = C * C
@@ -96,7 +134,7 @@ class Admittance:
         G = np.linalg.solve(np.moveaxis(M, 2, 0), np.moveaxis(F, 2, 0))
         across = np.array([[1.0, self.c26], [self.c26, self.c22]])
         L = np.array([[self.c16, 1.0], [self.c12, self.c26]]) + across @ G
-        return np.asarray(np.linalg.inv(L), dtype=complex)
+        return Waves(s, d, G, L)
 
     def _quartic(self, C2: Any) -> list[Any]:
         """Coefficients of p⁰ to p⁴ at C²."""
@@ -114,10 +152,7 @@ class Admittance:
         size = np.maximum(1.0, np.abs(C))
         a = np.array(self._quartic(C * C))
         b = (a / a[4] * size ** (np.arange(5)[:, None] - 4.0))[:4]  # of p over its size
-        companion = np.zeros((len(C), 4, 4), dtype=complex)
-        companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
-        companion[:, :, 3] = -b.T
-        p = np.asarray(np.linalg.eigvals(companion), dtype=complex)
+        p = _roots(b)
         p = np.take_along_axis(p, np.argsort(-self._imaginary(p, C, size, b), axis=1), axis=1)
         s, d = _polished(p[:, :2].sum(axis=1), p[:, :2].prod(axis=1), p[:, 2:].prod(axis=1), b)
         return s * size, d * size**2
@@ -199,6 +234,20 @@ class Admittance:
         """Of plane waves straight down, over √(μρ): tractions by velocities of the surface, (2, 2)."""
         λ, vectors = np.linalg.eigh(self._parts[2])
         return np.asarray(vectors * np.sqrt(λ) @ vectors.T)
+
+
+def _roots(b: NDArray) -> NDArray[np.complex128]:
+    """Of p⁴ + b₃p³ + … by coefficients of p⁰ to p³, (4, n): (n, 4)."""
+    if not (b[1].any() or b[3].any()):
+        middle = -b[2] / 2.0
+        apart = np.sqrt(middle**2 - b[0])
+        larger = middle + np.where((middle * apart.conj()).real < 0.0, -apart, apart)
+        roots = np.sqrt(np.array([larger, b[0] / np.where(larger == 0.0, 1.0, larger)]))
+        return np.concatenate([roots, -roots]).T
+    companion = np.zeros((b.shape[1], 4, 4), dtype=complex)
+    companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
+    companion[:, :, 3] = -b.T
+    return np.asarray(np.linalg.eigvals(companion), dtype=complex)
 
 
 def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:

@@ -23,7 +23,6 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.admittance import Admittance
 
 #: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
@@ -211,17 +210,6 @@ def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
     found = whole[place]
     found *= rest[step]
     return np.asarray(found)
-
-
-def both_sides(response: Response, rayleigh: float) -> tuple[Kernel, Kernel]:
-    """Kernels ahead and behind of a load that moves over a solid.
-
-    Args:
-        response: of the solid at the load's speed.
-        rayleigh: of the wave along its surface over c_s.
-    """
-    surface = Admittance.of(response)
-    return Kernel(surface, response.c, rayleigh), Kernel(surface.mirrored, -response.c, rayleigh)
 
 
 def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

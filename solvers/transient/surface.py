@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis, Weighted
-from galinx.solvers.transient.kernel import both_sides
+from galinx.solvers.transient.panels import divided
+from galinx.solvers.transient.sides import both_sides
 from galinx.solvers.transient.transform import at_any
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
@@ -41,6 +42,7 @@ class AlongSurface:
     def __init__(self, response: Response, rayleigh: float, s: NDArray, X: NDArray) -> None:
         self._response, self._s, self._X = response, s, X
         self._kernels = both_sides(response, rayleigh)
+        self._slowest = 1.0 / (rayleigh - abs(response.c))
 
     def strains(self, basis: Basis) -> NDArray[np.complex128]:
         """û,X over N̂/(2aμ) of each polynomial of the pressure where σ_XY = g σ_YY, (s, places, terms)."""
@@ -95,7 +97,7 @@ class AlongSurface:
         last = 1.0 + float(np.abs(self._X).max())
         near = near[near < _EVEN]
         even = np.linspace(_EVEN, last, int(np.ceil((last - _EVEN) / _EVEN)) + 1)
-        return np.concatenate([[0.0], near, even])
+        return divided(np.concatenate([[0.0], near, even]), self._s, self._slowest)
 
     @cached_property
     def _x(self) -> NDArray[np.float64]:

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis, Weighted, shared
-from galinx.solvers.transient.kernel import Kernel, both_sides
+from galinx.solvers.transient.panels import divided
+from galinx.solvers.transient.sides import Side, both_sides
 
 #: Octaves of panels towards distances 0 and 2 of points under the punch (so many fewer there), and
 #: Gauss's points of each.
@@ -41,6 +42,7 @@ class Transformed:
     ) -> None:
         self._response, self.s, self._terms, self._panel = response, s, terms, min(panel, _EVEN)
         self._kernels = both_sides(response, rayleigh)
+        self._slowest = 1.0 / (rayleigh - abs(response.c))
 
     def basis(self, g: float) -> Basis:
         """Of the pressure where σ_XY = g σ_YY."""
@@ -129,7 +131,7 @@ class Transformed:
         near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
         even = np.linspace(_EVEN, 2.0, ceil((2.0 - _EVEN) / self._panel), endpoint=False)
         towards = [near[near < _EVEN], even, 2.0 - near[near < _EVEN][:_FAR:-1]]
-        edges = np.concatenate([[0.0], *towards, [2.0]])
+        edges = divided(np.concatenate([[0.0], *towards, [2.0]]), self.s, self._slowest)
         t, w = leggauss(_POINTS)
         half = np.diff(edges)[:, None] / 2.0
         return (edges[:-1, None] + half * (1.0 + t)).ravel(), (half * w).ravel()
@@ -159,6 +161,6 @@ class Transformed:
         return found[0], found[1]
 
 
-def at_any(kernel: Kernel, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+def at_any(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
     """Where Im s < 0 the transform of what is real is the conjugate."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

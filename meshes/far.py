@@ -1,4 +1,4 @@
-"""How far away a boundary is that follows the forces at the contact, and how many moments of these it follows.
+"""How far away a boundary is that follows the forces at the contact, and how many of their moments.
 
 See :mod:`galinx.solvers.fem.far`; distances are over a, in the plane where the boundary is nearest.
 """

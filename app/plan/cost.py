@@ -93,7 +93,7 @@ def bytes_of_levels(unknowns: float, direct: bool) -> float:
 
     Measured at degree 2 with so many unknowns on the finest level; a fourth less at degree 8.
     """
-    return unknowns * (900.0 + 48.0 * log2(max(unknowns, 2)) if direct else 1400.0)
+    return unknowns * (980.0 + 48.0 * log2(max(unknowns, 2)) if direct else 1400.0)
 
 
 def free_memory() -> float:

@@ -29,6 +29,9 @@ _MEMORY = (-5, -7, -13, -19, -22)
 #: Percent by which MUMPS enlarges its estimate of the workspace: its own default, then once more.
 WORKSPACE = (35, 400)
 
+#: Numbers of right-hand sides that are solved for at once: three times 64 MB.
+_AT_ONCE = 8_000_000
+
 
 class Factor:
     """Factor of a symmetric matrix, kept for many right-hand sides.
@@ -118,6 +121,9 @@ class Factor:
             # The first alone gives the condition number, which several at once do not.
             first, rest = self.solve(loads[0]), loads[1:]
             return [first, *(self.solve_all(rest) if rest else [])]
+        few = max(_AT_ONCE // loads[0].getSize(), 1)
+        if len(loads) > few:
+            return [*self.solve_all(loads[:few]), *self.solve_all(loads[few:])]
         with self._clock("back-substitutions"):
             rows = (loads[0].getLocalSize(), loads[0].getSize())
             B = PETSc.Mat().createDense((rows, (PETSc.DECIDE, len(loads))), comm=self.A.comm)

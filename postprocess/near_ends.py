@@ -41,8 +41,8 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
 _SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), (1e-3, 5e-2), 12, 3
-#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more than
-#: it is elsewhere.
+#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more
+#: than it is elsewhere.
 _CLEARED = 0.1
 
 
@@ -96,8 +96,8 @@ def slopes_towards_ends(
     """How displacement gradients next to free ends follow from those a little farther away.
 
     Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
-    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end does
-    not have, is taken away up to ``_CLEARED``.
+    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end
+    does not have, is taken away up to ``_CLEARED``.
 
     Args:
         X: positions that are wanted, over a, (n,).

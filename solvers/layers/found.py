@@ -1,9 +1,10 @@
 """Contacts over layers whose ends are found, by the singular integral equation.
 
 Where both ends are free, two conditions on the slope alone tell the middle and the load that makes a
-contact of the half-width h (:mod:`galinx.solvers.layers.ends`). Where an edge of a tilted punch lifts off,
-the contact starts at the other one, and no intensity is left at its end for one sum of two pressures, that
-of a flat punch and that under the slope 1. The load grows with h, which is found for the one wanted.
+contact of the half-width h (:mod:`galinx.solvers.layers.ends`). Where an edge of a tilted punch lifts
+off, the contact starts at the other one, and no intensity is left at its end for one sum of two
+pressures, that of a flat punch and that under the slope 1. The load grows with h, which is found for the
+one wanted.
 """
 
 from collections.abc import Callable
@@ -83,9 +84,9 @@ class _Tried:
     free: tuple[bool, bool] = (True, True)
 
     def moved(self, before: "_Tried") -> float:
-        """What changed since then: the lengths, the pressure, and this next to free ends more than others.
+        """What changed since then: the lengths, and the pressure, next to free ends with a factor.
 
-        In-plane stresses there follow the pressure with a factor.
+        In-plane stresses follow it with one there.
         """
         lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
         ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
@@ -182,6 +183,15 @@ class FoundSpeed(Speed):
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
 
+        h, m = self._lengths(g, h, resolution)
+        equation = self._equation(g, h, self.punch.slope(m, h))
+        if self.punch.kinks(m, h):
+            return _Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return _Tried(h, m, *vanishing(equation, resolution))
+
+    def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
+        """Half-width and middle between two free ends."""
+
         def at(x: float) -> tuple[float, float]:
             h = float(np.exp(x))
             here = conditions(self._equation(g, h), resolution, self.punch, h)
@@ -189,11 +199,25 @@ class FoundSpeed(Speed):
             return here.off(m), m
 
         x, m = balanced(at, float(np.log(h)))
-        h = float(np.exp(x))
-        equation = self._equation(g, h, self.punch.slope(m, h))
-        if self.punch.kinks(m, h):
-            return _Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return _Tried(h, m, *vanishing(equation, resolution))
+        return float(np.exp(x)), m
+
+    def half_width(self) -> float:
+        """Of the contact without friction; its pressure is not asked.
+
+        Raises:
+            SolveError: no contact carries the load, or it is not resolved.
+        """
+        h, left = 1.0, np.inf
+        for resolution in ever_finer(self.kernel.rough, FIRST):
+            before = h
+            if isinstance(self.punch.profile, Flat):
+                h = self._tilted(0.0, h, resolution).h
+            else:
+                h, _ = self._lengths(0.0, h, resolution)
+            left = abs(h / before - 1.0)
+            if met(left, self.tolerance):
+                return h
+        raise not_met(left, self.tolerance)
 
     def _tilted(self, g: float, h: float, resolution: Resolution) -> _Tried:
         """Of a tilted flat punch, the higher edge of which may have lifted off."""
@@ -271,7 +295,7 @@ class Contacts(Frictions):
 def local_exponents(
     response: Any, g: NDArray, profile: Any, unit: float, compression: NDArray
 ) -> Exponents | FlatPunch:
-    """What the local analysis says of the ends: those of the surface's solid, one more at ends that are free.
+    """What the local analysis says of the ends: those of the surface's solid, one more at free ends.
 
     Args:
         response: of the layers at a speed.
@@ -312,4 +336,4 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, punch)
-    return unit * speed.contact(0.0).half_width
+    return unit * speed.half_width()

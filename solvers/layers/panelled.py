@@ -199,7 +199,7 @@ class PanelledPressure:
     tips: ClassVar[tuple[float, ...]] = ()
 
     def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
-        """The same of a contact whose left and right end are free or not: p falls there like d and d log d.
+        """The same of a contact whose left and right end are free or not: p falls like d and d log d.
 
         Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
         for, leaves digits of the largest p.

@@ -10,7 +10,7 @@ for what p(r) alone contributes is what the exponents make vanish.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -246,7 +246,7 @@ class PanelledPressure:
         return found
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = Panels(self.α, self.β, min(finest, self.panels.finest))
+        fine = replace(self.panels, finest=min(finest, self.panels.finest))
         return fine.t, fine.weights * self.panels.values(self.p, fine.x)
 
 

@@ -163,3 +163,12 @@ def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
         assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
     assert not free[0] and free[-1] and sorted(free) == free
     assert np.all(np.diff(sizes) <= 1e-12) and sizes[0] == pytest.approx(1.0) and sizes[-1] < 0.9
+
+
+@pytest.mark.skipif(not THOROUGH, reason="half a minute")
+def test_over_a_graded_top_rules_know_of_kinks():
+    """Whatever they are fine enough for, what they add up to is the load."""
+    graded = Layered((Layer(1.0, COAT, bottom=SUBSTRATE),), SUBSTRATE)
+    one, _, _ = found(graded, wedge(0.01), -0.6, tolerance=1e-6)
+    for finest in (3.0, 0.1):
+        assert one.pressure.points(finest)[1].sum() == pytest.approx(-2.0, rel=1e-8)

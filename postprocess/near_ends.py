@@ -40,9 +40,11 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (1e-4, 2e-2), (1e-3, 5e-2), 12, 3
-#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more than
-#: it is elsewhere.
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (1e-3, 5e-2), (24, 12), 3
+#: Powers of the distance, over d^a, with which solids graded from the surface on add logarithms.
+_LOGS = (1.0, 2.0)
+#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more
+#: than it is elsewhere.
 _CLEARED = 0.1
 
 
@@ -63,7 +65,8 @@ def _two_series(
         (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
-    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
+    count = _SEEN_AT[0 if at_end else 1]
+    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
     known, powers = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2, np.arange(_TERMS_OF_EACH)
 
     def terms(d: NDArray) -> NDArray[np.float64]:
@@ -71,8 +74,8 @@ def _two_series(
         found = np.power.outer(x, np.concatenate([powers, exponent + powers]))
         if not at_end:
             return found
-        more = np.power.outer(x, exponent + np.array([1.0, 2.0, -1.0]))
-        more[:, :2] *= np.log(x)[:, None]
+        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
+        more[:, :-1] *= np.log(x)[:, None]
         return np.concatenate([found, more], axis=1)
 
     return known, terms, np.linalg.pinv(terms(known))
@@ -96,8 +99,8 @@ def slopes_towards_ends(
     """How displacement gradients next to free ends follow from those a little farther away.
 
     Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
-    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end does
-    not have, is taken away up to ``_CLEARED``.
+    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end
+    does not have, is taken away up to ``_CLEARED``.
 
     Args:
         X: positions that are wanted, over a, (n,).
@@ -116,7 +119,7 @@ def slopes_towards_ends(
             if cleared.any():
                 known, terms, amplitudes = _two_series(gap, _SEEN, a, at_end=True)
                 rows[0][near] = 0.0
-                more = np.zeros((len(X), _SEEN_AT))
+                more = np.zeros((len(X), len(known)))
                 more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
                 more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
                 places.append(end + side * known)

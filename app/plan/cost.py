@@ -20,6 +20,9 @@ _INTEGRATED, _LOOP = 3e-2, 0.25
 #: pressure of the user's own gradients and potentials of each of its pieces.
 _FOUND, _GRADIENT, _POTENTIAL = 2.6e-6, 1.3e-6, 7.5e-7
 _GRADIENTS_OF_PIECE, _POTENTIAL_OF_PIECE = 4e-6, 9e-7
+#: Seconds of a contact over layers that has an equation of its own: of a tilted punch, of one with kinks;
+#: and over a layer that is graded from the surface on.
+_TILTED, _KINKED, _TILTED_ON_GRADED, _KINKED_ON_GRADED = 0.15, 1.4, 8.0, 25.0
 #: Bytes of a number of the states that are treated together, and of one in an archive.
 _HELD, _ARCHIVED = 18, 8
 #: Bytes of a program without finite elements, and of a state's friction.
@@ -53,6 +56,19 @@ def seconds_inside(points: int, speeds: int, states: int, pieces: int, fem: bool
     by_fem = speeds * _GRADIENTS_OF_PIECE * pieces if pieces else speeds * _FOUND + states * _GRADIENT
     in_closed_form = states * (_POTENTIAL_OF_PIECE * pieces if pieces else _POTENTIAL)
     return points * (by_fem * fem + in_closed_form * exact)
+
+
+def seconds_of_equations(states: int, kinked: bool, graded: bool) -> float:
+    """Contacts over layers each of which has an equation of its own.
+
+    Args:
+        states: their number.
+        kinked: has the punch kinks, or is it tilted?
+        graded: is the solid graded from the surface on?
+    """
+    if graded:
+        return states * (_KINKED_ON_GRADED if kinked else _TILTED_ON_GRADED)
+    return states * (_KINKED if kinked else _TILTED)
 
 
 def seconds_to_archive(numbers: int) -> float:

@@ -164,9 +164,8 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     if faults:
         raise BadInput(
             f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are all "
-            'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones by '
-            '["fem"] too, with '
-            "the quantities friction, sif, surface, interior and interfaces"
+            'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones '
+            'by ["fem"] too, with the quantities friction, sif, surface, interior and interfaces'
         )
 
 

@@ -9,7 +9,9 @@ from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
+from galinx.solvers.layers.layered import Layered
+from galinx.solvers.profiles import kinks
 from galinx.texts import counted
 
 #: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
@@ -91,7 +93,7 @@ def expense(plan: Plan) -> str:
         seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
         )  # fmt: skip
-        seconds += _in_time(plan)
+        seconds += _in_time(plan) + _equations(plan)
         memory = cost.bytes_without_fem(plan.states, together)
         return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
     fem = plan.fem
@@ -108,6 +110,7 @@ def expense(plan: Plan) -> str:
         "finite elements": speeds,
         "states": states,
         "stresses inside": inside,
+        "integral equations": _equations(plan),
     }
     told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
     total = sum(parts.values())
@@ -117,6 +120,18 @@ def expense(plan: Plan) -> str:
 def _in_time(plan: Plan) -> float:
     """Seconds of starts from rest."""
     return plan.starts.seconds(plan.body.solid) if plan.starts else 0.0  # type: ignore[arg-type]
+
+
+def _equations(plan: Plan) -> float:
+    """Seconds of contacts over layers whose integral equations are solved one by one."""
+    body = plan.body
+    if not (body.found and isinstance(body.solid, Layered) and SIE in plan.methods):
+        return 0.0
+    kinked = bool(len(kinks(body.profile)))
+    if not kinked and body.free:
+        return 0.0  # of a few frictions, which tell all others
+    graded = body.solid.layers[0].bottom is not None
+    return cost.seconds_of_equations(plan.states, kinked, graded)
 
 
 def _inside(plan: Plan) -> float:

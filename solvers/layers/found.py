@@ -1,12 +1,12 @@
 """Contacts over layers whose ends are found, by the singular integral equation.
 
 Where both ends are free, two conditions on the slope alone tell the middle and the load that makes a
-contact of the half-width h (:mod:`galinx.solvers.layers.ends`). Where an edge of a tilted punch lifts off,
-the contact starts at the other one, and no intensity is left at its end for one sum of two pressures, that
-of a flat punch and that under the slope 1. The load grows with h, which is found for the one wanted.
+contact of the half-width h (:mod:`galinx.solvers.layers.ends`). Where an edge of a tilted punch lifts
+off, the contact starts at the other one, and no intensity is left at its end for one sum of two
+pressures, that of a flat punch and that under the slope 1. The load grows with h, which is found for the
+one wanted.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -20,18 +20,16 @@ from galinx.solvers.layers.contact import (
     Equation,
     Found,
     Resolution,
-    change,
     check_exponents,
     ever_finer,
     met,
     not_met,
 )
 from galinx.solvers.layers.ends import Punch, balanced, conditions, vanishing
+from galinx.solvers.layers.found_states import Contact, Contacts, Tried
 from galinx.solvers.layers.kernel import REACH, Kernel, Scaled
-from galinx.solvers.layers.kinked import Kinked, kinked
+from galinx.solvers.layers.kinked import kinked
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.layers.panelled import PanelledPressure
-from galinx.solvers.layers.pressure import Pressure
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.profiles import check_reach, kinks
 from galinx.solvers.profiles.flat import Flat
@@ -43,66 +41,8 @@ from galinx.solvers.sie.found import local_exponents as of_the_surface
 _AT_REST = 1e-5
 #: And with which it is told whether an edge has lifted off.
 _OF_ENDS = 1e-6
-#: Distances from a free end at which pressures are compared besides, places between, and how much more
-#: they have to agree there.
-_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 #: How much farther kernels are tabulated than the largest contact so far asks for.
 _FARTHER = 1.5
-
-
-@dataclass(frozen=True)
-class Contact(Found):
-    """A pressure with the contact that it was found for; lengths are over one that all states share.
-
-    Attributes:
-        half_width: of the contact.
-        centre: its middle, from the punch's axis.
-        free: were the left and the right end found?
-    """
-
-    half_width: float = 1.0
-    centre: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-
-@dataclass(frozen=True)
-class _Tried:
-    """A contact with so many unknowns.
-
-    Attributes:
-        h, m: half-width and middle.
-        pressure: the contact's.
-        left: share of it that was taken away so that no intensity is left at free ends.
-        free: were the left and the right end found?
-    """
-
-    h: float
-    m: float
-    pressure: Pressure
-    left: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-    def moved(self, before: "_Tried") -> float:
-        """What changed since then: the lengths, the pressure, and this next to free ends more than others.
-
-        In-plane stresses there follow the pressure with a factor.
-        """
-        lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
-        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
-        at = np.concatenate([*ends, _ACROSS])
-        one, other = (
-            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
-        )
-        near = np.abs(one - other)[: -len(_ACROSS)].max(initial=0.0) / np.abs(other).max()
-        return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
-
-    @cached_property
-    def settled(self) -> Pressure:
-        """The pressure, made to vanish at free ends where panels leave digits."""
-        pressure, free = self.pressure, self.free
-        if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
-            return replace(pressure, more=pressure.more.vanishing(free))
-        return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
 
 
 @dataclass(frozen=True)
@@ -177,10 +117,19 @@ class FoundSpeed(Speed):
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _tried(self, g: float, h: float, resolution: Resolution) -> _Tried:
+    def _tried(self, g: float, h: float, resolution: Resolution) -> Tried:
         """With so many unknowns."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
+
+        h, m = self._lengths(g, h, resolution)
+        equation = self._equation(g, h, self.punch.slope(m, h))
+        if self.punch.kinks(m, h):
+            return Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return Tried(h, m, *vanishing(equation, resolution))
+
+    def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
+        """Half-width and middle between two free ends."""
 
         def at(x: float) -> tuple[float, float]:
             h = float(np.exp(x))
@@ -189,13 +138,27 @@ class FoundSpeed(Speed):
             return here.off(m), m
 
         x, m = balanced(at, float(np.log(h)))
-        h = float(np.exp(x))
-        equation = self._equation(g, h, self.punch.slope(m, h))
-        if self.punch.kinks(m, h):
-            return _Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return _Tried(h, m, *vanishing(equation, resolution))
+        return float(np.exp(x)), m
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> _Tried:
+    def half_width(self) -> float:
+        """Of the contact without friction; its pressure is not asked.
+
+        Raises:
+            SolveError: no contact carries the load, or it is not resolved.
+        """
+        h, left = 1.0, np.inf
+        for resolution in ever_finer(self.kernel.rough, FIRST):
+            before = h
+            if isinstance(self.punch.profile, Flat):
+                h = self._tilted(0.0, h, resolution).h
+            else:
+                h, _ = self._lengths(0.0, h, resolution)
+            left = abs(h / before - 1.0)
+            if met(left, self.tolerance):
+                return h
+        raise not_met(left, self.tolerance)
+
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> Tried:
         """Of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
@@ -213,65 +176,17 @@ class FoundSpeed(Speed):
         off, (parts, _) = at(float(np.log(whole)))
         if off <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
-            return _Tried(whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False))
+            return Tried(whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False))
         x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
         h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
         m = float(np.sign(rise)) * (h - whole)
-        return _Tried(h, m, pressure, free=(side == 0, side == 1))
-
-
-@dataclass(frozen=True)
-class Contacts(Frictions):
-    """Contacts with some frictions, from which those with others are interpolated."""
-
-    each: list[Any]
-
-    @cached_property
-    def half_width(self) -> NDArray[np.float64]:
-        """Of every contact, (nodes,)."""
-        return np.array([one.half_width for one in self.each])
-
-    @cached_property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of every contact, (nodes,)."""
-        return np.array([one.centre for one in self.each])
-
-    @cached_property
-    def free(self) -> NDArray[np.float64]:
-        """1 where the left and the right end were found, 0 at others, (nodes, 2)."""
-        return np.array([one.free for one in self.each], dtype=float)
-
-    @cached_property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
-        each = [one.pressure.tips for one in self.each]
-        found = np.full((len(each), max(map(len, each))), np.inf)
-        for row, tips in zip(found, each):
-            row[: len(tips)] = tips
-        return found
-
-    def of_each(self, what: Callable[[Pressure, float, float], NDArray]) -> NDArray[np.float64]:
-        """What is read off every pressure, its friction and half-width, and off that with fewer unknowns,
-        (2, nodes, ...)."""
-        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
-        return np.array(
-            [
-                [what(one.pressure, g, h) for one, g, h in nodes],
-                [what(one.before, g, h) for one, g, h in nodes],
-            ]
-        )
-
-    @property
-    def smooth(self) -> NDArray[np.float64]:
-        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
-        pressures = super().smooth
-        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
+        return Tried(h, m, pressure, free=(side == 0, side == 1))
 
 
 def local_exponents(
     response: Any, g: NDArray, profile: Any, unit: float, compression: NDArray
 ) -> Exponents | FlatPunch:
-    """What the local analysis says of the ends: those of the surface's solid, one more at ends that are free.
+    """What the local analysis says of the ends: those of the surface's solid, one more at free ends.
 
     Args:
         response: of the layers at a speed.
@@ -312,4 +227,4 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, punch)
-    return unit * speed.contact(0.0).half_width
+    return unit * speed.half_width()

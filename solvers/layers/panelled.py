@@ -10,7 +10,7 @@ for what p(r) alone contributes is what the exponents make vanish.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -199,7 +199,7 @@ class PanelledPressure:
     tips: ClassVar[tuple[float, ...]] = ()
 
     def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
-        """The same of a contact whose left and right end are free or not: p falls there like d and d log d.
+        """The same of a contact whose left and right end are free or not: p falls like d and d log d.
 
         Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
         for, leaves digits of the largest p.
@@ -246,7 +246,7 @@ class PanelledPressure:
         return found
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = Panels(self.α, self.β, min(finest, self.panels.finest))
+        fine = replace(self.panels, finest=min(finest, self.panels.finest))
         return fine.t, fine.weights * self.panels.values(self.p, fine.x)
 
 

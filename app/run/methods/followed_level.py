@@ -2,8 +2,8 @@
 
 Held under the punch are its height around a middle that is nearly known, what that changes by where the
 middle moves, and a constant; what they carry and the intensities at both ends are linear in their
-amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left, and a middle: of a
-parabola at once, of others once that hardly moves.
+amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left, and a middle:
+of a parabola at once, of others once that hardly moves.
 """
 
 from dataclasses import dataclass, replace

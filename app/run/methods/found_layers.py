@@ -15,7 +15,8 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods.layers import AtSpeed, Punches, in_plane
 from galinx.postprocess.largest import largest
 from galinx.solvers.layers.ends import Punch
-from galinx.solvers.layers.found import Contacts, FoundSpeed
+from galinx.solvers.layers.found import FoundSpeed
+from galinx.solvers.layers.found_states import Contacts
 from galinx.solvers.layers.inside import Level
 from galinx.solvers.layers.stack import Stack
 from galinx.solvers.profiles import cusp, kinks

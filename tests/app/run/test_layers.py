@@ -161,8 +161,6 @@ def test_layers_with_a_fault_are_told_once(layers, told):
     [
         ('["sie"]', '["closed_form"]', 'solve.methods is ["closed_form"]'),
         ('methods = ["sie"]', 'mode = "traction"', 'solve.mode is "traction"'),
-        ("[friction]", '[punch]\nprofile = "wedge"\nslope = 0.01\n[friction]', "ends are found"),
-        ("[friction]", "[punch]\ntilt = 0.01\n[friction]", "ends are found"),
     ],
 )
 def test_what_layers_do_not_have_is_refused_in_one_message(old, new, told):

@@ -1,6 +1,7 @@
 """Contacts of every profile over layers: on layers of one solid, and by what the equation itself says."""
 
 import os
+from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
@@ -29,7 +30,7 @@ PUNCHES = {
     "2.5": power(2.5, 0.1),
     "parabola": parabolic(1.0),
     "rounded": rounded(0.5, 2.0),
-    "table": table(tuple((x, 0.01 * (x**2 + 0.05 * x**3 + abs(x))) for x in np.linspace(-3, 3, 9).tolist())),
+    "table": table(tuple((x, 0.01 * (x**2 + 0.05 * x**3 + abs(x))) for x in range(-3, 4))),
     "touching": flat(1.0, 0.05),
     "lifted": flat(1.0, -1.0),
 }  # fmt: skip
@@ -110,7 +111,7 @@ def _rule(places):
     x, w = np.polynomial.legendre.leggauss(20)
     steps = np.append(0.0, 0.3 ** np.arange(24, -1, -1.0)) / 2.0
     unit = np.concatenate([steps, 1.0 - steps[-2::-1]])
-    ends = np.concatenate([low + (high - low) * unit for low, high in zip(places, places[1:])])
+    ends = np.concatenate([low + (high - low) * unit for low, high in pairwise(places)])
     half, middle = np.diff(ends) / 2.0, (ends[1:] + ends[:-1]) / 2.0
     t, weights = (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
     inside = (half[:, None] > 0.0) & (np.abs(t.reshape(-1, 20)) < 1.0)
@@ -162,3 +163,12 @@ def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
         assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
     assert not free[0] and free[-1] and sorted(free) == free
     assert np.all(np.diff(sizes) <= 1e-12) and sizes[0] == pytest.approx(1.0) and sizes[-1] < 0.9
+
+
+@pytest.mark.skipif(not THOROUGH, reason="half a minute")
+def test_over_a_graded_top_rules_know_of_kinks():
+    """Whatever they are fine enough for, what they add up to is the load."""
+    graded = Layered((Layer(1.0, COAT, bottom=SUBSTRATE),), SUBSTRATE)
+    one, _, _ = found(graded, wedge(0.01), -0.6, tolerance=1e-6)
+    for finest in (3.0, 0.1):
+        assert one.pressure.points(finest)[1].sum() == pytest.approx(-2.0, rel=1e-8)

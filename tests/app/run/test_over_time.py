@@ -289,7 +289,7 @@ def test_random_starts_agree_and_the_estimate_covers_it(changes, end, tolerance,
 
 
 def random_coating(seed):
-    """One or two layers, 0.2 to 1.5 a thick, moduli 0.3 to 5 times the substrate's; c to 0.9 of the limit."""
+    """One or two layers, 0.2 to 1.5 a thick, 0.3 to 5 times as stiff as below; c to 0.9 of the limit."""
     rng = np.random.default_rng(seed)
     layers = [
         {

@@ -27,7 +27,7 @@ class OnLayers:
         echoes: of the layers.
     """
 
-    uniform: Kernel
+    uniform: Side
     echoes: Echoes
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:

@@ -54,8 +54,8 @@ def _of_layers(scene: Scene, solid: Layered) -> list[str]:
     thinnest = min(layer.thickness for layer in solid.layers) / scene.body.half_width
     if thinnest < _THINNEST:
         faults.append(
-            f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a (the punch's "
-            "half-width) for motions in time"
+            f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a, the "
+            "punch's half-width, for motions in time"
         )
     if not all(isinstance(one.response(0.0), InPlane) for one in solid.solids):
         faults.append("layers: found a solid of your own, expected galinx's for motions in time")

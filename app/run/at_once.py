@@ -1,4 +1,4 @@
-"""What there were in steady motion of the same friction, at once: what motions in time are seen beside."""
+"""What there were at once in steady motion of the same friction, beside which motions are seen."""
 
 from dataclasses import dataclass
 

@@ -36,9 +36,11 @@ CENTRES = _row(
     (START, INSTANT),
 )  # fmt: skip
 STEADY_K_I = _row(
-    "steady_K_I", "1",
-    "stress intensity factor in steady motion, both ends, closed form; none over layers, where they differ",
-    (START,), nan_allowed=ANYWHERE,
+    "steady_K_I",
+    "1",
+    "stress intensity factor in steady motion, both ends, closed form; none over layers",
+    (START,),
+    nan_allowed=ANYWHERE,
 )
 
 

@@ -54,7 +54,7 @@ class LayersInCells(LayeredResponse):
         return _tabulated(lambda share: self._column(layer.at(share)), layer.bottom is None)
 
     def _column(self, solid: Solid) -> NDArray[np.float64]:
-        """Stiffness over the surface's μ, the speed over the surface's wave speed by density, and that."""
+        """Stiffness over the surface's μ, the speed over its wave speed by density, and the density."""
         C, ρ = stiffness(solid) / self.solid.μ, solid.ρ / self.solid.ρ
         return np.append(C[np.triu_indices(3)], [self.c * ρ**0.5, ρ])
 

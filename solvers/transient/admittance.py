@@ -166,7 +166,8 @@ class Admittance:
         C2, a4 = (C * C)[:, None], self.c22 - self.c26**2
         by_C2 = (2.0 * C2 - self.c11 - 1.0) - 2.0 * (self.c16 + self.c26) * whole
         by_C2 = (by_C2 - (1.0 + self.c22) * whole**2) / a4
-        rate = -by_C2 * 2.0 * C[:, None] / (slope_p * size[:, None] ** 3)
+        with np.errstate(divide="ignore", invalid="ignore"):  # where two meet it does not matter which
+            rate = -by_C2 * 2.0 * C[:, None] / (slope_p * size[:, None] ** 3)
         found[at] = -_REAL * rate.real[at]
         return found
 

@@ -1,18 +1,17 @@
 """What layers add to the surface motion of a half-plane under tractions that change in time.
 
-For wavenumbers k < 0 fields e^(ik(X - Ct)), C = c + is/k, have in each layer two waves that decay downwards,
-u,Y = G₁ u,X with Im p > 0, and two that decay upwards, G₂. With E₁ = e^(-ikG₁H), E₂ = e^(ikG₂H) and tractions
-Z u,X of what is below, those on top are (L₁ + δ) u,X with
+For wavenumbers k < 0 fields e^(ik(X - Ct)), C = c + is/k, have in each layer two waves that decay
+downwards, u,Y = G₁ u,X with Im p > 0, and two that decay upwards, G₂. With E₁ = e^(-ikG₁H),
+E₂ = e^(ikG₂H) and tractions Z u,X of what is below, those on top are (L₁ + δ) u,X with
 
     r = (L₂ - Z)⁻¹ (Z - L₁),   W = E₂ r E₁,   δ = (L₂ - L₁) W (1 + W)⁻¹:
 
-exponentials that decay, and no other. Δ𝐘 = (L₁ + δ)⁻¹ - L₁⁻¹ falls like e^(-2|k|H Im p), and like e^(-2sH/c_d)
-where plane waves go down and up. As Re s > 0 it is analytic along the real axis of k, so that its transform
-back to X goes along it.
+exponentials that decay, and no other. Δ𝐘 = (L₁ + δ)⁻¹ - L₁⁻¹ falls like e^(-2|k|H Im p), and like
+e^(-2sH/c_d) where plane waves go down and up. As Re s > 0 it is analytic along the real axis of k, so
+that its transform back to X goes along it.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import ceil, pi
 
 import numpy as np
@@ -122,7 +121,7 @@ class Sheets:
 
 @dataclass(frozen=True)
 class Echoes:
-    """What layers add to the response at a distance x > 0 ahead of a line load in a frame that moves at c.
+    """What layers add to the response at distances ahead of a line load in a frame that moves at c.
 
     Args:
         sheets: the layers.

@@ -1,5 +1,6 @@
 """Panels of distances that hold waves: of many steps within a short time, they are short."""
 
+from itertools import pairwise
 from math import ceil
 
 import numpy as np
@@ -20,8 +21,8 @@ def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
         slowest: slowness ζ of the slowest wave, seen from the load.
     """
     found = [edges[:1]]
-    for near, far in zip(edges[:-1], edges[1:]):
-        felt = _GONE / np.maximum(s.real * max(near, edges[1]), 1e-300)
+    for near, far in pairwise(edges.tolist()):
+        felt = _GONE / np.maximum(s.real * max(near, float(edges[1])), 1e-300)
         turn = float((np.abs(s.imag) * np.minimum(slowest, felt)).max())
         count = max(ceil((far - near) * turn / _TURN), 1)
         found.append(np.linspace(near, far, count + 1)[1:])

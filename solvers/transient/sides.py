@@ -13,7 +13,7 @@ from galinx.solvers.transient.layered import Echoes, Sheets
 
 
 class Side(Protocol):
-    """Of a line load, at distances on one side, in the mirror image behind it: see :class:`.kernel.Kernel`."""
+    """Of a line load on one side, in the mirror image behind it: see :class:`.kernel.Kernel`."""
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]: ...
 
@@ -27,7 +27,7 @@ class OnLayers:
         echoes: of the layers.
     """
 
-    uniform: Kernel
+    uniform: Side
     echoes: Echoes
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:

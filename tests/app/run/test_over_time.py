@@ -12,6 +12,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
+from galinx.app.scene.read import parse
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.compare_over_time import BOTH, OF_FEM
 from galinx.postprocess.energy_over_time import WORKS
@@ -208,6 +209,36 @@ def test_what_has_no_answer_is_refused(changes, said):
         make_plan(galinx.template("start_from_rest", changes))
 
 
+#: A coating that starts from rest.
+COATED = {
+    "time.end": 2.0, "time.load_ramp": 2.0, "motion.speed": None, "motion.c": 0.3, "friction.mu_c": 0.4,
+    "solve.methods": ["sie", "fem"], "solve.tolerance": 1e-2, "output.quantities": ["friction", "time"],
+}  # fmt: skip
+
+
+def test_a_coating_starts_by_both_methods():
+    result = computed("coating", COATED)
+    found = json.loads(result.attributes["comparisons"])
+    assert result.attributes["verdict"] == "PASS"
+    assert found[OF_BOTH] < 2e-3 and found[RULES[WORKS].text] < 1e-4
+    # What there is of steady motion has no closed form.
+    assert np.isfinite(result.data["time/steady_centre"]).all()
+    assert np.isnan(result.data["time/steady_K_I"]).all()
+    assert [drawing.name for drawing in result.drawings()] == ["friction", "time", "pressures"]
+
+
+@pytest.mark.parametrize(
+    "changes, said",
+    [
+        ({"time.start": "steady", "time.load_ramp": None}, 'found "steady" over layers, expected "rest"'),
+        ({"punch.half_width": "20 mm"}, "found a thickness of 0.05 a, expected at least 0.1 a"),
+    ],
+)
+def test_coatings_without_an_answer_are_refused(changes, said):
+    with pytest.raises(BadInput, match=re.escape(said)):
+        make_plan(galinx.template("coating", COATED | changes))
+
+
 def test_a_plan_tells_starts():
     done = command("plan", "scenes/start_from_rest.toml")
     assert "integral equation in time: 1 start from rest" in done.stdout
@@ -255,3 +286,63 @@ def test_random_starts_agree_and_the_estimate_covers_it(changes, end, tolerance,
         if not (found[OF_BOTH] < found[ESTIMATE] <= tolerance and works <= tolerance):
             missed.append((seed, found))
     assert not missed
+
+
+def random_coating(seed):
+    """One or two layers, 0.2 to 1.5 a thick, 0.3 to 5 times as stiff as below; c to 0.9 of the limit."""
+    rng = np.random.default_rng(seed)
+    layers = [
+        {
+            "thickness": rng.uniform(0.2, 1.5), "E": 2.5 * 10.0 ** rng.uniform(-0.5, 0.7),
+            "nu": rng.uniform(0.0, 0.4), "rho": 1000.0 * 10.0 ** rng.uniform(-0.2, 0.3),
+        }
+        for _ in range(int(rng.integers(1, 3)))
+    ]  # fmt: skip
+    share, f, ramp, ν = (rng.uniform(*of) for of in ((0.05, 0.9), (0.0, 0.8), (2.0, 4.0), (0.0, 0.4)))
+    return layers, share, f, ramp, ν
+
+
+def coating(seed):
+    """A scene of it, below its own limit of speed."""
+    layers, share, f, ramp, ν = random_coating(seed)
+
+    def scene(c):
+        many = "".join(
+            f'[[layer]]\nthickness = "{one["thickness"]} mm"\nE = "{one["E"]} GPa"\nnu = {one["nu"]}\n'
+            f'rho = "{one["rho"]} kg/m^3"\n'
+            for one in layers
+        )
+        return parse(f"""title = "Random coating"
+[solid]
+E = "2.5 GPa"
+nu = {ν}
+rho = "1000 kg/m^3"
+{many}[punch]
+half_width = "1 mm"
+[friction]
+model = "coulomb"
+mu_c = {f}
+[motion]
+c = {c}
+strokes = ["forward"]
+X_over_L = [0.5]
+[time]
+end = 10.0
+load_ramp = {ramp}
+[solve]
+methods = ["sie", "fem"]
+tolerance = 1e-3
+[output]
+quantities = ["friction", "time"]
+""")
+
+    return scene(share * scene(1e-3).solid.limit())
+
+
+@THOROUGH
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_random_coatings_agree_and_the_estimate_covers_it(seed):
+    result = galinx.compute(coating(seed))
+    found = json.loads(result.attributes["comparisons"])
+    print(seed, found)
+    assert result.attributes["verdict"] == "PASS" and found[OF_BOTH] < found[ESTIMATE]

@@ -67,7 +67,7 @@ def test_echoes_are_the_transform_of_their_symbol():
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * np.abs(expected).max())
 
 
-def started(solid, c, end=4.0, steps=16, g=-0.4, terms=16):
+def started(solid, c, end=4.0, steps=8, g=-0.4, terms=8):
     response = LayersInCells(solid, c, 1.0) if isinstance(solid, Layered) else solid.response(c)
     return StartingPunch(response, solid.limit(), end, steps, terms).course(g, lambda t: smooth(t, 3.0))
 
@@ -80,16 +80,15 @@ def test_layers_of_the_substrate_are_no_layers():
 
 def test_a_layer_is_all_there_is_until_its_echo_comes_back():
     H, c_d = 2.0, np.sqrt(3.0)
-    alone, coated = started(ONE, 0.5, steps=32), started(Layered((Layer(H, ONE),), COAT), 0.5, steps=32)
+    alone, coated = started(ONE, 0.5, steps=16), started(Layered((Layer(H, ONE),), COAT), 0.5, steps=16)
     off = np.abs(coated.v0 - alone.v0) / np.abs(alone.v0[-1])
-    # Steps of 1/8 let it be felt a little earlier.
-    assert off[alone.t < 2.0 * H / c_d - 0.8].max() < 1e-7
+    # Steps of 1/4 let it be felt a little earlier.
+    assert off[alone.t < 2.0 * H / c_d - 1.0].max() < 1e-6
     assert off[-1] > 1e-2
 
 
-@pytest.mark.parametrize("g", [-0.4, 0.7])
-def test_finite_elements_agree_over_layers(g):
-    c, end, steps, degree = 0.3, 3.0, 24, 7
+def test_finite_elements_agree_over_layers():
+    c, g, end, steps, degree = 0.3, -0.4, 3.0, 18, 6
     response = LayersInCells(STACK, c, 1.0)
     fast = sheets(STACK, c).fastest
     mesh = Reached(1.0 + fast * end / 2.0, fast * end / 2.0, 1.0, 0.15, 1e-4, depths=(0.7, 1.1)).drawn()

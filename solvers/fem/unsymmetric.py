@@ -80,5 +80,5 @@ class UnsymmetricFactor:
 
     def destroy(self) -> None:
         """Free the factors' memory now."""
-        for held in (self._pc, self._matrix):
+        for held in (self._mumps, self._pc, self._matrix):
             held.destroy()

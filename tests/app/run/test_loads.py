@@ -155,7 +155,8 @@ def test_a_thousand_loads_of_a_cylinder_at_rest_are_hertz():
     for path in ("states/fem/normal_force", "states/fem/v0"):
         values = result.data[path]
         np.testing.assert_allclose(values / N, values[0] / N[0], rtol=1e-12)
-    assert result.data["run/fem/back_substitutions"][0] < 40
+    one = computed("tables4_5", changes | {"punch.load": "1 N/mm"})
+    assert one.data["run/fem/back_substitutions"] == result.data["run/fem/back_substitutions"]
 
 
 def test_loads_are_one_list_of_the_product():

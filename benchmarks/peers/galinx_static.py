@@ -23,7 +23,7 @@ from galinx.solvers.fem.space import Space
 from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Degree, levels, ratio, widths of columns next to the rings, and how many moments of the forces at the
-#: contact the far boundary follows, 0 where it is held; one sector. A held one wins where little is asked.
+#: contact the far boundary follows, 0 where it is held; one sector. That wins where little is asked.
 CONFIGURATIONS = [
     (4, 2, 0.15, (1.0, 3.7, 3.7), 0),
     (5, 2, 0.15, (1.0, 4.2, 4.2), 0),
@@ -39,7 +39,9 @@ CONFIGURATIONS = [
 NEGLIGIBLE = 1e-10
 
 
-def solve(degree: int, levels: int, ratio: float, outer: float, moments: int) -> tuple[int, np.ndarray]:
+def solve(
+    degree: int, levels: int, ratio: float, widths: tuple[float, ...], moments: int
+) -> tuple[int, np.ndarray]:
     """Unknowns, and the moments ∫ σ_YY T_k dr over N/2."""
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, ratio, 1, widths))

@@ -9,7 +9,7 @@ import random
 import h5py
 import numpy as np
 import pytest
-from support import command
+from support import THOROUGH, command
 from tampering import archived, numbers, opened, texts
 
 from galinx.app.cli import cli
@@ -21,7 +21,6 @@ from galinx.postprocess.quantities import large, table
 from galinx.postprocess.quantities.quantity import NUMBER, TEXT, WHOLE
 from galinx.postprocess.quantities.runs import LINE
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 FLIPS, TAMPERED, WITHOUT_SEAL = (5000, 2000, 300) if THOROUGH else (60, 40, 6)
 #: Those that read all of an archive come first.
 COMMANDS = (

@@ -1,15 +1,11 @@
 """Scenes against their closed form, from rest to near the Rayleigh speed."""
 
-import os
-
 import numpy as np
 import pytest
-from support import computed
+from support import THOROUGH, computed
 
 from galinx.postprocess import compare
 from galinx.solvers.solids import Isotropic
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 #: One state of scenes/tables4_5.toml.
 SINGLE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.8}

@@ -1,11 +1,9 @@
 """Contacts whose ends are found, end to end: finite elements against the integral equation, archives."""
 
-import os
-
 import numpy as np
 import pytest
 from random_solids import random_solid
-from support import computed
+from support import THOROUGH, computed
 
 import galinx
 from galinx.app.errors import BadInput
@@ -13,8 +11,6 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 PARABOLA = {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"}
 WEDGE = {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005}

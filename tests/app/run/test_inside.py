@@ -1,14 +1,10 @@
 """Stresses inside, against the potentials."""
 
-import os
-
 import numpy as np
 import pytest
-from support import computed
+from support import THOROUGH, computed
 
 from galinx.app.errors import BadInput
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 
 def random_points(count, seed):

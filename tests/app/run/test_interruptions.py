@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import HOME, clean_environment, command, computed
+from support import HOME, THOROUGH, clean_environment, command, computed
 
 from galinx import template
 from galinx.app.results import check
@@ -22,7 +22,6 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 
 #: GALINX_THOROUGH=1 asks for as many kills and signals as a release does.
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 #: The one message of a run that was stopped or killed.
 SAID = re.compile(
     r"error: (interrupted|(rank [01] or its )?mpirun was killed( \(.*\))?)"

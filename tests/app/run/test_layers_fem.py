@@ -1,12 +1,12 @@
 """Finite elements on layered half-planes against the singular integral equation."""
 
-import os
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support import THOROUGH
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
@@ -25,7 +25,6 @@ from test_layers import COAT, GRADED, scene
 from test_stack import random_stack
 
 PARTS = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 
 def scene_of(solid, c, f, quantities=("sif",), tolerance=1e-6):

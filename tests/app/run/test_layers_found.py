@@ -1,7 +1,6 @@
 """Contacts over layers whose ends are found: the integral equation, finite elements, archives."""
 
 import json
-import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +8,7 @@ from time import process_time
 
 import numpy as np
 import pytest
+from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
@@ -29,7 +29,6 @@ from test_layers import COAT, SCENE
 from test_layers_fem import scene_of
 from test_stack import random_stack
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 PUNCH = '[punch]\nprofile = "parabolic"\nradius = "20 mm"\nload = {load}\n'
 PARTS = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
 

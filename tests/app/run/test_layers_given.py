@@ -1,12 +1,12 @@
 """A pressure of the user's own over layers: transforms of its tractions, finite elements, archives."""
 
 import json
-import os
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
@@ -18,7 +18,6 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers import COAT, GRADED, SCENE
 from test_layers_found import SAME, at_speed
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 HUMP = [[-1, -1], [0, -1], [0.3, -4], [1, 0]]
 POINTS = "points = [[0.2, -0.5], [-1.0, -0.3], [0.7, -3.0]]\n"
 INSIDE = [f"interior/{{}}/sigma_{ij}" for ij in ("XX", "YY", "XY")]

@@ -5,7 +5,6 @@ GALINX_THOROUGH=1 tries as many as a release does.
 
 import json
 import math
-import os
 import random
 from dataclasses import replace
 
@@ -13,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from support import HOME, at_most
+from support import HOME, THOROUGH, at_most
 
 from galinx import compute
 from galinx.app.errors import BadInput
@@ -24,7 +23,6 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 SCENES = 2000 if THOROUGH else 150
 STATES = 40 if THOROUGH else 8
 #: One scene of so many that ask for finite elements is solved by them.

@@ -1,10 +1,9 @@
 """Any uniform solid by finite elements: against the closed form, against isotropic, mirrored."""
 
-import os
-
 import numpy as np
 import pytest
 from random_solids import isotropic_as
+from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
@@ -12,8 +11,6 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 FRICTION = """
 [friction]

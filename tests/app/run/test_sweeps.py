@@ -1,12 +1,11 @@
 """Many speeds of which few are solved: against speeds that are solved by themselves, and exact ones."""
 
 import json
-import os
 
 import numpy as np
 import pytest
 from random_solids import random_solid
-from support import HOME, command
+from support import HOME, THOROUGH, command
 
 import galinx
 from galinx.app.scene.read import parse
@@ -14,8 +13,6 @@ from galinx.postprocess import scale
 from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.parameters import values
 from galinx.solvers.solids import SOLIDS, Isotropic
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 #: Frictions of both signs, more than are sampled themselves.

@@ -1,12 +1,11 @@
 """Punches on layered and graded half-planes by the singular integral equation."""
 
-import os
-
 import mpmath as mp
 import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE, equation, flat
 from layers_reference import plane_strain, punch
+from support import THOROUGH
 
 from galinx.solvers.layers.contact import found
 from galinx.solvers.layers.layered import Layer, Layered
@@ -17,7 +16,6 @@ from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import Expansion, solve, weights_hilbert
 from galinx.solvers.solids.isotropic import Isotropic
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
 #: reference.
 EXAMPLE = {

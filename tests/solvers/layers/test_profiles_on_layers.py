@@ -1,6 +1,5 @@
 """Contacts of every profile over layers: on layers of one solid, and by what the equation itself says."""
 
-import os
 from itertools import pairwise
 
 import mpmath as mp
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
+from support import THOROUGH
 
 from galinx.solvers.layers.ends import Punch
 from galinx.solvers.layers.found import FoundSpeed, local_exponents
@@ -15,7 +15,6 @@ from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.sie.found import contacts
 
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 COATED = Layered((Layer(1.0, COAT),), SUBSTRATE)
 SAME = Layered((Layer(1.0, SUBSTRATE), Layer(0.3, SUBSTRATE)), SUBSTRATE)
 LOAD = 0.02  # N/μ [m]

@@ -1,13 +1,12 @@
 """Stiffness of layered and graded half-planes, and what it says of the speed."""
 
-import os
-
 import mpmath as mp
 import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance, graded_admittance
 from random_solids import orthotropic
+from support import THOROUGH
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.fourier import spherical_bessel, transform
@@ -15,8 +14,6 @@ from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.medium import inverse
 from galinx.solvers.layers.speed import weakest
 from galinx.solvers.solids.isotropic import Isotropic
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 
 def random_stack(seed, graded=False):

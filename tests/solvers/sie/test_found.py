@@ -1,6 +1,5 @@
 """Contacts whose ends are found, against formulas and quadrature in many digits."""
 
-import os
 from dataclasses import dataclass
 
 import mpmath as mp
@@ -10,6 +9,7 @@ from found_reference import exponents, parabola, solved
 from random_solids import random_solid, stiffness
 from scipy.integrate import quad
 from stroh import Stroh
+from support import THOROUGH
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
@@ -17,8 +17,6 @@ from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import contacts
 from galinx.solvers.sie.weighted import Weighted
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
-
-THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 
 flat, parabolic, wedge, power, rounded, table = (
     PROFILES[name] for name in ("flat", "parabolic", "wedge", "power", "rounded_flat", "table")

@@ -11,7 +11,7 @@ besides, which no polynomial follows; they stand before these.
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,7 +70,7 @@ def _to_orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
     Moments are taken with these: the functions themselves depend on one another so nearly that what
     rounds their moments would be seen in the pressure.
     """
-    rule = Panels(-0.5, -0.5, _FINE * min(1.0, stretch.h))
+    rule = _rule(-0.5, -0.5, stretch)
     f = stretch.of_ends(rule.t, count) * np.sqrt(rule.weights)[:, None]
     return np.asarray(np.linalg.inv(np.linalg.qr(f, mode="r")))
 
@@ -94,9 +94,19 @@ class StretchedPressure(JacobiPressure):
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch) -> StretchedPressure:
     """Pressure that has the given moments ∫ σ_YY f_k dr, (states, moments)."""
-    c = np.empty_like(moments)
+    c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
     for i, one in enumerate(moments):
-        rule = Panels(float(α[i]), float(β[i]), _FINE * min(1.0, stretch.h))
-        f = stretch.functions(rule.t, stretch.polynomials(len(one)))
-        c[i] = np.linalg.solve((f * rule.weights[:, None]).T @ f, one)
+        weights = _rule(float(α[i]), float(β[i]), stretch).weights
+        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, one)
     return StretchedPressure(α, β, c, stretch)
+
+
+def _rule(α: float, β: float, stretch: Stretch) -> Panels:
+    """For products of functions under the weight of these exponents; all have the same points."""
+    return Panels(α, β, _FINE * min(1.0, stretch.h))
+
+
+@lru_cache(maxsize=8)
+def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """So many functions at the points of the rule, (points, count)."""
+    return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.layers.layered import LayeredResponse
 from galinx.solvers.solids.solid import Response
 
 #: Different speeds from which a fit through some of them is sooner there than all of them: it takes about
@@ -59,7 +60,12 @@ def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
     What the fields are analytic in, and the mesh where it follows them, contracts with a root of the
     distance to the slowest wave in the solid. So all is smooth in the contraction up to that speed, and
     in c² not. Its inverse spreads speeds near the limit; where it does not tell them apart c² has to do.
+
+    Along layers waves of all lengths run, each with a speed of its own from the limit on: no pole is
+    there, but the end of a branch, which the logarithm of the distance from it sends to infinity.
     """
+    if isinstance(responses[0], LayeredResponse):
+        return np.array([-np.log(response.margin) for response in responses])
     square = np.array([response.c**2 for response in responses])
     inverse = np.array([1.0 / response.contraction.imag for response in responses])
     order = np.argsort(square, kind="stable")

@@ -11,7 +11,7 @@ for what p(r) alone contributes is what the exponents make vanish.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,8 +39,9 @@ _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
 
 
+@lru_cache(maxsize=16)
 def ends_of_panels(
-    finest: float, kinks: Sequence[float] = (), steps: int = _TO_TIP
+    finest: float, kinks: tuple[float, ...] = (), steps: int = _TO_TIP
 ) -> NDArray[np.float64]:
     """In x, none longer than ``finest`` in t, and that times the usual length in x.
 

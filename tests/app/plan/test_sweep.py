@@ -8,6 +8,7 @@ from galinx import template
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.sweep import LEAST, swept, variable
 from galinx.app.plan.words import expense, lines
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 
 ISOTROPIC = Isotropic(E=1.0, ν=0.25, ρ=1.0)
@@ -37,6 +38,14 @@ def test_the_variable_tells_speeds_of_any_solid_apart(seed):
     for most in (0.99, 0.3, 1e-3, 1e-7):
         z = variable(responses(solid, 50, most))
         assert np.all(np.diff(z) > 0.0)
+
+
+@pytest.mark.parametrize("top", [ISOTROPIC, Isotropic(E=4.0, ν=0.3, ρ=1.5)])
+def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
+    solid = Layered((Layer(0.5, top),), Isotropic(E=2.0, ν=0.2, ρ=1.0))
+    share = np.linspace(0.0, 0.99, 50)
+    z = variable([solid.response(c) for c in share * solid.limit()])
+    np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)
 
 
 def test_what_does_not_contract_has_the_square_of_the_speed():

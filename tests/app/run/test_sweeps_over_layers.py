@@ -1,0 +1,78 @@
+"""Many speeds over layers, of which finite elements solve few: all against the integral equation."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import THOROUGH
+
+import galinx
+from galinx.postprocess import scale
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.isotropic import Isotropic
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
+from test_layers_fem import PARTS, scene_of
+from test_stack import random_stack
+
+HARD, SOFT = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
+ALL = ("sif", "surface", "interfaces")
+
+
+def sweep(solid, c, f, quantities, tolerance):
+    """Speeds over c_s under frictions of both directions."""
+    one = scene_of(solid, 0.0, f, quantities, tolerance)
+    motion = replace(one.motion, c=tuple(c.tolist()), strokes=("forward", "backward"))
+    return galinx.compute(replace(one, motion=motion))
+
+
+def largest(difference):
+    return np.abs(difference).reshape(len(difference), -1).max(axis=1)
+
+
+def differences(data):
+    """Relative, of each state, by the estimate's name."""
+    K = np.array([[data[f"states/{by}/K_I_{end}"] for end in ("left", "right")] for by in ("fem", "sie")])
+    found = {"": np.abs(K[0] / K[1] - 1.0).max(axis=0)}
+    if "surface/fem/sigma_XX" in data:
+        fem, sie = (data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie"))
+        found["_sigma_XX"] = largest((fem - sie) / scale.of_in_plane(sie, data["surface/X_over_a"]))
+    if "interfaces/fem/sigma_YY" in data:
+        fem, sie = (np.array([data[f"interfaces/{by}/{name}"] for name in PARTS]) for by in ("fem", "sie"))
+        found["_interfaces"] = largest(np.moveaxis((fem - sie) / scale.of_interfaces(sie), 1, 0))
+    return found
+
+
+def check(data, tolerance):
+    for what, off in differences(data).items():
+        estimates = [data[f"states/{by}/estimate{what}"] for by in ("fem", "sie")]
+        assert off.max() <= tolerance, what
+        assert np.all(off <= sum(estimates)), what
+        assert estimates[0].max() <= tolerance, what
+
+
+@pytest.mark.parametrize(
+    ("top", "below", "tolerance", "quantities"),
+    [(HARD, SOFT, 1e-4, ("sif",)), (SOFT, HARD, 1e-2, ("sif", "surface"))],
+    ids=["hard on soft", "soft on hard"],
+)
+def test_a_dozen_speeds_tell_all_up_to_the_limit(top, below, tolerance, quantities):
+    solid = Layered((Layer(0.7, top),), below)
+    c = np.linspace(0.0, 0.98, 24) * solid.limit()
+    data = sweep(solid, c, 0.4, quantities, tolerance).data
+    assert np.count_nonzero(data["run/fem/factorisations"]) <= 11
+    check(data, tolerance)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="half an hour")
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("graded", [False, True])
+def test_all_speeds_of_random_stacks(seed, graded):
+    rng, (solid, _) = np.random.default_rng(300 + seed), random_stack(seed, graded)
+    c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.98), 24)) * solid.limit()
+    tolerance = 10.0 ** rng.uniform(-6.0, -3.0)
+    data = sweep(solid, c, rng.uniform(0.1, 1.0), ALL, tolerance).data
+    print(seed, graded, f"{tolerance:.0e}", np.count_nonzero(data["run/fem/factorisations"]), "solved")
+    check(data, tolerance)

@@ -49,8 +49,9 @@ _FEWEST = 12
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
 #: own moment moves there, and over the cube of the layers' length over it, less where that is so long
-#: that what is left of the displacement there strains little; measured, with a factor of 2. The share of
-#: the tolerance that is left to each.
+#: that what is left of the displacement there strains little. The first grows as the inverse of how far
+#: the speed is from that of a wave along the substrate, the second as its root, beside what the length
+#: grows by; measured, with a factor of 2. The share of the tolerance that is left to each.
 _MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
 #: How much smaller that has to be for stresses.
 _SMALLER = 5.0
@@ -67,6 +68,7 @@ class OnLayers(MeshKind):
         drawn_together: smallest Im p of the uppermost solid: its fields see depths so much smaller.
         wide: Im p midway between both: width over height of what its fields take for a square.
         far_length: over which the layers are seen from far, over a.
+        left: 1 at rest, 0 where a wave runs along the substrate with the load.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
         changes: of :class:`galinx.meshes.strata.Strata`.
         places: positions over a towards which cells are graded, rising from -1 to 1.
@@ -76,6 +78,7 @@ class OnLayers(MeshKind):
     drawn_together: float = 1.0
     wide: float = 1.0
     far_length: float = 1.0
+    left: float = 1.0
     roots: tuple[tuple[complex, ...], ...] = ()
     changes: tuple[float, ...] = ()
     places: tuple[float, ...] = (-1.0, 1.0)
@@ -86,7 +89,7 @@ class OnLayers(MeshKind):
         if wanted.nearest is not None:
             # Stresses far away are small beside what the boundary adds.
             left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
-        far = max((_MOMENT / left) ** 0.5, self.far_length * (self._cubed / left) ** (1.0 / 3.0))
+        far = max((self._moment / left) ** 0.5, self.far_length * (self._cubed / left) ** (1.0 / 3.0))
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
 
     def reach(self, wanted: Wanted) -> float:
@@ -95,15 +98,20 @@ class OnLayers(MeshKind):
     def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
         """Relative error of K_I by the far boundary, which moves as far below line loads."""
         R = self.radius(wanted)
-        return _MOMENT / R**2 + self._cubed * (self.far_length / R) ** 3
+        return self._moment / R**2 + self._cubed * (self.far_length / R) ** 3
 
     def terms(self, wanted: Wanted) -> int:
         """Of the resultants alone it is known what layers do to their fields."""
         return 1
 
     @property
+    def _moment(self) -> float:
+        return _MOMENT / self.left
+
+    @property
     def _cubed(self) -> float:
-        return _CUBED * min(1.0, _LONG / self.far_length)
+        at_rest = self.left * self.far_length
+        return _CUBED * min(1.0, _LONG / at_rest) / self.left**0.5
 
     @property
     def length(self) -> float:
@@ -228,6 +236,7 @@ def on_layers(
     drawn_together: float = 1.0,
     wide: float = 1.0,
     far_length: float = 1.0,
+    left: float = 1.0,
     roots: tuple[tuple[complex, ...], ...] = (),
     changes: tuple[float, ...] = (),
     places: tuple[float, ...] = (-1.0, 1.0),
@@ -237,5 +246,5 @@ def on_layers(
         "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
         innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
         drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, roots=roots, changes=changes, places=places,
+        far_length=far_length, left=left, roots=roots, changes=changes, places=places,
     )  # fmt: skip

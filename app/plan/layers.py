@@ -16,6 +16,8 @@ from galinx.solvers.solids import Solid
 
 #: How far apart a surface's fields may live so that cells are drawn together for both.
 _APART = 0.8
+#: Where less is left to the speed of a wave along the substrate no far boundary is far enough.
+_LEAST_LEFT = 1e-6
 #: Distance over a from a free end within which stresses are continued from farther away.
 _NEAR_FREE_END = 1e-2
 
@@ -81,6 +83,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
         drawn_together=float(np.min(roots)),
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         far_length=max(response.far_field.length for response in responses),
+        left=max(min(response.left_below for response in responses), _LEAST_LEFT),
         roots=_roots(responses),
         changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
         places=tuple(places),

@@ -257,6 +257,12 @@ class LayeredResponse:
         return 1.0 - (self.c / self.solid.limit()) ** 2
 
     @property
+    def left_below(self) -> float:
+        """1 at rest, 0 at the speed of a wave along the substrate by itself."""
+        below = self.solid.substrate
+        return 1.0 - (self.c * self.solid.c_s / (below.limit() * below.c_s)) ** 2
+
+    @property
     def contraction(self) -> complex:
         return self.surface.contraction
 

@@ -65,6 +65,15 @@ def test_surface_stresses_within_the_estimate():
     assert error <= data["states/fem/estimate_sigma_XX"][0] <= 1e-4
 
 
+@pytest.mark.parametrize(("thickness", "share"), [(0.1, 0.98), (3.0, 0.99)])
+def test_near_the_speed_of_waves_along_the_substrate_the_boundary_is_farther(thickness, share):
+    """There what the pressure's moments and the layer move reaches ever farther."""
+    hard, soft = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
+    solid = Layered((Layer(thickness, hard),), soft)
+    data = galinx.compute(scene_of(solid, share * solid.limit(), 0.4, tolerance=1e-4)).data
+    assert off(data) <= 0.4 * data["states/fem/estimate"][0] <= 1e-4
+
+
 def random_scene(seed, graded, quantities=("sif",)):
     solid, c = random_stack(seed, graded)
     f = np.random.default_rng(1000 + seed).uniform(-1.0, 1.0)

@@ -40,7 +40,8 @@ def differences(data):
         fem, sie = (data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie"))
         found["_sigma_XX"] = largest((fem - sie) / scale.of_in_plane(sie, data["surface/X_over_a"]))
     if "interfaces/fem/sigma_YY" in data:
-        fem, sie = (np.array([data[f"interfaces/{by}/{name}"] for name in PARTS]) for by in ("fem", "sie"))
+        of = (f"interfaces/{by}/" for by in ("fem", "sie"))
+        fem, sie = (np.array([data[path + name] for name in PARTS]) for path in of)
         found["_interfaces"] = largest(np.moveaxis((fem - sie) / scale.of_interfaces(sie), 1, 0))
     return found
 

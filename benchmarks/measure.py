@@ -77,6 +77,9 @@ FIBRES = {"solid.material": "carbon-epoxy", "solid.angle": 30, "motion.c": 0.2}
 STACK = {"friction.mu_c": 0.4, "solve.tolerance": 1e-6}
 K_I_ALONE = {"output.quantities": ["friction", "sif"]}
 BOTH, SIE = {"solve.methods": ["sie", "fem"]}, {"solve.methods": ["sie"]}
+COATED = STACK | K_I_ALONE | {"friction.model": "dahl", "friction.sigma0_over_load": "25000 1/m"}
+COATED |= {"friction.pre_sliding": "0.1 mm", "friction.delta": 1.0} | positions(100) | FEM_ALONE
+COATED_SPEEDS = {"motion.speed": {"from": "1 m/s", "to": "900 m/s", "number": 256}}
 LOOP = {"output.quantities": ["friction"]} | positions(33334)
 
 #: What else slides, beside the flat punch on steel.
@@ -91,6 +94,8 @@ OTHERS = [
     Case("coating, integral equation", "coating", STACK | K_I_ALONE | SIE),
     Case("coating, both methods", "coating", STACK | K_I_ALONE | BOTH),
     Case("coating, both, with its interface", "coating", STACK | BOTH),
+    Case("coating, 1 speed x 100 states, finite elements", "coating", COATED),
+    Case("coating, 256 speeds x 100 states, finite elements", "coating", COATED | COATED_SPEEDS),
     Case("cylinder on a coating, both", "coating", STACK | BOTH | CYLINDER),
     Case("start from rest to t = 20, both", "start_from_rest", {"time.end": 20.0}),
     Case("friction: Dahl", "fig2", LOOP),
@@ -116,6 +121,7 @@ CASES = [
     Case("the same, 1e-9, 2 ranks", "tables4_5", SIXTEEN | FINE, ranks=2),
     Case("1 speed x 102 states", "tables4_5", SPEEDS | {"motion.c": 0.6}),
     Case("256 speeds x 102 states", "tables4_5", SPEEDS),
+    Case("the same, 256 speeds, 2 ranks", "tables4_5", SPEEDS, ranks=2),
     Case("2 speeds x 50 001 states", "tables4_5", positions(16667)),
     Case("friction alone", "fig6"),
     Case("closed form alone", "tables4_5", {"solve.methods": ["closed_form"]}),

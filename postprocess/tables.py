@@ -150,6 +150,7 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("  at X", {method: rows[1] for method, rows in _TENSION.items()}),
 )
 _METHODS = {CLOSED_FORM: "exact", SIE: "SIE", FEM: "FE", "": ""}
+_CALLED = {"exact": "closed form", "SIE": "singular integral equation", "FE": "finite elements"}
 
 
 def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
@@ -162,10 +163,10 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
                 ends = (f"{end(told.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
                 unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
                 rows.append([label, _METHODS[method], unit, *ends])
-    notes = [
-        "left, right: how far from X = -a and X = a; waves: how often one crosses the contact",
-        "exact: closed form, FE: finite elements",
-    ]
+    notes = ["left, right: how far from X = -a and X = a; waves: how often one crosses the contact"]
+    used = {row[1] for row in rows}
+    if called := ", ".join(f"{short}: {long}" for short, long in _CALLED.items() if short in used):
+        notes.append(called)
     return Sheet("Yield, and where answers hold", ["", "by", "unit", "least", "most"], rows, notes)
 
 

@@ -23,7 +23,7 @@ from galinx.app.console.terminal import say
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
 @click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")
-@click.option("--method", default="", metavar="NAME", help="closed_form or fem; default: both.")
+@click.option("--method", default="", metavar="NAME", help="closed_form, sie or fem; default: all.")
 @click.option("--x", default="", metavar="NAME", help="What numbers of states are drawn over, as mu_c.")
 @click.option("--y", default="", metavar="NAMES", help="These numbers, as in K_I_left,v0.")
 @click.option("--by", default="", metavar="NAME", help="What tells their curves apart.")

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, noun, one_of
-from galinx.app.pictures.drawing import Drawing, by_method
+from galinx.app.pictures.drawing import METHODS, Drawing, by_method
 from galinx.app.pictures.told import PLACE, C, N, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
 from galinx.postprocess.quantities import Quantity, column, validity
-from galinx.postprocess.quantities.quantity import FEM, STATE
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 
 #: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
@@ -45,17 +45,19 @@ class Column:
     Attributes:
         about: what they are, with symbol.
         unit: in TeX.
-        exact, found: in closed form or of no method, and by finite elements, (states,).
+        exact, found: not by finite elements, and by these, (states,).
+        by: the method of the first, "" for none.
     """
 
     about: str
     unit: str
     exact: NDArray | None
     found: NDArray | None
+    by: str
 
     @property
     def best(self) -> NDArray:
-        """Its numbers, in closed form where there are any."""
+        """Its numbers, not by finite elements where there are such."""
         values = self.exact if self.exact is not None else self.found
         assert values is not None
         return values
@@ -122,7 +124,8 @@ def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         for name in sweep.drawn
     ]
     ordered = not sweep.by or told.numeric(sweep.by)
-    figure = curves_figure(panels, sweep.over, ordered, choice.size)
+    exactly = METHODS[SIE if SIE in {known[name].by for name in sweep.drawn} else CLOSED_FORM]
+    figure = curves_figure(panels, sweep.over, ordered, choice.size, exactly)
     at = f" at {told.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""
     caption = f"What follows from {plain(sweep.over.label)}{at}."
     if sweep.same:
@@ -167,9 +170,9 @@ def _columns(data: dict[str, Any], method: str) -> dict[str, Column]:
         first = next(iter(rows.values()))
         if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
-        exact = next((data[row.path] for of, row in rows.items() if of != FEM), None)
-        fem = data[rows[FEM].path] if FEM in rows else None
-        found[name] = Column(_label(first), unit(first.unit).removeprefix(r"\,"), exact, fem)
+        by = next((of for of in rows if of != FEM), "")
+        exact, fem = (data[rows[of].path] if of in rows else None for of in (by, FEM))
+        found[name] = Column(_label(first), unit(first.unit).removeprefix(r"\,"), exact, fem, by)
     return found
 
 

@@ -13,7 +13,7 @@ from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, letter
 from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, Look, looks, styled
 from galinx.postprocess.figures.typeset import folded
 
-#: Axes become logarithmic where numbers span more than this.
+#: Axes may become logarithmic where numbers span more than this.
 _DECADES = 200.0
 
 #: Numbers beyond these have a power of ten beside their unit.
@@ -30,7 +30,7 @@ class Line:
     Attributes:
         label: names it in a legend.
         x: the parameter, (n,).
-        exact, found: in closed form, and by finite elements, (n,).
+        exact, found: not by finite elements, and by these, (n,).
     """
 
     label: str
@@ -68,8 +68,9 @@ class Parameter:
 
 @styled
 def curves_figure(
-    shown: Sequence[Panel], over: Parameter, ordered: bool = True, size: Size | None = None
-) -> Figure:
+    shown: Sequence[Panel], over: Parameter, ordered: bool = True, size: Size | None = None,
+    exactly: str = "closed form",
+) -> Figure:  # fmt: skip
     """Quantities over a parameter, a panel for each.
 
     Args:
@@ -77,6 +78,7 @@ def curves_figure(
         over: the parameter.
         ordered: the lines of a panel follow a number.
         size: of the figure.
+        exactly: what gives the numbers that are not found by finite elements.
     """
     size = size or Size(COLUMN if len(shown) == 1 else PAGE)
     columns = max(1, min(2 if len(shown) == 4 else 3, len(shown), int(size.width / 2.2)))
@@ -85,7 +87,7 @@ def curves_figure(
     lines = [handle(look, line.label) for look, line in zip(styles, shown[0].lines) if len(styles) > 1]
     every = [line for panel in shown for line in panel.lines]
     exact, found = (any(values is not None for values in some) for some in zip(*map(_methods, every)))
-    legend = Legend([*lines, *of_methods(exact, found)], size.width)
+    legend = Legend([*lines, *of_methods(exact, found, exactly)], size.width)
     label = folded(over.label, int((size.width / columns - 0.5) / _LETTER))
     below = 0.29 + 0.13 * (1 + label.count("\n"))
     top = (0.2 if len(shown) > 1 else 0.08) + (0.3 if over.beside else 0.0)
@@ -130,7 +132,8 @@ def _draw(axis: Axes, panel: Panel, styles: Sequence[Look]) -> int:
                 marker=look.marker if marked else "" if both else ".",
                 linewidth=0.6 if marked else 1.0, **joined,
             )  # fmt: skip
-    if _spans_decades(np.concatenate([line.x for line in panel.lines])):
+    x = np.concatenate([line.x for line in panel.lines])
+    if _spans_decades(x) and _rather_by_ratios(x):
         axis.set_xscale("log")
     if decades:
         axis.set_yscale("log")
@@ -150,6 +153,12 @@ def _power(values: NDArray) -> int:
 def _spans_decades(values: NDArray) -> bool:
     some = values[np.isfinite(values)]
     return len(some) > 0 and some.min() > 0.0 and some.max() > _DECADES * some.min()
+
+
+def _rather_by_ratios(x: NDArray) -> bool:
+    """Does the middle number lie midway by ratios, rather than by differences?"""
+    low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
+    return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
 
 
 def _beside(axis: Axes, label: str, factor: float) -> None:

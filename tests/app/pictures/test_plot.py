@@ -127,6 +127,19 @@ def test_speeds_are_also_told_in_metres_per_second(fast):
     assert beside.get_xlim() == pytest.approx([c_s * c for c in figure.axes[0].get_xlim()])
 
 
+def test_over_layers_lines_are_of_the_integral_equation_and_equal_steps_of_speed_are_equal():
+    speeds = {"from": 1.0, "to": 800.0, "number": 5}
+    changes = {"motion.speed": speeds, "friction.mu_c": 0.4, "solve.tolerance": 1e-2}
+    changes |= {"solve.methods": ["sie", "fem"], "output.quantities": ["friction", "sif"]}
+    figure = drawn(computed("coating", changes), "parameters").figure
+    (legend,) = figure.legends
+    assert "lines: integral equation" in [text.get_text() for text in legend.get_texts()]
+    assert {axis.get_xscale() for axis in figure.axes} == {"linear"}
+    changes["motion.speed"] = speeds | {"spacing": "log"}
+    figure = drawn(computed("coating", changes), "parameters").figure
+    assert {axis.get_xscale() for axis in figure.axes} == {"log"}
+
+
 def test_a_single_map_is_a_figure_of_its_own(strokes):
     drawing = drawn(strokes, "inside", states=(2,), quantities=("von_mises",))
     (axis,) = drawing.figure.axes

@@ -24,7 +24,7 @@ SHOWN = {
     "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
     "cylinder": ("surface", "A cylinder: the pressure ends at 0, and friction moves the contact back."),
     "shoulders": ("surface", "A flat base with rounded shoulders, on which the contact ends."),
-    "coating": ("interfaces", "What a hard coating hands down: σ_XX jumps, tension at the trailing edge."),
+    "coating": ("interfaces", "What a hard coating hands down; tension in it at the trailing edge."),
     "minor_loops": ("friction", "Springs with sliders close small loops and remember where they turned."),
     "velocity_steps": ("friction", "Rate and state: what is there at once, and what comes with slip."),
     "slider": ("slider", "Stick-slip: the mass waits for the spring, and goes three times as fast."),

@@ -18,8 +18,8 @@ from galinx.app.console.terminal import say
     "--figure",
     default="",
     metavar="NAMES",
-    help="friction, parameters, surface, interfaces, inside, angles, degrees, mesh, film; several as in "
-    "surface,inside.",
+    help="friction, parameters, surface, interfaces, inside, angles, thicknesses, degrees, mesh, film; "
+    "several as in surface,inside.",
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
 @click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")

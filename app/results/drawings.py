@@ -19,6 +19,7 @@ from galinx.app.pictures import (
     surface,
     surface_over_time,
     sweep,
+    thicknesses,
 )
 from galinx.app.pictures.choice import Choice, one_of
 from galinx.app.pictures.drawing import METHODS, Drawing, there
@@ -84,6 +85,9 @@ _FIGURES = {
     ),
     "energies": _Figure(set(), lambda data, scene, _: energies.has(data), energies.energies),
     "angles": _Figure(set(), lambda data, scene, _: angles.has(scene), angles.angles),
+    "thicknesses": _Figure(
+        set(), lambda data, scene, _: thicknesses.has(data, scene), thicknesses.thicknesses
+    ),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
     FILM: _Figure(

@@ -13,8 +13,9 @@ from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, letter
 from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, Look, looks, styled
 from galinx.postprocess.figures.typeset import folded
 
-#: Axes may become logarithmic where numbers span more than this.
-_DECADES = 200.0
+#: Axes become logarithmic where numbers span more than this; that of the parameter where it spans more
+#: than that, by steps that are equal ratios rather than differences.
+_DECADES, _RATIOS = 200.0, 30.0
 
 #: Numbers beyond these have a power of ten beside their unit.
 _SHORT, _LONG = 1e-2, 1e4
@@ -60,10 +61,12 @@ class Parameter:
     Attributes:
         label: of the axis.
         beside: another axis on top, its label and what the parameter is multiplied by; None for none.
+        now: where a grey line stands; None for none.
     """
 
     label: str
     beside: tuple[str, float] | None = None
+    now: float | None = None
 
 
 @styled
@@ -100,6 +103,8 @@ def curves_figure(
         power = _draw(axis, panel, styles)
         axis.set_xlabel(label)
         axis.set_ylabel(folded(_with_unit(panel, power), int(1.1 * tall / _LETTER)))
+        if over.now is not None:
+            axis.axvline(over.now, color=GREY, linewidth=0.4, zorder=0)
         if over.beside and n < columns:
             _beside(axis, *over.beside)
     lettered(axes.flat[: len(shown)], above=True)
@@ -133,7 +138,7 @@ def _draw(axis: Axes, panel: Panel, styles: Sequence[Look]) -> int:
                 linewidth=0.6 if marked else 1.0, **joined,
             )  # fmt: skip
     x = np.concatenate([line.x for line in panel.lines])
-    if _spans_decades(x) and _rather_by_ratios(x):
+    if _spans_decades(x, _RATIOS) and _rather_by_ratios(x):
         axis.set_xscale("log")
     if decades:
         axis.set_yscale("log")
@@ -150,9 +155,9 @@ def _power(values: NDArray) -> int:
     return 3 * floor(log10(largest) / 3.0)
 
 
-def _spans_decades(values: NDArray) -> bool:
+def _spans_decades(values: NDArray, more_than: float = _DECADES) -> bool:
     some = values[np.isfinite(values)]
-    return len(some) > 0 and some.min() > 0.0 and some.max() > _DECADES * some.min()
+    return len(some) > 0 and some.min() > 0.0 and some.max() > more_than * some.min()
 
 
 def _rather_by_ratios(x: NDArray) -> bool:

@@ -20,6 +20,8 @@ from galinx.solvers.layers.uniform import Uniform
 
 #: A depth over that of an interface that is still it.
 _AT = 1e-12
+#: Numbers of differences of positions that are looked up at once: some megabytes.
+_AT_ONCE = 60_000
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,9 @@ class Level:
             X: positions.
             size: length over a that ``t`` and ``X`` are over, and stresses.
         """
-        found = np.empty((len(X), 6))
-        for i, x in enumerate(X.tolist()):
-            found[i] = size * (σ @ self._table(size * (x - t)))
+        found, step = np.empty((len(X), 6)), max(_AT_ONCE // len(t), 1)
+        for start in range(0, len(X), step):
+            some = slice(start, start + step)
+            found[some] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[some, None] - t)))
         by_shear, by_pressure = found[:, 0::2], found[:, 1::2]
         return np.asarray((g * by_shear + by_pressure).T)

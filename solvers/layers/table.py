@@ -37,12 +37,14 @@ class Table:
         flat = x.ravel()
         panel = np.clip(np.searchsorted(self.ends, flat) - 1, 0, len(self.ends) - 2)
         left, right = self.ends[panel], self.ends[panel + 1]
-        ξ = ((2.0 * flat - left - right) / (right - left))[:, None]
-        one = two = np.zeros((len(flat), self.coefficients.shape[-1]))
-        for n in range(_NODES - 1, 0, -1):
-            one, two = self.coefficients[panel, n] + 2.0 * ξ * one - two, one
-        found = self.coefficients[panel, 0] + ξ * one - two
-        return np.asarray(found.reshape(*x.shape, self.coefficients.shape[-1]))
+        T = chebyshev.chebvander((2.0 * flat - left - right) / (right - left), _NODES - 1)
+        found = np.empty((len(flat), self.coefficients.shape[-1]))
+        # Panel by panel: to gather coefficients for every position would take longer than to use them.
+        order = np.argsort(panel, kind="stable")
+        met, first = np.unique(panel[order], return_index=True)
+        for i, some in zip(met.tolist(), np.split(order, first[1:])):
+            found[some] = T[some] @ self.coefficients[i]
+        return found.reshape(*x.shape, found.shape[-1])
 
 
 def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:

@@ -1,6 +1,7 @@
 """Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -118,3 +119,37 @@ def test_they_can_be_read_in_print(coated):
 def test_uniform_solids_have_no_such_figure():
     run = computed(changes={"solve.methods": ["closed_form"]})
     assert "interfaces" not in names(run.data, run.scene)
+
+
+def test_thinner_and_thicker_layers_are_what_their_scenes_say():
+    changes = {"friction.mu_c": [0.1, 0.8], "output.quantities": ["sif", "interfaces"]}
+    here = computed("coating", changes)
+    axes = drawn(here, "thicknesses").figure.axes
+    scene = here.scene
+    (top,) = scene.layers
+    for place, factor in ((0, 0.1), (8, 1.0), (16, 10.0)):
+        layer = replace(top, thickness=factor * top.thickness)
+        data = galinx.compute(replace(scene, layers=(layer,))).data
+        steepest = int(np.argmax(np.abs(data["states/g"])))
+
+        def extreme(name, data=data, state=steepest):
+            values = data[f"interfaces/sie/{name}"][state, 0]
+            return np.abs(values).max() if name.endswith("Y") else values.max()
+
+        names = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
+        K_I = [data[f"states/sie/K_I_{end}"][steepest] for end in ("left", "right")]
+        for axis, wanted in zip(axes, [*K_I, *map(extreme, names)]):
+            line = curves(axis)[0]
+            assert line.get_xdata()[place] == pytest.approx(
+                factor * top.thickness / scene.body.half_width
+            )
+            assert line.get_ydata()[place] == pytest.approx(wanted, rel=5e-3)
+
+
+def test_thicknesses_are_drawn_over_uniform_layers_alone():
+    alone = {"output.quantities": ["sif"], "friction.mu_c": 0.1}
+    here = computed("coating", alone)
+    assert "thicknesses" in names(here.data, here.scene, Choice())
+    (top,) = here.scene.layers
+    graded = replace(here.scene, layers=(replace(top, bottom=here.scene.half_plane.solid),))
+    assert "thicknesses" not in names(here.data, graded, Choice())

@@ -9,9 +9,11 @@ from support import HOME, computed
 
 import galinx
 from galinx.app.errors import BadInput
+from galinx.app.pictures import thicknesses
 from galinx.app.pictures.choice import Choice, size
 from galinx.app.results.drawings import names, of_archive
 from galinx.app.scene.read import parse
+from galinx.solvers.errors import SolveError
 
 sys.path.insert(0, str(HOME / "tests" / "postprocess" / "figures"))
 from legible import faults
@@ -146,10 +148,26 @@ def test_thinner_and_thicker_layers_are_what_their_scenes_say():
             assert line.get_ydata()[place] == pytest.approx(wanted, rel=5e-3)
 
 
-def test_thicknesses_are_drawn_over_uniform_layers_alone():
+def test_thicknesses_are_drawn_of_uniform_layers_that_are_not_thin():
     alone = {"output.quantities": ["sif"], "friction.mu_c": 0.1}
     here = computed("coating", alone)
     assert "thicknesses" in names(here.data, here.scene, Choice())
     (top,) = here.scene.layers
     graded = replace(here.scene, layers=(replace(top, bottom=here.scene.half_plane.solid),))
-    assert "thicknesses" not in names(here.data, graded, Choice())
+    thin = replace(here.scene, layers=(replace(top, thickness=1e-5),))
+    assert all("thicknesses" not in names(here.data, one, Choice()) for one in (graded, thin))
+
+
+def test_where_the_equation_has_no_answer_curves_have_a_gap(monkeypatch):
+    here, found = computed("coating", {"output.quantities": ["sif"], "friction.mu_c": 0.1}), []
+
+    def solved(body, *_):
+        found.append(body.solid.layers[0].thickness)
+        if len(found) == 1:
+            raise SolveError("no answer")
+        return np.arange(6.0)
+
+    monkeypatch.setattr(thicknesses, "_at", solved)
+    (line,) = curves(drawn(here, "thicknesses").figure.axes[3])
+    assert np.isnan(line.get_ydata()[0]) and set(line.get_ydata()[1:].tolist()) == {3.0}
+    assert line.get_xdata() == pytest.approx(np.array(found) / here.scene.body.half_width)

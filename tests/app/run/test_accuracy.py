@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed
 
+import galinx
+from galinx.app.scene.read import parse
 from galinx.postprocess import compare
 from galinx.solvers.solids import Isotropic
 
@@ -164,3 +166,20 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
     X, found, exact = (data[f"surface/{name}"] for name in _IN_PLANE)
     off = np.abs(1.0 - np.abs(X)) >= 1e-2
     assert np.abs(found - exact)[:, off].max() <= 1e-6 * np.abs(exact)[:, off].max()
+
+
+@pytest.mark.parametrize(
+    ("ν", "c", "g", "tolerance", "solve"),
+    [(-0.06, 0.518, 0.5, 5e-3, 'mesh = "graded"'), (0.234, 0.0, 0.65, 8e-3, "degree = 8\ncuts = 4")],
+)
+def test_what_few_moments_leave_at_the_far_boundary_is_in_the_estimate(ν, c, g, tolerance, solve):
+    """Cells better than the tolerance leave the boundary's part, which no level sees."""
+    result = galinx.compute(
+        parse(
+            f'[solid]\nE = 1e9\nnu = {ν}\nrho = 1e3\nplane = "stress"\n[friction]\nmodel = "coulomb"\n'
+            f'mu_c = {g}\n[motion]\nc = {c}\nstrokes = ["forward"]\nX_over_L = [0.5]\n[solve]\n'
+            f'tolerance = {tolerance}\n{solve}\n[output]\nquantities = ["sif"]'
+        )
+    )
+    (true,), (estimate,) = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
+    assert 1e-7 < true <= estimate / 1.5

@@ -8,10 +8,8 @@ from math import ceil, log
 #: Distance at least, and over that of the farthest place where stresses are wanted.
 _LEAST, _BEYOND = 17.0, 1.7
 
-#: Relative error of K_I over the inverse distance to the power of one more than the moments, times the
-#: margin of the response: of none, halved by each moment, and of many. The largest of 44 solids with
-#: frictions to 1.2, with a factor of 1 to 2. And the share of the tolerance that is left to it at rest.
-_OF_NONE, _OF_MANY, _SHARE = 1.05, 0.02, 1e-4
+#: How many moments there are: what their error is of, and the share of the tolerance that is left to it.
+_LEFT_OUT, _SHARE = 0.02, 1e-4
 
 
 def radius(farthest: float) -> float:
@@ -21,9 +19,13 @@ def radius(farthest: float) -> float:
 
 def moments(R: float, tolerance: float) -> int:
     """How many a boundary at a distance R follows."""
-    return max(ceil(log(_OF_MANY / (_SHARE * tolerance)) / log(R)) - 1, 1)
+    return max(ceil(log(_LEFT_OUT / (_SHARE * tolerance)) / log(R)) - 1, 1)
 
 
 def left(R: float, moments: int, margin: float) -> float:
-    """Estimated relative error of K_I by a boundary at a distance R that follows so many."""
-    return max(_OF_NONE / 2.0**moments, _OF_MANY) / (R ** (moments + 1) * margin)
+    """Estimated relative error of K_I by a boundary at a distance R that follows so many.
+
+    Over |σ_XY/σ_YY| and a tenth: every other moment needs no friction. Measured on 60 solids, frictions
+    to 5, speeds to 0.99 of the limit and 1 to 6 moments; it is 1 to 5 times the largest of these.
+    """
+    return 2.0 ** (2 - moments) / (R ** (moments + 1) * margin)

@@ -22,6 +22,9 @@ from galinx.solvers.fem.space import Space
 #: What rounding does, over what of it breaks the mirror image.
 ROUNDING = 3.0
 
+#: What higher moments do without friction, over what they do at σ_XY = σ_YY.
+_UPRIGHT = 0.1
+
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
 
@@ -168,7 +171,7 @@ class MeasuredError:
         far = nearer * kind.truncation(wanted, margin)
         lean = response.n12 / response.n
         # Without friction nothing leans to a side, but every other of the higher moments needs no side.
-        leaning = 1.0 if kind.terms(wanted) > 1 else np.abs(g) + 0.5 * abs(lean)
+        leaning = np.abs(g) + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(wanted) > 1)
         of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
         found = {}
         for gauge in gauges:

@@ -169,16 +169,16 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
 
 
 @pytest.mark.parametrize(
-    ("ν", "c", "g", "tolerance", "solve"),
-    [(-0.06, 0.518, 0.5, 5e-3, 'mesh = "graded"'), (0.234, 0.0, 0.65, 8e-3, "degree = 8\ncuts = 4")],
+    ("ν", "c", "g", "tolerance"),
+    [(-0.5, 0.6, 1.1, 3e-3), (0.234, 0.0, 0.65, 8e-3), (0.4, 0.0, 1.0, 5e-3), (-0.8, 0.0, 1.2, 5e-3)],
 )
-def test_what_few_moments_leave_at_the_far_boundary_is_in_the_estimate(ν, c, g, tolerance, solve):
+def test_what_few_moments_leave_at_the_far_boundary_is_in_the_estimate(ν, c, g, tolerance):
     """Cells better than the tolerance leave the boundary's part, which no level sees."""
     result = galinx.compute(
         parse(
             f'[solid]\nE = 1e9\nnu = {ν}\nrho = 1e3\nplane = "stress"\n[friction]\nmodel = "coulomb"\n'
             f'mu_c = {g}\n[motion]\nc = {c}\nstrokes = ["forward"]\nX_over_L = [0.5]\n[solve]\n'
-            f'tolerance = {tolerance}\n{solve}\n[output]\nquantities = ["sif"]'
+            f'tolerance = {tolerance}\ndegree = 8\ncuts = 4\n[output]\nquantities = ["sif"]'
         )
     )
     (true,), (estimate,) = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))

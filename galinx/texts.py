@@ -10,6 +10,8 @@ _UNSEEN = {"Cc", "Zl", "Zp", "Cs"}
 
 def unseen(text: str) -> str:
     """For a message, where a text has its first control character; "" if it has none."""
+    if text.isprintable():  # which none of these is; a start of the program looks at thousands of texts
+        return ""
     for i, character in enumerate(text):
         if unicodedata.category(character) in _UNSEEN or ord(character) in _DIRECTIONS:
             return f"character {i + 1} is the control character U+{ord(character):04X}, expected none"

@@ -4,9 +4,9 @@ from typing import Any
 
 import xarray
 
+from galinx.postprocess.apart import parameters
 from galinx.postprocess.quantities import Quantity, of_states, table
 from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 
 #: Names of dimensions, and of the positions along them.
@@ -19,18 +19,6 @@ _POSITIONS = {
     INSIDE_X.path: "inside_X_over_a",
     INSIDE_Y.path: "inside_Y_over_a",
 }
-
-
-def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
-    """What tells an archive's states apart, by its dataset's path, slowest first.
-
-    Args:
-        data: datasets by path.
-    """
-    known = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = [SPEED.path, *({LOAD.path} & known.keys())], [MOTION.path, POSITION.path]
-    own = [path for path in known if path not in (*first, *last)]
-    return {path: known[path] for path in (*first, *own, *last)}
 
 
 def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from galinx.postprocess.apart import parameters
 from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, over_time, runs, slider, to_steady, validity, yielding
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import strata as layers

@@ -29,15 +29,23 @@ FEM = (
     "app/commands/test_compute.py", "app/results/test_paraview.py", "app/run/test_fixed_degree.py",
     "meshes/", "mpi/", "solvers/fem/",
 )  # fmt: skip
+#: The longest file comes first, so that no worker has it left when the others are done.
+FIRST = "docs/test_pages.py"
 
 
 def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: place_of(item) != FIRST)
     for item in items:
-        place = item.path.relative_to(Path(__file__).parent).as_posix()
+        place = place_of(item)
         if place.startswith(FAST) and not SLOW & set(item.fixturenames):
             item.add_marker("fast")
         elif place.startswith(FEM):
             item.add_marker("fem")
+
+
+def place_of(item):
+    """The file of a test, below this folder."""
+    return item.path.relative_to(Path(__file__).parent).as_posix()
 
 
 def pytest_sessionfinish(session, exitstatus):

@@ -1,11 +1,12 @@
 """What tests of several rooms need: commands, processes, scenes computed in memory, spaces and areas."""
 
+import io
 import os
 import resource
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from unittest.mock import patch
 
@@ -62,6 +63,17 @@ def command(*arguments, cwd=HOME, **variables):
         cwd=cwd, env=clean_environment() | variables, capture_output=True, text=True, timeout=300,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
+
+
+def here(*arguments, cwd=HOME, **variables):
+    """What :func:`command` returns, of a command in this process, which saves the start of one.
+
+    The pages' examples start all commands as a user does.
+    """
+    out, err = io.StringIO(), io.StringIO()
+    with chdir(cwd), patch.dict(os.environ, variables), redirect_stdout(out), redirect_stderr(err):
+        status = called(*map(str, arguments))
+    return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
 
 
 def called(*words):

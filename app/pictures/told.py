@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.scene.scene import Scene
+from galinx.postprocess.apart import parameters
 from galinx.postprocess.figures.style import LINES, MARKERS, Look, looks
 from galinx.postprocess.figures.typeset import number, plain, unit
-from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import column
 from galinx.postprocess.quantities.quantity import TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED

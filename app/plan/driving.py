@@ -9,7 +9,6 @@ from math import ceil
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.scene import Scene
@@ -110,6 +109,8 @@ class Friction:
     @cached_property
     def shortest(self) -> float:
         """Time over a/c_s in which it would change by 1 where it changes fastest."""
+        from scipy.interpolate import PchipInterpolator  # a slow import
+
         slopes = [
             float(np.abs(one(one.x, 1)).max()) for one in self.along if isinstance(one, PchipInterpolator)
         ]
@@ -187,6 +188,8 @@ def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
     Raises:
         BadInput: the law refuses its parameters.
     """
+    from scipy.interpolate import PchipInterpolator
+
     friction, length, V = scene.friction, scene.friction.pre_sliding, c * scene.solid.c_s
     shares = np.linspace(0.0, 1.0, _PLACES)
     places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]

@@ -11,8 +11,8 @@ import numpy as np
 from galinx.app.errors import BadInput
 from galinx.app.results.si import scaling
 from galinx.app.scene import read as scenes
+from galinx.postprocess.apart import parameters
 from galinx.postprocess.hdf5 import reader
-from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import SPEED

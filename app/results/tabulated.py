@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.apart import parameters
 from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.named import parameters
 from galinx.postprocess.quantities import Quantity, of_states, stresses, table
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE, TEXT

@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.medium import Medium
@@ -115,6 +114,8 @@ class Graded:
     @cached_property
     def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
+        from scipy.integrate import cumulative_trapezoid  # a slow import
+
         depth = np.linspace(0.0, self.H, _LOOKED_AT)
         decay = [min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()]
         return depth, cumulative_trapezoid(decay, depth, initial=0.0)
@@ -155,7 +156,7 @@ class Graded:
         Raises:
             SolveError: it is not finite: the speed is beyond that of a wave inside.
         """
-        from scipy.integrate import solve_ivp  # a slow import
+        from scipy.integrate import solve_ivp
 
         if np.any(k <= 0.0):
             raise ValueError(f"k a = {k.min()!r}: expected wavenumbers > 0")

@@ -11,7 +11,6 @@ from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.transient.basis import Basis
@@ -182,6 +181,8 @@ class StartingPunch:
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:
     """∫ Σ force d(way) up to each time, (times,); both (times, n), and ``first`` forces at t = 0."""
+    from scipy.interpolate import CubicSpline  # a slow import
+
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))
     F, u = CubicSpline(times, np.vstack([first, forces])), CubicSpline(times, np.vstack([still, ways]))
     y, w = np.polynomial.legendre.leggauss(4)

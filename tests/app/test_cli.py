@@ -4,7 +4,7 @@ import subprocess
 import time
 
 import pytest
-from support import SCENE, clean_environment, command, mpirun, widest
+from support import SCENE, clean_environment, command, here, mpirun, widest
 
 from galinx.app.cli import cli
 
@@ -27,7 +27,7 @@ from galinx.app.cli import cli
 )
 def test_bad_input_ends_with_one_message(tmp_path, ranks, arguments, message):
     (tmp_path / "bad.toml").write_text("[solid]\nE = 1e9\nrho = 1000\n", encoding="utf-8")
-    done = command(*ranks, *arguments, cwd=tmp_path)
+    done = command(*ranks, *arguments, cwd=tmp_path) if ranks else here(*arguments, cwd=tmp_path)
     assert done.returncode == 2 and "Traceback" not in done.stderr
     assert done.stderr.count("error: ") == 1 and message in done.stderr
 
@@ -65,7 +65,7 @@ def test_a_failure_on_one_rank_ends_all(tmp_path):
 
 @pytest.mark.parametrize("name", ["", *cli.commands])
 def test_help(name):
-    done = command(*filter(None, [name]), "--help")
+    done = here(*filter(None, [name]), "--help")
     assert done.returncode == 0 and "Usage" in done.stdout
     assert widest(done.stdout) <= 80
     assert not name or "Example: ./run.sh" in done.stdout

@@ -5,14 +5,17 @@ import pytest
 from mpi4py import MPI
 from support import HOME
 
+from galinx import template
 from galinx.app.plan import fem
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import compute
 from galinx.app.run.methods.error import ROUNDING
 from galinx.app.run.sinks import Memory
-from galinx.app.scene.read import parse, read
+from galinx.app.scene.read import parse
+from galinx.app.scene.templates import templates
 
-SCENES = {path.stem: read(path) for path in sorted((HOME / "scenes").glob("*.toml"))}
+#: What ranks agree on they agree on at every tolerance.
+SCENES = {name: template(name, {"solve.tolerance": 1e-3}) for name in templates()}
 #: Largest differences: relative of what a scene is run for, absolute of errors and fitted exponents, and
 #: of stresses over the median of their size, since they are derivatives. What rounding does to stresses
 #: is in their estimates ``ROUNDING`` times.

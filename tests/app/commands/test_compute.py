@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support import FEW_DEGREES, HOME, SCENE, clean_environment, command
+from support import FEW_DEGREES, HOME, SCENE, clean_environment, command, here
 
 from galinx import load
 
@@ -47,18 +47,25 @@ def test_archive_layout(archive):
 
 def test_an_archive_is_not_overwritten_unasked(archive):
     before = archive.read_bytes()
-    done = command("run", SCENE, "-o", archive)
+    done = here("run", SCENE, "-o", archive)
     assert done.returncode == 2 and "--overwrite" in done.stderr
     assert archive.read_bytes() == before
 
 
-def test_friction_alone_imports_no_finite_elements(tmp_path):
+#: Libraries that take longer to import than a friction loop takes.
+SLOW = (
+    "dolfinx", "gmsh", "petsc4py", "mpi4py", "matplotlib", "pandas", "scipy.integrate",
+    "scipy.interpolate",
+)  # fmt: skip
+
+
+def test_friction_alone_imports_nothing_slow(tmp_path):
     script = (
         "import sys\nfrom click.testing import CliRunner\nfrom galinx.app.cli import cli\n"
         f"done = CliRunner().invoke(cli, ['run', {str(HOME / 'scenes' / 'fig6.toml')!r}, '-o', "
         f"{str(tmp_path / 'loops.h5')!r}], standalone_mode=False)\n"
         "assert done.exception is None, done.exception\n"
-        "print([m for m in ('dolfinx', 'gmsh', 'petsc4py', 'mpi4py', 'matplotlib') if m in sys.modules])"
+        f"print([name for name in {SLOW} if name in sys.modules])"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], cwd=HOME, env=clean_environment(), capture_output=True, text=True
@@ -67,7 +74,7 @@ def test_friction_alone_imports_no_finite_elements(tmp_path):
 
 
 def test_plan_computes_nothing(tmp_path):
-    done = command("plan", SCENE, cwd=tmp_path)
+    done = here("plan", SCENE, cwd=tmp_path)
     said = " ".join(done.stdout.split())  # lines are folded
     assert done.returncode == 0 and "one factorisation" in said and not list(tmp_path.iterdir())
 
@@ -92,10 +99,10 @@ def test_a_verdict_has_its_status(tmp_path, ranks):
 
 
 def test_the_archive_holds_the_changed_scene(tmp_path):
-    done = command("run", SCENE, "-o", tmp_path / "a.h5", "--set", "friction.mu_c=0.25", "--set",
-                   'solve.methods=["closed_form"]', cwd=tmp_path)  # fmt: skip
+    done = here("run", SCENE, "-o", tmp_path / "a.h5", "--set", "friction.mu_c=0.25", "--set",
+                'solve.methods=["closed_form"]', cwd=tmp_path)  # fmt: skip
     assert done.returncode == 0, done.stderr
-    shown = json.loads(command("show", tmp_path / "a.h5", "--json").stdout)
+    shown = json.loads(here("show", tmp_path / "a.h5", "--json").stdout)
     assert {state["mu_c"] for state in shown["states"]} == {0.25}
     assert "mu_c = 0.25" in load(tmp_path / "a.h5").data["scene/text"]
 

@@ -9,7 +9,7 @@ import random
 import h5py
 import numpy as np
 import pytest
-from support import THOROUGH, command
+from support import THOROUGH, here
 from tampering import archived, numbers, opened, texts
 
 from galinx.app.cli import cli
@@ -67,7 +67,7 @@ def test_the_status_of_a_damaged_archive(content, path):
     damaged[len(content) // 2] ^= 1
     path.write_bytes(damaged)
     for name, *options in COMMANDS:
-        done = command(name, path, *options)
+        done = here(name, path, *options)
         assert done.returncode == 2 and done.stdout == ""
         assert done.stderr.startswith("error: ") and len(done.stderr.splitlines()) == 1
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support import command, computed
+from support import computed, here
 from tampering import opened
 
 from galinx.app.commands import options
@@ -17,7 +17,7 @@ from galinx.postprocess.hdf5 import seal
 
 
 def test_show_as_json(archive):
-    shown = json.loads(command("show", archive, "--json").stdout)
+    shown = json.loads(here("show", archive, "--json").stdout)
     assert shown["verdict"] == "PASS" and len(shown["states"]) == 12
     first = shown["states"][0]
     assert first["motion"] == "FM1" and first["closed_form"]["K_I"] == pytest.approx(0.3160757828331318)
@@ -25,7 +25,7 @@ def test_show_as_json(archive):
 
 
 def test_show_fits_a_terminal(archive):
-    shown = command("show", archive)
+    shown = here("show", archive)
     assert shown.returncode == 0 and "…" not in shown.stdout and "\x1b" not in shown.stdout
     assert max(map(len, shown.stdout.splitlines())) <= 80
 
@@ -33,7 +33,7 @@ def test_show_fits_a_terminal(archive):
 @pytest.mark.parametrize("columns", [40, 60, 200])
 def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
     """Nothing is cut: every column is there once, those that states are called by in every part."""
-    shown = command("show", archive, COLUMNS=str(columns)).stdout
+    shown = here("show", archive, COLUMNS=str(columns)).stdout
     table = shown.partition("the same in all")[0]
     assert max(map(len, table.splitlines())) <= columns and "…" not in shown
     heads = [line.split() for line in shown.splitlines() if line.startswith(" state")]
@@ -44,7 +44,7 @@ def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
 
 
 def test_plot(archive, tmp_path):
-    done = command("plot", archive, "-o", tmp_path)
+    done = here("plot", archive, "-o", tmp_path)
     assert done.returncode == 0, done.stderr
     for name in ("friction", "surface"):
         assert (tmp_path / f"{archive.stem}_{name}.png").stat().st_size > 10_000
@@ -65,26 +65,26 @@ def test_what_names_no_states_is_refused(text):
 
 
 def test_several_states_for_paraview(archive, tmp_path):
-    done = command("fields", archive, "--states", "0,3", "--extent", "2", cwd=tmp_path)
+    done = here("fields", archive, "--states", "0,3", "--extent", "2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     path = tmp_path / f"{archive.stem}_0,3.hdf"
     with h5py.File(path) as file:
         assert file["VTKHDF/Steps/Values"][:].tolist() == [0.0, 3.0]
         assert np.abs(file["VTKHDF/Points"][:]).max() == pytest.approx(2e-3, rel=1e-12)
-    done = command("fields", archive, "--states", "0", "--state", "3", cwd=tmp_path)
+    done = here("fields", archive, "--states", "0", "--state", "3", cwd=tmp_path)
     assert done.returncode == 2 and "exclude each other" in done.stderr
 
 
 def test_check_tells_damage_from_contradictions(archive, tmp_path):
     whole = Path(shutil.copy(archive, tmp_path))
-    done = command("check", whole)
+    done = here("check", whole)
     assert done.returncode == 0 and "is whole" in done.stdout
     with opened(whole, sealed=False) as file:
         file.attrs["verdict"] = "FAIL"
-    done = command("check", whole)
+    done = here("check", whole)
     assert done.returncode == 2 and "damaged" in done.stderr
     seal.put(whole)
-    done = command("check", whole)
+    done = here("check", whole)
     assert done.returncode == 1 and "fault: verdict says FAIL" in done.stdout
     assert "faults: 1" in done.stdout
 
@@ -99,14 +99,14 @@ def test_in_si_show_tells_yield_speeds_and_lengths(tmp_path):
     result = computed("tables4_5", OWN)
     result.save(tmp_path / "a.h5")
     unit, a = 55.3e3 / 2e-3, 1e-3
-    plain, si = (command("show", tmp_path / "a.h5", *options).stdout for options in ((), ("--si",)))
+    plain, si = (here("show", tmp_path / "a.h5", *options).stdout for options in ((), ("--si",)))
     largest = result.data["states/closed_form/von_mises"]
     assert re.search(rf"largest von Mises +exact +N/\(2a\) +{largest.min():.4g} ", plain)
     assert re.search(rf"largest von Mises +exact +Pa +{re.escape(f'{unit * largest.min():.4g}')} ", si)
     depth = result.data["states/closed_form/von_mises_Y_over_a"].min()
     assert re.search(rf"at Y +exact +m +{re.escape(f'{a * depth:.4g}')} ", si)
     assert "speed (m/s) = 940.2" in si and "waves in a stroke" in si
-    shown = json.loads(command("show", tmp_path / "a.h5", "--json", "--si").stdout)
+    shown = json.loads(here("show", tmp_path / "a.h5", "--json", "--si").stdout)
     first, units = shown["states"][0], shown["units"]
     assert units["closed_form"]["von_mises"] == "Pa" and units["closed_form"]["von_mises_Y"] == "m"
     assert first["closed_form"]["von_mises"] == pytest.approx(unit * largest[0], rel=1e-14)

@@ -16,7 +16,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from support import HOME, SCENE, clean_environment, command
+from support import HOME, SCENE, at_most, clean_environment, here
 
 from galinx.postprocess.target import ARCHIVE, FIELDS, LOG, PAGE, PNG, TABLE, Kind
 
@@ -80,8 +80,8 @@ def made(archive, tmp_path_factory):
     """A folder with the inputs, and a file of each kind."""
     folder = tmp_path_factory.mktemp("made")
     shutil.copy(archive, folder / "in.h5")
-    assert command("init", "table1", "-o", "scene.toml", cwd=folder).returncode == 0
-    done = command("run", "scene.toml", "-o", "a.h5", "--log", "a.log", cwd=folder)
+    assert here("init", "table1", "-o", "scene.toml", cwd=folder).returncode == 0
+    done = here("run", "scene.toml", "-o", "a.h5", "--log", "a.log", cwd=folder)
     assert done.returncode == 0, done.stderr
     for arguments in (
         ("report", "a.h5"),
@@ -89,7 +89,7 @@ def made(archive, tmp_path_factory):
         ("fields", "in.h5", "-o", "a.hdf"),
         ("csv", "a.h5", "-o", "a.csv"),
     ):
-        assert command(*arguments, cwd=folder).returncode == 0
+        assert here(*arguments, cwd=folder).returncode == 0
     own = {
         ARCHIVE: "a.h5",
         LOG: "a.log",
@@ -108,11 +108,15 @@ def limited():
 
 
 def ended(arguments, cwd, full=False):
-    """A finished command, which was told once what is wrong if anything was."""
-    done = subprocess.run(
-        [HOME / "run.sh", *arguments], cwd=cwd, env=clean_environment(), capture_output=True, text=True,
-        timeout=300, stdin=subprocess.DEVNULL, preexec_fn=limited if full else None,
-    )  # fmt: skip
+    """A finished command, which was told once what is wrong if anything was; on a full disk a process."""
+    if full:
+        done = subprocess.run(
+            [HOME / "run.sh", *arguments], cwd=cwd, env=clean_environment(), capture_output=True,
+            text=True, timeout=300, stdin=subprocess.DEVNULL, preexec_fn=limited,
+        )  # fmt: skip
+    else:
+        with at_most(100.0):
+            done = here(*arguments, cwd=cwd)
     assert "Traceback" not in done.stderr, done.stderr
     assert done.returncode in (0, 1, 2, 3), done.stderr
     assert done.stderr.count("error: ") == (done.returncode > 1), done.stderr
@@ -163,9 +167,9 @@ def check_made(place, name, kind: Kind | None):
     if kind:
         assert kind.of(place)
     elif name in ("run", "resume"):
-        assert command("check", place).returncode == 0
+        assert here("check", place).returncode == 0
     elif name == "init":
-        assert place.read_bytes().endswith(b"\n") and command("plan", place).returncode == 0
+        assert place.read_bytes().endswith(b"\n") and here("plan", place).returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """The command that tells what a punch answers to loads that oscillate."""
 
-from support import HOME, command
+from support import HOME, here
 
 SCENE = HOME / "scenes" / "start_from_rest.toml"
 
@@ -11,7 +11,7 @@ def numbers(text):
 
 def test_response_of_a_scene(tmp_path):
     words = ["--points", "3", "--from", "0.1", "--to", "2", "--set", "motion.c=[0.0, 0.5]"]
-    done = command("response", SCENE, "-o", tmp_path / "punch.png", *words)
+    done = here("response", SCENE, "-o", tmp_path / "punch.png", *words)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "punch.png").stat().st_size > 10_000
     found = numbers(done.stdout)
@@ -30,8 +30,8 @@ def test_what_has_no_answer_is_refused(tmp_path):
         (["--from", "2", "--to", "1"], "expected them to grow"),
         (["--set", "solid.nu=0.499"], "expected a uniform solid"),
     ):
-        done = command("response", SCENE, "-o", tmp_path, *words)
+        done = here("response", SCENE, "-o", tmp_path, *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr
-    done = command("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
+    done = here("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
     assert done.returncode == 2 and "expected a flat punch" in done.stderr
     assert not list(tmp_path.iterdir())

@@ -25,10 +25,15 @@ def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
 
 
 def test_a_broken_promise_fails(tmp_path, capsys, monkeypatch):
-    row = Row("x", "t", "x (1)", np.ones(2), "y (1)", {"a": np.ones(2)}, (Verdict("worse", False),))
-    monkeypatch.setattr(matrix, "ROWS", (lambda: row,))
+    broken, kept = (
+        Row(name, "t", "x (1)", np.ones(2), "y (1)", {"a": np.ones(2)}, (Verdict("worse", holds),))
+        for name, holds in (("x", False), ("random", True))
+    )
+    monkeypatch.setattr(matrix, "ROWS", (lambda: broken,))
+    monkeypatch.setattr(matrix, "random_scenes", lambda *_: kept)
     assert not matrix.stress(Folder(tmp_path), scenes=4)
-    assert "FAILS  worse" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "FAILS  worse" in printed and "holds  worse" in printed and "verdict: FAIL" in printed
 
 
 def test_verdicts_can_fail():

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from support import command, computed
+from support import computed, here
 
 from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, size
@@ -249,14 +249,14 @@ def test_wrong_resolutions_and_formats_are_refused(fast, tmp_path):
 
 
 def test_the_command_draws_what_it_is_told(archive, tmp_path):
-    one = command(
+    one = here(
         "plot", archive, "-o", tmp_path / "one.svg", "--states", "0,4,7", "--quantity", "sigma_XX",
         "--method", "fem", "--size", "3.5in", "--dpi", "600",
     )  # fmt: skip
     assert one.returncode == 0, one.stderr
     assert one.stdout == f"figure: {tmp_path / 'one.svg'}\n"
     assert b'width="252pt"' in (tmp_path / "one.svg").read_bytes()[:2000]
-    refused = command("plot", archive, "-o", tmp_path / "two.tiff")
+    refused = here("plot", archive, "-o", tmp_path / "two.tiff")
     assert refused.returncode == 2 and "expected pdf, png, svg or a folder" in refused.stderr
 
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from support import HOME, SCENE, clean_environment
+from support import HOME, SCENE, clean_environment, here
 
 from galinx.app import ranks
 from galinx.postprocess.hdf5 import reader
@@ -63,7 +63,7 @@ def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
 
 @pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])
 def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
-    assert galinx(tmp_path, *RUN).returncode == 0
+    assert here(*RUN, cwd=tmp_path).returncode == 0
     done = galinx(tmp_path, *count, "show", "x.h5", PYTHONIOENCODING=encoding)
     assert done.returncode == 0 and b"Error" not in done.stderr
     assert "?, ?: exponents of the pressure" in done.stdout.decode(encoding)

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support import command, computed
+from support import computed, here
 
 from galinx.app.errors import BadInput
 from galinx.app.results import csv as tables
@@ -117,15 +117,15 @@ def test_what_an_archive_does_not_hold_is_said(tmp_path):
 
 
 def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
-    printed, output = command("csv", path, "--surface"), tmp_path / "a.csv"
+    printed, output = here("csv", path, "--surface"), tmp_path / "a.csv"
     assert printed.returncode == 0 and printed.stdout == "".join(tables.pieces(path, "surface"))
     for _ in range(2):  # its own is made again
-        assert command("csv", path, "--surface", "-o", output).returncode == 0
+        assert here("csv", path, "--surface", "-o", output).returncode == 0
     assert output.read_text(encoding="utf-8") == printed.stdout
-    assert command("csv", path, "--si", "-o", output).returncode == 0
-    assert command("csv", path, "-o", output).returncode == 0
+    assert here("csv", path, "--si", "-o", output).returncode == 0
+    assert here("csv", path, "-o", output).returncode == 0
     output.write_text("state,mine\n", encoding="utf-8")
-    refused = command("csv", path, "-o", output)
+    refused = here("csv", path, "-o", output)
     assert refused.returncode == 2 and "is not a table of galinx" in refused.stderr
-    both = command("csv", path, "--surface", "--inside")
+    both = here("csv", path, "--surface", "--inside")
     assert both.returncode == 2 and "--surface and --inside exclude each other" in both.stderr

@@ -7,7 +7,7 @@ import tomllib
 import numpy as np
 import pytest
 import random_laws as random
-from support import command
+from support import here
 
 import galinx
 from galinx.app.errors import BadInput
@@ -172,7 +172,7 @@ def test_archives_of_laws_are_whole_drawn_and_reported(name, tmp_path):
     )
     assert tomllib.loads(given.text)
     (tmp_path / "s.toml").write_text(given.text, encoding="utf-8")
-    done = command("run", "s.toml", cwd=tmp_path)
+    done = here("run", "s.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert faults(tmp_path / "s.h5") == []
     result = galinx.load(tmp_path / "s.h5")
@@ -192,7 +192,7 @@ def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
         model="coulomb", friction="mu_c = [2e-5, 4e-5]", motion="speed = 2e-3", quantities=quantities
     )
     (tmp_path / "s.toml").write_text(text + SLIDER, encoding="utf-8")
-    done = command("run", "s.toml", cwd=tmp_path)
+    done = here("run", "s.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert faults(tmp_path / "s.h5") == []
     result = galinx.load(tmp_path / "s.h5")

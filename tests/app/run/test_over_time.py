@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from support import command, computed
+from support import command, computed, here
 
 import galinx
 from galinx.app.errors import BadInput
@@ -59,9 +59,9 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
         "friction", "time", "pressures", "stresses", "energies",
     ]  # fmt: skip
     words = ["--figure", "film", "--format", "gif", "-o", tmp_path / "film.gif"]
-    assert command("plot", tmp_path / "s.h5", *words).returncode == 0
+    assert here("plot", tmp_path / "s.h5", *words).returncode == 0
     assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
-    shown = command("show", tmp_path / "s.h5").stdout
+    shown = here("show", tmp_path / "s.h5").stdout
     assert "In time, at the end" in shown
 
 
@@ -240,7 +240,7 @@ def test_coatings_without_an_answer_are_refused(changes, said):
 
 
 def test_a_plan_tells_starts():
-    done = command("plan", "scenes/start_from_rest.toml")
+    done = here("plan", "scenes/start_from_rest.toml")
     assert "integral equation in time: 1 start from rest" in done.stdout
     assert "finite elements in time" in done.stdout
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from support import THOROUGH, command, computed
+from support import THOROUGH, computed, here
 
 from galinx import template
 from galinx.app.errors import BadInput
@@ -129,7 +129,7 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
     assert result.verdict == "FAIL"
     assert errors(result.data)[1] == pytest.approx(0.01, rel=0.1)
     result.save(tmp_path / "a.h5")
-    assert command("check", tmp_path / "a.h5").returncode == 0
+    assert here("check", tmp_path / "a.h5").returncode == 0
 
 
 def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from support import command, computed
+from support import computed, here
 
 import galinx
 
@@ -35,7 +35,7 @@ def test_exponents_that_cannot_be_fitted_are_no_fault(tmp_path):
     assert np.isnan(result.data["states/fem/alpha"]).any() or result.verdict == "PASS"
     assert not any(np.isnan(value) for value in result.comparisons.values())
     result.save(tmp_path / "a.h5")
-    assert command("check", tmp_path / "a.h5").returncode == 0
+    assert here("check", tmp_path / "a.h5").returncode == 0
 
 
 def test_a_pressure_that_does_not_carry_the_load_is_whole(tmp_path):
@@ -44,5 +44,5 @@ def test_a_pressure_that_does_not_carry_the_load_is_whole(tmp_path):
     assert result.verdict == "PASS"
     np.testing.assert_allclose(result.data["states/fem/normal_force"], -55.3e3 * 0.75, rtol=1e-12)
     result.save(tmp_path / "a.h5")
-    done = command("check", tmp_path / "a.h5")
+    done = here("check", tmp_path / "a.h5")
     assert done.returncode == 0, done.stdout

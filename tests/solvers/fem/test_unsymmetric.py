@@ -1,11 +1,9 @@
 """Factors of unsymmetric matrices."""
 
 import numpy as np
-import pytest
 from scipy.sparse import diags, identity, kron
 
 from galinx.clock import Clock
-from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
 
 N = 150
@@ -29,15 +27,6 @@ def test_one_and_many_right_hand_sides():
     found = factor.solve(b)
     np.testing.assert_allclose(A @ found, b, atol=1e-10)
     np.testing.assert_allclose(factor.solve(b[:, 1]), found[:, 1], rtol=1e-12, atol=1e-12)
-    factor.destroy()
-
-
-def test_one_wrong_solution_among_many_is_noticed(monkeypatch):
-    factor, b = UnsymmetricFactor(matrix(), Clock()), np.random.default_rng(0).normal(size=(N * N, 40))
-    true = factor._many
-    monkeypatch.setattr(factor, "_many", lambda b: true(b) * np.where(np.arange(40) == 17, 1.0001, 1.0))
-    with pytest.raises(SolveError, match=r"left \|b - Ax\|/\|b\| = "):
-        factor.solve(b)
     factor.destroy()
 
 

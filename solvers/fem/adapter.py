@@ -58,10 +58,13 @@ def is_compiled(element: Any) -> bool:
 
 
 def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
-    """The functions on a mesh; ``options`` are the compiler's, where the element is not compiled yet."""
+    """The functions on a mesh; ``options`` are the compiler's, where a rank has not compiled the element.
+
+    Then all ranks do: one that has worked alone before would leave the others waiting for it.
+    """
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, element)
-    if element not in _compiled:
+    if options or element not in _compiled:
         _compiled[element] = dolfinx.jit.ffcx_jit(mesh.comm, element, jit_params=options)
     (shape, layout), module, _ = _compiled[element]
     address = module.ffi.addressof

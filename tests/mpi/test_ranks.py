@@ -66,3 +66,11 @@ def test_shared_pieces_give_what_one_rank_gives(form):
         found.append(pieces.gradients(loads, points))
         assert pieces.resultant(loads) == pytest.approx(-1.8 - 0.0045 - 2.7965, rel=1e-12)
     np.testing.assert_allclose(found[1], found[0], rtol=0.0, atol=1e-11)
+
+
+def test_a_rank_that_has_worked_alone_works_with_the_others():
+    """What it has compiled by itself the others still have to compile, and they do that together."""
+    element = "confocal", REFINEMENT, 7  # of a degree that no other test here has
+    alone = [space_on(*element, MPI.COMM_SELF).size] if MPI.COMM_WORLD.rank == 0 else []
+    size = space_on(*element, MPI.COMM_WORLD).size
+    assert all(size == one for one in alone)

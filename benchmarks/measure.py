@@ -222,7 +222,7 @@ def table(figures: list[Figures]) -> str:
 
 def draw(figures: list[Figures]) -> bytes:
     """Error against time, a picture."""
-    figure, axis = plt.subplots(figsize=(5.5, 4.0))
+    figure, axis = plt.subplots(figsize=(5.5, 4.6))
     groups = {
         "confocal, c <= 0.6": "tolerance",
         "confocal, c = 0.9": "c = 0.9",
@@ -236,8 +236,8 @@ def draw(figures: list[Figures]) -> bytes:
     axis.set_xlabel("processor time (s), of the whole process if not said otherwise")
     axis.set_ylabel("largest relative error of $K_I$ (dimensionless)")
     axis.grid(alpha=0.3, which="both")
-    axis.legend()
-    figure.tight_layout()
+    figure.legend(loc="lower center", ncols=2, fontsize="small")
+    figure.tight_layout(rect=(0.0, 0.16, 1.0, 1.0))
     data = BytesIO()
     figure.savefig(data, format="png", dpi=160)
     return data.getvalue()

@@ -7,10 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from galinx.postprocess.quantities import Quantity, table
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
-
-#: Methods as options and captions call them.
-METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
+from galinx.postprocess.quantities.quantity import TEXT
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import METHODS, Drawing, by_method, there
+from galinx.app.pictures.drawing import Drawing, by_method, there
 from galinx.app.pictures.told import C, Told, not_shown
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.maps import Map, maps_figure
@@ -14,7 +14,7 @@ from galinx.postprocess.figures.style import COLUMN, PAGE
 from galinx.postprocess.figures.typeset import folded, number, plain
 from galinx.postprocess.quantities import strata as layers
 from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import INSIDE, STATE
+from galinx.postprocess.quantities.quantity import INSIDE, METHODS, STATE
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.layers.layered import Layered
 

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import METHODS, Drawing, by_method
+from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.told import Told, few, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.interfaces import Interface, Row, interfaces_figure
 from galinx.postprocess.figures.style import PAGE, looks
 from galinx.postprocess.figures.surface import Curve
 from galinx.postprocess.figures.typeset import number
-from galinx.postprocess.quantities.quantity import ALONG, INTERFACE, STATE
+from galinx.postprocess.quantities.quantity import ALONG, INTERFACE, METHODS, STATE
 from galinx.postprocess.quantities.strata import ALONG_X, INTERFACE_DEPTH, INTERFACE_DEPTH_IN_M
 
 #: Curves that can be told apart in a panel, and the least width of a column [in].

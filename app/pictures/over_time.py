@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 
 from galinx.app.pictures.choice import Choice
-from galinx.app.pictures.drawing import METHODS, Drawing, there
+from galinx.app.pictures.drawing import Drawing, there
 from galinx.app.pictures.told import spread
 from galinx.app.scene.scene import Scene, Time
 from galinx.postprocess.figures.over_time import Start, time_figure
 from galinx.postprocess.quantities import over_time as rows
-from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 
 #: Starts that can be told apart.
 _STARTS = 6

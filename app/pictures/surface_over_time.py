@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice
-from galinx.app.pictures.drawing import METHODS, Drawing
+from galinx.app.pictures.drawing import Drawing
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.film import Film
 from galinx.postprocess.figures.style import looks
@@ -14,7 +14,7 @@ from galinx.postprocess.figures.surface import Column, Curve, Stress, surface_fi
 from galinx.postprocess.figures.surface_over_time import surface_film
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities import surface_over_time as at
-from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.sie.closed_form import FlatPunch
 
 #: Times that are drawn, and frames of a film that make one.

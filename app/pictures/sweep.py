@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, noun, one_of
-from galinx.app.pictures.drawing import METHODS, Drawing, by_method
+from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.told import PLACE, C, N, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
 from galinx.postprocess.quantities import Quantity, column, validity
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 
 #: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.

@@ -22,12 +22,13 @@ from galinx.app.pictures import (
     thicknesses,
 )
 from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import METHODS, Drawing, there
+from galinx.app.pictures.drawing import Drawing, there
 from galinx.app.pictures.files import FILM, Files, Written
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.canvas import TooSmall
 from galinx.postprocess.figures.film import FORMATS as OF_FILMS
+from galinx.postprocess.quantities.quantity import METHODS
 
 __all__ = ["Drawing", "names", "of_archive", "there", "write"]
 

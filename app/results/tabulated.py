@@ -9,7 +9,7 @@ from galinx.postprocess.apart import parameters
 from galinx.postprocess.figures.typeset import plain
 from galinx.postprocess.quantities import Quantity, of_states, stresses, table
 from galinx.postprocess.quantities import strata as layers
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, STATE, TEXT
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
 from galinx.postprocess.scaling import Scaling, as_archived
 from galinx.texts import counted
 
@@ -18,8 +18,6 @@ _CELLS, _NUMBERS = 60_000, 250_000
 
 #: Digits that are shown; errors have fewer.
 _DIGITS, _OF_ERRORS = 6, 2
-
-_CALLED = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
 
 def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any]:
@@ -69,7 +67,7 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
     known = {
         "σ_XX": stresses.IN_PLANE | layers.IN_PLANE, "σ_YY": stresses.PRESSURE | layers.PRESSURE
     }  # fmt: skip
-    methods = [m for m in _CALLED if all(rows[m].path in data for rows in known.values())]
+    methods = [m for m in METHODS if all(rows[m].path in data for rows in known.values())]
     if not methods:
         return None
     X = data[stresses.SURFACE_X.path]
@@ -98,7 +96,7 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
         "data": {
             "unit": "[MPa]" if in_units else "/ (N/2a)",
             "X": _plain(X[order], 9), "states": names, "quantities": list(known),
-            "methods": [_CALLED[method] for method in methods], "values": values,
+            "methods": [METHODS[method] for method in methods], "values": values,
         },
     }  # fmt: skip
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, of_methods, panels
 from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, styled
 from galinx.postprocess.figures.surface import Curve
-from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 
 #: How far positions are shown: over a, and over the depth of the interface.
 _OVER_A, _OVER_DEPTH = 2.0, 2.5
@@ -74,7 +74,7 @@ def interfaces_figure(
         handle(curves[0].look, f"{side} the interface", color=GREY, linestyle=line)
         for side, line in zip(("above", "below"), _SIDES)
     ]
-    lines = of_methods(SIE in methods, FEM in methods, "integral equation")
+    lines = of_methods(SIE in methods, FEM in methods, METHODS[SIE])
     legend = Legend([*named, *(of_sides if both else []), *lines], size.width)
     room = Room(0.55, 0.1, 0.42 + legend.height, 0.2, 0.42, 0.3)
     figure, axes = panels(len(rows), len(interfaces), size, 0.6, room)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, of_methods, panels
 from galinx.postprocess.figures.loops import Loop
 from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, SMALL, Look, styled
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE
 from galinx.solvers.contact import from_edge, under_punch
 
 #: Positions that are shown of what is there all along the surface, and under the punch alone [a].
@@ -124,7 +124,7 @@ def surface_figure(
 
 def _of_methods(methods: set[str]) -> list[Line2D]:
     """What lines and markers stand for."""
-    lines = "closed form" if CLOSED_FORM in methods else "integral equation"
+    lines = METHODS[CLOSED_FORM if CLOSED_FORM in methods else SIE]
     return of_methods(bool(methods - {FEM}), FEM in methods, lines)
 
 

@@ -24,6 +24,8 @@ TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
 #: Methods, and what is known without solving: the local analysis of the punch's edges.
 CLOSED_FORM, SIE, FEM, LOCAL = "closed_form", "sie", "fem", "local"
+#: Those that solve, in words.
+METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
 #: Where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"

@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from galinx.app.pictures.choice import Choice
 from galinx.app.pictures.drawing import Drawing
 from galinx.app.pictures.friction import Loops
@@ -15,7 +13,6 @@ from galinx.app.study.published import REFERENCE
 from galinx.postprocess.figures.loops import loops_figure
 from galinx.postprocess.figures.surface import Column, surface_figure
 from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.quantities.states import POSITION
 from galinx.postprocess.quantities.stresses import SURFACE_X
 
 #: The study's two speeds, and its strokes.
@@ -45,8 +42,9 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])]))
     yield _slow_or_fast("fig5", f"Fig 5. Slow {_STRESSES}", data, loops, SLOW)
     panels = []
+    middle = REFERENCE | {"mu_c": 0.5}
     for name in told.law:
-        at = [_state(loops, **(REFERENCE | {name: value})) for value in told.distinct(name)]
+        at = [_state(loops, **(middle | {name: value})) for value in told.distinct(name)]
         panels.append(loops.panel(at, [name]))
     yield Drawing("fig6", _PARAMETERS, loops_figure(panels))
     yield _slow_or_fast("fig7", f"Fig 7. Fast {_STRESSES}", data, loops, FAST)
@@ -54,7 +52,7 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
         columns = []
         for c in (SLOW, FAST):
             states = [
-                _state(loops, c=c, motion=STROKES[0], X_over_L=0.8, **(REFERENCE | {name: value}))
+                _state(loops, c=c, motion=STROKES[0], X_over_L=0.8, **(middle | {name: value}))
                 for value in told.distinct(name)
             ]
             columns.append(_column(data, loops, told.label(states[0], [C]), states, [name]))
@@ -79,7 +77,7 @@ def _column(
 
 def _slow_or_fast(name: str, caption: str, data: dict[str, Any], loops: Loops, c: float) -> Drawing:
     columns = []
-    for X in np.unique(data[POSITION.path]).tolist():
+    for X in (0.2, 0.8):
         states = [_state(loops, c=c, X_over_L=X, motion=motion, **REFERENCE) for motion in STROKES]
         title = loops.told.label(states[0], [C, "X_over_L"])
         columns.append(_column(data, loops, title, states, ["motion"]))

@@ -62,13 +62,15 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
     are told apart by their lines.
     """
     size = size or Size(COLUMN if len(shown) == 1 else PAGE)
-    columns = max(1, min(len(shown), int(size.width / 2.0)))
-    rows = ceil(len(shown) / columns)
+    rows = ceil(len(shown) / max(1, int(size.width / 2.0)))
+    columns = ceil(len(shown) / rows)
     entries = [_entries(panel) for panel in shown]
     common = len({tuple(map(str, (one.get_label() for one in some))) for some in entries}) == 1
     strokes = _of_strokes(shown)
     foot = Legend([*(entries[0] if common else []), *strokes], size.width)
-    below = 0.0 if common else max(map(len, entries)) * 0.15 + 0.05
+    wide = (size.width - 0.58) / columns - 0.35
+    legends = [Legend([] if common else some, wide) for some in entries]
+    below = max(legend.height for legend in legends)
     above = 0.2 if len(shown) > 1 or shown[0].title else 0.08
     room = Room(0.48, 0.1, 0.42 + below + foot.height, above, 0.35, 0.55 + below)
     figure, axes = panels(rows, columns, size, 0.62 if columns == 2 else 0.78, room)
@@ -79,12 +81,7 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
         axis.set_xlabel(X_LABEL)
         if n % columns == 0:
             axis.set_ylabel(F_LABEL)
-        if not common:
-            lowered = -(0.42 / (axis.get_position().height * figure.get_figheight()))
-            axis.legend(
-                handles=entries[n], loc="upper center", bbox_to_anchor=(0.5, lowered), borderaxespad=0.0,
-                labelspacing=0.2,
-            )  # fmt: skip
+        legends[n].below(axis, 0.42)
     lettered(axes.flat[: len(shown)], [panel.title for panel in shown])
     foot.put(figure)
     return figure
@@ -116,9 +113,12 @@ def draw(axis: Axes, panel: Panel) -> None:
     axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
     for k, (loop, look) in enumerate(zip(panel.loops, looks(len(panel.loops), panel.ordered))):
         strokes = list(loop.along())
+        # Loops that are the same are drawn one in the other, the first as the widest line.
+        again = sum(np.array_equal(loop.f, later.f) for later in panel.loops[k + 1 :])
+        width = 1.0 + 1.6 * again
         for n, (stroke_look, (_, X, values)) in enumerate(zip(looks(len(strokes)), strokes)):
             colour = stroke_look.colour if alone else look.colour
-            axis.plot(X, values, color=colour, linestyle=LINES[n % len(LINES)])
+            axis.plot(X, values, color=colour, linestyle=LINES[n % len(LINES)], linewidth=width)
             at = _freest(axis, strokes, n) if alone else int(len(X) * (0.25 + 0.5 * k / len(panel.loops)))
             if at is not None:
                 _point(axis, X, values, at, colour, strokes[n][0] if alone else "")

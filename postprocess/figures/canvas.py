@@ -130,8 +130,8 @@ class Legend:
             figure = axis.get_figure()
             place = -lowered / (axis.get_position().height * figure.get_figheight())
             axis.legend(
-                handles=self._handles, ncols=self._columns, loc="upper center", bbox_to_anchor=(0.5, place),
-                borderaxespad=0.0, columnspacing=1.4, labelspacing=0.2,
+                handles=self._handles, ncols=self._columns, loc="upper center",
+                bbox_to_anchor=(0.5, place), borderaxespad=0.0, columnspacing=1.4, labelspacing=0.2,
             )  # fmt: skip
 
     def put(self, figure: Figure) -> None:

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, panels
+from galinx.postprocess.figures.loops import F_LABEL, X_LABEL, Panel, draw
 from galinx.postprocess.figures.style import COLOURS, GREY, LINES, PAGE, Look, styled
 from galinx.postprocess.figures.surface import along, limits, over_a, parts, picked
 
@@ -74,7 +75,9 @@ def rows_figure(
         else handle(curve.look, label, linestyle="none", marker=curve.look.marker, markerfacecolor="none")
         for label, curve in named.items()
     ]
-    marked = Line2D([], [], color=GREY, linestyle="none", marker="o", markerfacecolor="none", label=says[1])
+    marked = Line2D(
+        [], [], color=GREY, linestyle="none", marker="o", markerfacecolor="none", label=says[1]
+    )
     legend = Legend([*entries, Line2D([], [], color=GREY, label=says[0]), marked], size.width)
     heights = [1.0] * len(rows) + [_FLAT] * bool(differences)
     room = Room(0.55, 0.1, 0.42 + legend.height, 0.2, 0.52, 0.26)
@@ -96,10 +99,44 @@ def rows_figure(
             axis.set_ylabel(label)
     titles = [row.title for row in rows for _ in labels]
     if differences:
-        between = " and ".join(f"{name} ({how})" for name, how in zip(differences, ("line", "dashes")))
-        titles += [f"largest difference of both methods, {between}"] * len(labels)
+        how = ", ".join(f"{name} {line}" for name, line in zip(differences, ("line", "dashes")))
+        titles += [f"largest difference of both methods: {how}"] * len(labels)
     lettered(axes.flat, titles)
     figure.align_ylabels(axes)
+    legend.put(figure)
+    return figure
+
+
+@styled
+def laws_figure(
+    loops: Panel, X: NDArray, labels: Sequence[str], row: Row, says: tuple[str, str], places: NDArray
+) -> Figure:
+    """Friction laws side by side: their loops, and the stresses of one place on them.
+
+    Args:
+        loops: of the laws.
+        X: positions over a, (points,).
+        labels: of two stresses.
+        row: curves of the laws, in the order and with the looks of their loops.
+        says: what lines and what markers stand for.
+        places: of each law, position X/L and friction coefficient, (laws, 2).
+    """
+    entries = [handle(curve.look, curve.label, linestyle="-") for curve in row.curves]
+    marked = Line2D(
+        [], [], color=GREY, linestyle="none", marker="o", markerfacecolor="none", label=says[1]
+    )
+    legend = Legend([*entries, Line2D([], [], color=GREY, label=says[0]), marked], PAGE)
+    room = Room(0.5, 0.08, 0.42 + legend.height, 0.2, 0.5)
+    figure, axes = panels(1, 3, Size(PAGE), 0.95, room)
+    draw(axes[0, 0], loops)
+    axes[0, 0].set(xlabel=X_LABEL, ylabel=F_LABEL)
+    for curve, (at, f) in zip(row.curves, places):
+        axes[0, 0].plot(at, f, curve.look.marker, color=curve.look.colour)
+    for column, label in enumerate(labels):
+        shown = [one[column] for curve in row.curves for one in (curve.line, curve.markers)]
+        _draw_column(axes[:, column + 1], X, np.array(shown), [row], column)
+        axes[0, column + 1].set_ylabel(label)
+    lettered(axes.flat, ["loops, and the place shown", row.title, row.title])
     legend.put(figure)
     return figure
 

@@ -115,7 +115,8 @@ def test_an_inset_goes_where_no_curve_is():
 
 def test_the_studys_figures_are_legible(study_run):
     shown = list(of_study(study_run.data, study_run.scene))
-    assert [drawing.name for drawing in shown] == [f"fig{n}" for n in range(1, 11)] + ["sinusoidal", "laws"]
+    named = [f"fig{n}" for n in range(1, 11)]
+    assert [drawing.name for drawing in shown] == [*named, "sinusoidal", "laws"]
     legible(shown)
     widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
     assert widths == {3.5, 5.0, 7.0}

@@ -14,12 +14,12 @@ class SurfaceNodes:
     Attributes:
         s: surface coordinates in the mesh's chart, (n,).
         owned: positions in ``s`` of the nodes this rank owns.
-        blocks: global node numbers of those.
+        numbers: global numbers of their first unknowns, those along X; the second ones follow.
     """
 
     s: NDArray[np.float64]
     owned: NDArray[np.int64]
-    blocks: NDArray[np.int32]
+    numbers: NDArray[np.int32]
 
     def dofs(self, component: int) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
@@ -27,4 +27,4 @@ class SurfaceNodes:
 
     @cached_property
     def _dofs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        return 2 * self.blocks, 2 * self.blocks + 1
+        return self.numbers, self.numbers + 1

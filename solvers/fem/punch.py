@@ -67,7 +67,7 @@ class SlidingPunch(Punch):
         ]
         self._motions = [ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
-        self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
+        self._far = [product(A, ones(A, space.numbers[space.far_nodes] + i)) for i in (0, 1)]
         shapes = [] if heights is None else list(np.atleast_2d(heights))
         shaped = [forces_of_profile(A, space, height) for height in shapes]
         self._boundary = FarBoundary(space, response, A)

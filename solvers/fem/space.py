@@ -98,9 +98,8 @@ class Space:
     @cached_property
     def node_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned displacements, node by node, without those inside cells."""
-        first = 2 * self._range[0]
-        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
-        return np.arange(first, first + 2 * owned, dtype=np.int32)
+        first, nodes = self._range[0], self._owned_nodes
+        return np.arange(first, first + 2 * len(nodes), dtype=np.int32)
 
     def contracted(self, response: Response) -> Contracted:
         """The chart at a speed."""
@@ -108,10 +107,9 @@ class Space:
 
     def rigid_motions(self, response: Response) -> NDArray[np.float64]:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
-        owned = len(self.node_dofs) // 2
-        mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
+        mine, owned = self._owned_nodes, len(self._owned_nodes)
         X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
-        modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
+        modes = np.zeros((self._range[1] - self._range[0], 3))
         modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
         modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
         return modes
@@ -124,8 +122,8 @@ class Space:
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
-        blocks = self.numbers[self.far_nodes]
-        return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
+        numbers = self.numbers[self.far_nodes]
+        return np.concatenate([numbers, numbers + 1])
 
     @cached_property
     def held_dofs(self) -> NDArray[np.int32]:
@@ -140,27 +138,25 @@ class Space:
                 return adapter.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
-        """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
-
-        Node i of ``numbers`` has the unknowns 2i and 2i + 1.
-        """
-        numbers = self.outer_numbers
+        """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""
+        blocks = self.outer_numbers // 2
         with self.clock("assembly"):
-            A = empty_matrix(numbers, *self._range, self.comm)
+            first, last = self._range
+            A = empty_matrix(blocks, first // 2, last // 2, self.comm)
             models, members = standing_for(self.vertices, self.chart, response, self.form.constants)
             for some in self.pieces(len(models)):
                 for S, cells in zip(self.condensed(response, models[some]), members[some]):
-                    for rows in numbers[cells]:
+                    for rows in blocks[cells]:
                         A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
         return A
 
     def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:
-        """Values of condensed fields at nodes by global number, (*numbers.shape, 2, fields).
+        """Values of fields at nodes, (*numbers.shape, 2, fields), by their first unknowns' numbers.
 
         Collective; every rank names the nodes it wants.
         """
-        index = (2 * numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
+        index = (numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
         here = PETSc.Vec().createSeq(len(index))
         where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
         scatter = PETSc.Scatter().create(fields[0], where, here, None)
@@ -234,12 +230,12 @@ class Space:
     def outer_numbers(self) -> NDArray[np.int32]:
         """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
 
-        The two pressures of a cell are numbered like the two unknowns of a node.
+        The two pressures of a cell are numbered like the two unknowns of a node, by the first.
         """
         nodes = self.numbers[self._cell_nodes[:, self.kernel.outer]]
         if not self.mixed:
             return nodes
-        cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
+        cells = self._range[1] - 2 * len(nodes) + 2 * np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
     @contextmanager
@@ -304,19 +300,29 @@ class Space:
 
     @cached_property
     def _range(self) -> tuple[int, int]:
-        """Numbers that this rank owns, from the first to below the last: nodes, then pressures."""
-        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
-        owned += self.mesh.topology.index_map(2).size_local * self.mixed
+        """Unknowns that this rank owns, from the first to below the last: of nodes, then pressures."""
+        owned = 2 * len(self._owned_nodes) + self._owned_pressures
         last = self.comm.scan(owned)
         return last - owned, last
 
     @cached_property
+    def _owned_nodes(self) -> NDArray[np.int64]:
+        """Local numbers of this rank's nodes that have unknowns in the matrix."""
+        return np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
+
+    @property
+    def _owned_pressures(self) -> int:
+        """Number of this rank's unknown pressures in the matrix."""
+        return 2 * self.mesh.topology.index_map(2).size_local * self.mixed
+
+    @cached_property
     def numbers(self) -> NDArray[np.int32]:
-        """Global number of each local node, ghosts included, without those inside cells (-1)."""
-        index_map = self.V.dofmap.index_map
-        outer = np.flatnonzero(~self._inner[: index_map.size_local])
-        shared = la.vector(index_map)  # in floating point, exact for any number of nodes
+        """Global number of each local node's first unknown, ghosts included; -1 where it has none.
+
+        That along X is the first, that along Y the next one.
+        """
+        shared = la.vector(self.V.dofmap.index_map)  # in floating point, exact for any number of nodes
         shared.array[:] = -1.0
-        shared.array[outer] = self._range[0] + np.arange(len(outer))
+        shared.array[self._owned_nodes] = self._range[0] + 2 * np.arange(len(self._owned_nodes))
         shared.scatter_forward()
         return shared.array.astype(np.int32)

@@ -65,7 +65,7 @@ class LoadedHalfPlane:
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
             b.setValues(
-                (2 * node + component).astype(np.int32),
+                node + component,
                 load.ravel(),
                 addv=PETSc.InsertMode.ADD_VALUES,
             )

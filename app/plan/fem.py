@@ -40,6 +40,9 @@ LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
 
+#: Names of the assemblers: element matrices by tensor products, condensed, and dolfinx's own.
+TENSOR, DOLFINX = "tensor", "dolfinx"
+
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
 
@@ -56,6 +59,7 @@ class FemPlan:
         refinement: of the one mesh all speeds share, before it is cut.
         cuts: of every cell's sides.
         form: name of the weak form.
+        assembler: ``TENSOR`` or ``DOLFINX``.
         solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
@@ -75,6 +79,7 @@ class FemPlan:
     refinement: Refinement
     cuts: int
     form: str
+    assembler: str
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
@@ -132,6 +137,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
         kind, name = layers.kind_of(depths, responses, knots), "layered"
     _check_degree_and_solver(scene)
+    _check_assembler(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
@@ -151,7 +157,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
+        assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
         mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=layers.tests_of(scene.solid, kind, wanted),
         sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
@@ -225,6 +231,21 @@ def _check_degree_and_solver(scene: Scene) -> None:
         raise BadInput(
             f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
             "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def _check_assembler(scene: Scene) -> None:
+    if scene.solve.assembler != DOLFINX:
+        return
+    if scene.solve.own_pressure:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": its '
+            "pieces are put together from the deformation of condensed cells"
+        )
+    if scene.time is not None:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
+            "matrices of their own"
         )
 
 

@@ -140,6 +140,7 @@ class Solve:
     cuts: int
     sweep: str
     solver: str
+    assembler: str
     pressure: Any
 
     @property

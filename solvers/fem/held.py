@@ -33,16 +33,6 @@ def _forces(A: PETSc.Mat, space: Space, held: PETSc.Vec) -> PETSc.Vec:
     return b
 
 
-def hold(A: PETSc.Mat, space: Space) -> PETSc.Vec:
-    """Hold the contact at v = -1 and the far boundary in a matrix; returns the forces of that."""
-    held, b = A.createVecRight(), A.createVecLeft()
-    held.setValues(space.contact.dofs(1), np.full(len(space.contact.owned), -1.0))
-    held.assemble()
-    A.zeroRowsColumns(space.held_dofs, 1.0, held, b)
-    held.destroy()
-    return b
-
-
 def ones(A: PETSc.Mat, dofs: NDArray[np.int32]) -> PETSc.Vec:
     """A vector that is 1 at this rank's ``dofs`` and 0 elsewhere."""
     x = A.createVecRight()

@@ -20,7 +20,7 @@ from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CellMatrices
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
-from galinx.solvers.fem.nodes import SurfaceNodes
+from galinx.solvers.fem.nodes import NodalForces, SurfaceFacets, SurfaceNodes, Traction, consistent_forces
 from galinx.solvers.panel import interpolation
 from galinx.solvers.solids.solid import ByCells, Response
 
@@ -63,6 +63,7 @@ class Space:
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
         self.V = self._functions(adapter.vector_element(degree))
+        self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -264,6 +265,46 @@ class Space:
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]
         return part(self.densities(response, corners), self.contracted(response), corners)
+
+    def surface_facets(self, parts: Sequence[str]) -> SurfaceFacets:
+        """Facets of the named parts of the boundary whose cell this rank owns."""
+        topology, dofmap = self.mesh.topology, self.V.dofmap
+        to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
+        owned_cells = topology.index_map(2).size_local
+        nodes = []
+        for facet in np.concatenate([self.facets[part] for part in parts]):
+            cell = to_cell.links(facet)[0]
+            if cell < owned_cells:
+                local = int(np.flatnonzero(to_facet.links(cell) == facet)[0])
+                closure = dofmap.dof_layout.entity_closure_dofs(1, local)
+                nodes.append(dofmap.cell_dofs(cell)[closure])
+        index = np.array(nodes, dtype=np.int32).reshape(-1, self.degree + 1)
+        s = self.chart.along_surface(self.coordinates[index])
+        order = np.argsort(s, axis=1)
+        return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
+
+    def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
+        """Consistent nodal forces of a traction on the contact.
+
+        Args:
+            σ_YY: the traction over N/(2a).
+            knots: positions X over a, under the punch, between which it is smooth.
+        """
+        facets, ends = self.surface_facets(("contact",)), self.contact.s[[0, -1]]
+        forces = consistent_forces(facets.s, self.chart, ends, σ_YY, knots)
+        return NodalForces(self.numbers[facets.nodes.ravel()], facets.s.ravel(), forces.ravel())
+
+    def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
+        """The matrix of a response with what is held: "far" the far boundary, "contact" v under a punch.
+
+        Args:
+            A: the matrix without; it becomes the one with.
+            response: of the half-plane.
+            parts: what is held.
+        """
+        dofs = {"far": self.far_dofs, "contact": self.contact.dofs(1)}
+        A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
+        return A
 
     def nodes_on(self, part: str) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""

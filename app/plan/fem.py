@@ -14,7 +14,7 @@ from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement
-from galinx.postprocess.quantities.quantity import FOUND
+from galinx.postprocess.quantities.quantity import FEM, FOUND
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
@@ -137,7 +137,6 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
         kind, name = layers.kind_of(depths, responses, knots), "layered"
     _check_degree_and_solver(scene)
-    _check_assembler(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
@@ -234,8 +233,13 @@ def _check_degree_and_solver(scene: Scene) -> None:
         )
 
 
-def _check_assembler(scene: Scene) -> None:
-    if scene.solve.assembler != DOLFINX:
+def check_assembler(scene: Scene) -> None:
+    """Does dolfinx's assembler serve what the scene asks of finite elements?
+
+    Raises:
+        BadInput: it does not.
+    """
+    if scene.solve.assembler != DOLFINX or FEM not in scene.solve.methods:
         return
     if scene.solve.own_pressure:
         raise BadInput(

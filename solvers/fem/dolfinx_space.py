@@ -7,13 +7,11 @@ tensor products, and condensation, are several times faster at the degrees that 
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import ufl
-from dolfinx import fem, la
+from dolfinx import fem
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -93,10 +91,10 @@ class DolfinxSpace(Space):
                 constant.value = float(getattr(response, name))
         if varies not in self._forms:
             spaces = [self.V, self._pressures] if self.mixed else [self.V]
-            dx = ufl.dx(domain=self.mesh, metadata={"quadrature_degree": self._quadrature})
             forms = weak_form(
                 self.form, spaces, self.chart, self._plane,
-                self._varying if varies else self._constants, self._sizes if self.mixed else None, dx,
+                self._varying if varies else self._constants, self._sizes if self.mixed else None,
+                self._quadrature,
             )  # fmt: skip
             compiled = [[self._compiled(form) for form in row] for row in forms]
             self._forms[varies] = compiled if self.mixed else compiled[0][0]
@@ -106,7 +104,8 @@ class DolfinxSpace(Space):
         """Set constants at the points of quadrature of all cells."""
         points, corners = adapter.quadrature_points(self._quadrature), self._all_corners
         Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
-        solids, tables = response.solids(corners[..., 1].mean(axis=1)), response.constants(self.form.constants)
+        solids = response.solids(corners[..., 1].mean(axis=1))
+        tables = response.constants(self.form.constants)
         values = np.empty((*Y.shape, len(self.form.constants)))
         for i in np.unique(solids).tolist():
             cells = solids == i
@@ -150,12 +149,10 @@ class DolfinxSpace(Space):
     def _load(self) -> tuple[Any, EdgeTraction]:
         """The compiled form of a flat punch's σ_YY, and the constants in it."""
         traction = EdgeTraction(*(fem.Constant(self.mesh, 0.0) for _ in range(3)))
-        ds = ufl.Measure(
-            "ds", domain=self.mesh, subdomain_data=self.facet_tags, subdomain_id=self.tags["contact"],
-            metadata={"quadrature_degree": _ON_FACETS},
-        )  # fmt: skip
-        direction = ufl.as_vector([0.0, 1.0])
-        return self._compiled(traction_form(self.V, traction, self.chart, direction, ds)), traction
+        form = traction_form(
+            self.V, traction, self.chart, self.facet_tags, self.tags["contact"], _ON_FACETS
+        )
+        return self._compiled(form), traction
 
     def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
         """Consistent nodal forces of the traction under a flat punch, by a linear form over ``ds``.
@@ -176,7 +173,10 @@ class DolfinxSpace(Space):
     def cell_values(
         self, fields: Sequence[PETSc.Vec], response: Response, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields). Collective."""
+        """Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+
+        Collective.
+        """
         return self.fetch(fields, self.numbers[self._cell_nodes[cells]])
 
     @cached_property

@@ -115,7 +115,7 @@ def gradient(u: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
 
 def weak_form(
     form: Form, spaces: Sequence[Any], chart: Any, plane: tuple[Any, Any], constants: Sequence[Any],
-    size: Any, dx: Any,
+    size: Any, degree: int,
 ) -> list[list[Any]]:  # fmt: skip
     """∫ energy(u, w) dx as bilinear forms of dolfinx, by the spaces of test and trial functions.
 
@@ -126,8 +126,9 @@ def weak_form(
         plane: Re p and Im p of the plane X + pY that is drawn.
         constants: of the form, in its order: numbers or functions of dolfinx.
         size: of cells, over which pressures are; not used without these.
-        dx: measure.
+        degree: of quadrature.
     """
+    dx = ufl.dx(metadata={"quadrature_degree": degree})
     trials, tests = ([of(space) for space in spaces] for of in (ufl.TrialFunction, ufl.TestFunction))
     if not form.pressure:
         Gu, Gw = (gradient(of[0], chart, plane) for of in (trials, tests))
@@ -142,21 +143,22 @@ def weak_form(
 
 
 def traction_form(
-    space: Any, traction: Callable[[Any, Any], Any], chart: Any, direction: Any, ds: Any
+    space: Any, traction: Callable[[Any, Any], Any], chart: Any, facets: Any, tag: int, degree: int
 ) -> Any:
-    """∫ σ (w·direction) dX over the contact, a linear form of dolfinx.
+    """∫ σ w_Y dX over the contact, a linear form of dolfinx; σ_XY = g σ_YY has g times the same along X.
 
     Args:
         space: of the displacement.
         traction: σ by the distances over a from the left and the right punch edge.
         chart: in which the mesh is drawn.
-        direction: of the traction, a vector.
-        ds: measure on the contact.
+        facets, tag: tags of facets, and that of the contact.
+        degree: of quadrature.
     """
+    ds = ufl.Measure("ds", subdomain_data=facets, metadata={"quadrature_degree": degree})
     w = ufl.TestFunction(space)
     x = ufl.SpatialCoordinate(w.ufl_domain())
     left, right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
-    return traction(left, right) * ufl.dot(direction, w) * stretch * ds
+    return traction(left, right) * w[1] * stretch * ds(tag)
 
 
 def momentum(u: Any, w: Any) -> Any:

@@ -13,8 +13,8 @@ from scipy.sparse import identity, kron
 
 from galinx.clock import Clock
 from galinx.solvers.fem.dynamic import Motion, of_both
-from galinx.solvers.fem.scheme import TIMES, A, γ
 from galinx.solvers.fem.nodes import Traction, consistent_forces
+from galinx.solvers.fem.scheme import TIMES, A, γ
 from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
 
 

@@ -37,7 +37,8 @@ PAGE = HOME / "docs" / "verification.md"
 SCENES = ("tables4_5", "high_speed", "graded", "box")
 COMPARED = {
     "K_I": "K_I, both ends", "estimate": "its estimate", "sigma_YY": "σ_YY", "sigma_XX": "σ_XX",
-    "estimate of sigma_XX": "its estimate", "exponents": "fitted exponents", "force balance": "force balance",
+    "estimate of sigma_XX": "its estimate", "exponents": "fitted exponents",
+    "force balance": "force balance",
 }  # fmt: skip
 #: Scenes of other outputs.
 OTHERS = ("traction", "inside")

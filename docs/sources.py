@@ -1,7 +1,7 @@
-"""Source files that pages link to, as pages of the site; each name that a link names has its anchor there.
+"""Source files that pages link to, as pages of the site, with an anchor at each name that is linked to.
 
-In the tree such links, `` [`Class.name`](../room/file.py) ``, lead to the files. mkdocs loads this file as
-a hook.
+In the tree such a link, `` [`Class.name`](../room/file.py) ``, leads to the file. mkdocs loads this file
+as a hook.
 """
 
 import ast
@@ -48,7 +48,8 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
 
     def link(found: re.Match[str]) -> str:
         _linked.add(found[2])
-        return f'<a href="{up}source/{found[2]}.html#{found[1]}"><code>{found[1]}</code></a>'
+        shown = found[1].replace("_", "_<wbr>")
+        return f'<a href="{up}source/{found[2]}.html#{found[1]}"><code>{shown}</code></a>'
 
     return LINK.sub(link, markdown)
 

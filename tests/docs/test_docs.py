@@ -44,7 +44,7 @@ def test_links_between_pages_hold():
 
 
 def test_the_page_of_equations_names_code_and_tests_that_exist_for_each():
-    """Every row has code and a test, each name is in the file that it links to, and no equation is missing."""
+    """Every row has code and a test, each name is in the file it links to, and no equation is missing."""
     sources = runpy.run_path(str(HOME / "docs" / "sources.py"))
     page = (HOME / "docs" / "equations.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([\d–, ]+) \|(.*)\|$", page, re.MULTILINE)

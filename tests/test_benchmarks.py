@@ -124,8 +124,8 @@ def test_the_page_has_the_accuracy_of_tables_4_and_5(accuracy, tables_run, monke
 
 def test_what_other_commands_say_becomes_tables(accuracy, tmp_path):
     said = "\n".join(
-        f"seed {seed}, {kind}: 9 s, pressure {p:.1e}, K_I {K:.1e} of 4.0e-07, sigma_XX {σ:.1e} of 9.0e-07, "
-        "interfaces 1.2e-07 of 9.3e-07"
+        f"seed {seed}, {kind}: 9 s, pressure {p:.1e}, K_I {K:.1e} of 4.0e-07, "
+        f"sigma_XX {σ:.1e} of 9.0e-07, interfaces 1.2e-07 of 9.3e-07"
         for seed, kind, p, K, σ in (
             (0, "uniform", 3e-7, 1e-7, 5.5e-8), (1, "uniform", 2e-7, 1.4e-7, 1e-8),
             (0, "graded", 2.9e-7, 1e-10, 6e-8),
@@ -137,8 +137,9 @@ def test_what_other_commands_say_becomes_tables(accuracy, tmp_path):
     with h5py.File(tmp_path / "stress.h5", "w") as file:
         for name, texts in {
             "random": [
-                "holds: estimates over true errors: box 1.03 to 7.0, median 3.1; of K_I alone 3.2, up to 9.0; "
-                "of stresses at least 1.2; fixed degree 2.00 to 5.0, median 3.0; of K_I alone 4.0, up to 8.0",
+                "holds: estimates over true errors: box 1.03 to 7.0, median 3.1; of K_I alone 3.2, up to "
+                "9.0; of stresses at least 1.2; fixed degree 2.00 to 5.0, median 3.0; of K_I alone 4.0, "
+                "up to 8.0",
                 "FAILS: median 11.0, allowed 10",
             ],
             "speed": ["holds: true error at most 0.40 of its estimate, allowed 1"],

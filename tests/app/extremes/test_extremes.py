@@ -70,7 +70,7 @@ def test_random_scenes_are_those_of_their_seed():
     ],
 )  # fmt: skip
 def test_estimates_are_bounds_and_tight(found, holds):
-    """By chance 2 of 3 scenes have more than the median, 8 of 12, and 6 of 6; not 40 of 60, nor 7 of 7."""
+    """By chance 2 of 3 scenes have more than the median, or 8 of 12; not 40 of 60, nor 7 of 7."""
 
     def good(*of_one_kind):
         return all(verdict.holds for verdict in random_scenes.verdicts({"kind": Ratios(*of_one_kind)}))

@@ -177,4 +177,4 @@ class Solid(Protocol):
 
 
 #: Solids by the name that scenes use; every solid adds itself.
-SOLIDS: Registry[type[Solid]] = Registry("kind of solid")
+SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)

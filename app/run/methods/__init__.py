@@ -139,6 +139,7 @@ METHODS: Registry[MethodKind] = Registry(
             "mesh and finite elements", _finite_elements, _finite_elements_refusal, loads=True
         ),
     },
+    MethodKind,
 )
 
 #: What the finite elements may be given: a punch, or the pressure under it.

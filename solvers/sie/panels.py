@@ -35,8 +35,8 @@ _LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
 _NEAR = 2.4
 
-#: A step over Im y from which on two values are far enough from one another to be subtracted.
-_APART = 0.05
+#: Gauss points along a short step, from its start to its end, over which the derivative is summed.
+_along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
 
 
 def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
@@ -258,22 +258,16 @@ class FreeEnds:
         return found.reshape(np.shape(z))
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        shape = np.broadcast_shapes(np.shape(z), np.shape(step))
         z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
-        y, shape = _seen(z), np.shape(z)
-        moved = _seen(z + share * step)
-        δ = np.asarray(-step / (1.0 - z) - step / (1.0 + z), dtype=complex)
+        found, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
+        z, step = z[stepped], step[stepped]
+        δ: NDArray = -step / (1.0 - z) - step / (1.0 + z)
         if share != 0.0:
             δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
-        small = np.abs(share * δ) < _APART * np.minimum(y.imag, moved.imag)
-        found = np.empty(shape, dtype=complex)
-        τ, w = np.polynomial.legendre.leggauss(6)
-        found[small] = sum(
-            weight * self.panels.derivative(self.f, y[small] + node * share * δ[small])
-            for node, weight in zip((τ + 1.0) / 2.0, w / 2.0)
-        ) * δ[small]  # fmt: skip
-        apart = [self.panels.transform(self.f, some[~small]) for some in (y, moved)]
-        if share != 0.0:
-            found[~small] = (apart[1] - apart[0]) / share
+        y = _seen(z)
+        for node, weight in zip(_along, _along_weights):
+            found[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
         return (self._phase * found).reshape(shape)
 
     @property

@@ -125,6 +125,20 @@ class Contacts:
                 found[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
         return found
 
+    @property
+    def turns(self) -> NDArray[np.float64]:
+        """Places over the half-width at which stresses are finite and have a power of the distance: free
+        ends and kinks; NaN for none, (states, k)."""
+        each: list[list[float]] = [[] for _ in self.g]
+        for group in self.groups:
+            kinks = [] if len(group.infinite) else list(group.cusps[0])
+            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
+                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
+        found = np.full((len(each), max(map(len, each))), np.nan)
+        for row, places in zip(found, each):
+            row[: len(places)] = places
+        return found
+
     def _alone(self, row: int, group: Group) -> "Contacts":
         """One state."""
         i = int(np.flatnonzero(group.rows == row)[0])

@@ -35,6 +35,9 @@ _LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
 _NEAR = 2.4
 
+#: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
+_FAR, _CLOSE = 200.0, 0.1
+
 #: Gauss points along a short step, from its start to its end, over which the derivative is summed.
 _along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
 
@@ -120,8 +123,8 @@ class Panels:
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
         near = np.abs(ζ + root) < _NEAR
-        kernel = _kernel(self.b, np.where(near[..., None], 1.0, self.x - y[:, None, None]), derived)
-        by_panel = np.einsum("pkn,pkn,n->pk", values, kernel, _w) * self.half
+        kernel = _kernels(self.b, self.x, y, derived)
+        by_panel = ((values * kernel) @ _w) * self.half
         found = np.where(near, 0.0, by_panel).sum(axis=1)
         point, panel = np.nonzero(near)
         ξ = self.x[panel] - y[point][:, None]
@@ -147,6 +150,24 @@ class Panels:
                 term = np.exp(k * ξ) / k
                 found = found + value * (-k * term if derived else sign * term)
         return found
+
+
+def _kernels(b: float, x: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
+    """:func:`_kernel` of x - y, (points, panels, nodes): the exponential of a sum is a product."""
+    far = np.abs(y.real) > _FAR
+    at = np.where(far, 0.0, y)[:, None, None]
+    E = np.exp(x) * np.exp(-at)
+    rest = 1.0 - E
+    with np.errstate(divide="ignore", invalid="ignore"):
+        kernel = np.exp(b * x) * np.exp(-b * at) / rest
+        if derived:
+            kernel *= -(b + E / rest)
+    close = np.abs(rest) < _CLOSE
+    close[far] = True
+    point, *node = np.nonzero(close)
+    ξ = x[tuple(node)] - y[point]
+    kernel[close] = _kernel(b, np.where(ξ == 0.0, 1.0, ξ), derived)
+    return kernel
 
 
 def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:

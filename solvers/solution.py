@@ -187,7 +187,7 @@ class Body:
 class Turns:
     """Stresses by their limits at places on the surface where they have a power of the distance.
 
-    That is at free ends of a contact, and under kinks of the punch: no sample meets a largest value there.
+    That is at free ends of a contact, and under kinks of the punch: no sample meets a top there.
 
     Attributes:
         X: the places over a, (states, k).

@@ -22,6 +22,10 @@ Field = Callable[[NDArray], NDArray]
 _SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
 
 
+#: Rounding of a distance.
+_HARDLY = 1.0 - 1e-9
+
+
 def places(body: Body) -> NDArray[np.float64]:
     """Where the stresses of every state are looked at, over a, (n, 2)."""
     knots = _knots(body)
@@ -124,14 +128,17 @@ class Strength:
 
     def _both(self, σ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Von Mises and largest shear stress, (states, n), of stresses (3, states, n)."""
-        found = von_mises(*σ, self._body.solid.σ_ZZ(*σ)), maximum_shear(*σ)
+        found = self._von_mises_of(σ), maximum_shear(*σ)
         # At a jump, where they are not known, there is nothing to climb to.
         of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in found)
         return of_mises, of_shear
 
+    def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
+        XX, YY, XY = σ
+        return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
+
     def _von_mises(self, points: NDArray) -> NDArray[np.float64]:
-        σ = self._field(points)
-        return von_mises(*σ, self._body.solid.σ_ZZ(*σ))
+        return self._von_mises_of(self._field(points))
 
     def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
         return self._von_mises(points) / self.strength[:, None]
@@ -147,6 +154,19 @@ class Strength:
         around, steps = circles(centres, self._nearest)
         return around, steps, self._both(self._field(around))
 
+    def _off_turns(self, stress: Callable[[NDArray], NDArray]) -> Callable[[NDArray], NDArray]:
+        """The stress, NaN nearer to where stresses turn than the field is good."""
+        if self._turns is None:
+            return stress
+        X = self._turns.X
+
+        def off(points: NDArray) -> NDArray[np.float64]:
+            distance = np.hypot(points[..., None, 0] - X[:, None], points[..., None, 1])
+            near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self._nearest * _HARDLY
+            return np.where(near, np.nan, stress(points))
+
+        return off
+
     def _peak(self, stress: Callable[[NDArray], NDArray], which: int) -> Peak:
         """Of von Mises (0) or of the largest shear stress (1)."""
         at, steps, there = self._levels.places[None], self._levels.steps, self._invariants[which]
@@ -154,7 +174,7 @@ class Strength:
             around, more, near = self._near_turns
             at = np.concatenate([np.broadcast_to(at, (len(around), *at.shape[1:])), around], axis=1)
             steps, there = np.append(steps, more), np.concatenate([there, near[which]], axis=1)
-        found = peak(stress, at, steps, there)
+        found = peak(self._off_turns(stress), at, steps, there)
         if self._turns:
             limit = self._both(self._turns.σ)[which]
             best, rows = limit.argmax(axis=1), np.arange(len(limit))

@@ -38,6 +38,9 @@ _NEAR = 2.4
 #: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
 _FAR, _CLOSE = 200.0, 0.1
 
+#: Distance from a cusp of the pressure that is as good as none, and that from which it is extrapolated.
+_AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
+
 #: Gauss points along a short step, from its start to its end, over which the derivative is summed.
 _along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
 
@@ -242,7 +245,7 @@ class FreeEnds:
         f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
         slope: the same at any positions in the contact.
         n, Q: n + g n₁₂ and g q of the half-plane.
-        infinite: positions at which the pressure is infinite.
+        cusps: positions at which the pressure has a cusp, and its exponent there, below 1; 0 for none.
     """
 
     panels: Panels
@@ -250,7 +253,7 @@ class FreeEnds:
     slope: Any
     n: float
     Q: float
-    infinite: Sequence[float] = ()
+    cusps: tuple[Sequence[float], float] = ((), 0.0)
 
     @property
     def _factor(self) -> float:
@@ -261,7 +264,19 @@ class FreeEnds:
         f = self.slope(r)
         # Without f(r) nothing cancels towards the ends.
         T = self.panels.transform(self.f - f[:, None], np.log1p(-r) - np.log1p(r))
-        return -self._factor * np.sin(np.pi * self.panels.a) * T
+        found = -self._factor * np.sin(np.pi * self.panels.a) * T
+        places, exponent = self.cusps
+        for at in places if exponent else ():
+            here = np.abs(r - at) < _AT_CUSP
+            if here.any():  # what is left of the smallest panel there is not small
+                found[here] = self._at_cusp(at, exponent)
+        return found
+
+    def _at_cusp(self, at: float, exponent: float) -> float:
+        """σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
+        d = _BESIDE_CUSP * np.array([-1.0, 1.0])
+        near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
+        return near + (near - far) / (2.0**exponent - 1.0)
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface, (points,)."""

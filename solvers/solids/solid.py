@@ -19,7 +19,11 @@ class Potential(Protocol):
         """Φ(z)."""
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0."""
+        """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0.
+
+        The step is short, over the distances of both places from the contact:
+        :func:`galinx.solvers.solids.potentials.value_and_change` takes others.
+        """
 
 
 class Response(Protocol):

@@ -23,6 +23,7 @@ from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
 from galinx.postprocess.largest import largest
+from galinx.postprocess.near_ends import turns_at_ends
 from galinx.postprocess.pressure import JacobiPressure, chebyshev, from_moments, without_zeros
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.errors import SolveError
@@ -33,6 +34,9 @@ from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
 from galinx.solvers.solution import Body, Surface
+
+#: Distance over a from a free end from which on stresses are looked at, the end itself besides.
+_NEAREST = 1e-6
 
 
 @contextmanager
@@ -279,7 +283,7 @@ class FoundPunches:
         field = at.displacement.at
         return Strength(
             lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
-            self.half_width,
+            self.half_width, turns_at_ends(self.surface, self.local), _NEAREST,
         )  # fmt: skip
 
 

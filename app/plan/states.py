@@ -38,6 +38,7 @@ class States:
             a wave along the surface in m/s, how often a wave crosses the contact in a stroke, f = F/N
             signed, and g = σ_XY/σ_YY under the punch.
         inner: inner state of the law at each state, (states, n).
+        directions: of the strokes, 1 forward, -1 backward, (states,).
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
@@ -46,6 +47,7 @@ class States:
 
     columns: dict[str, NDArray]
     inner: NDArray[np.float64]
+    directions: NDArray[np.int64]
     loop: NDArray[np.int64]
     travel: NDArray[np.float64]
     loops: NDArray[np.float64]
@@ -166,9 +168,11 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     loop[len(found.f) :] = -1
     columns = _columns(scene, known, _of_all(known, f))
     travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
+    along = np.repeat([leg.s for leg in scene.legs], [len(X) for X in scene.places])
     return States(
-        columns, _of_all(known, inner), _of_all(known, np.tile(loop[:, None], f.shape[1])), travel,
-        np.array(found.f), found.archived(scene),
+        columns, _of_all(known, inner), _of_all(known, np.tile(along, (count, 1))),
+        _of_all(known, np.tile(loop[:, None], f.shape[1])), travel, np.array(found.f),
+        found.archived(scene),
     )  # fmt: skip
 
 

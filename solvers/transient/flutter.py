@@ -8,10 +8,10 @@ sliding speed is, so that with (u,X, v,X) = 𝐘 (σ_XY, σ_YY)
 
 They grow if Im c > 0, and at any length: the shorter, the faster (Renardy, J. Elasticity 27 (1992) 281;
 Martins, Guimarães and Faria, J. Vib. Acoust. 117 (1995) 445). L₁₁/L₂₁ is analytic in the upper half of
-the c plane. Growing waves have the real values that it takes there, on curves along which it is monotonic,
-and these curves end on the real axis; the least of each sign is a value at such an end. Ends are the
-speeds at which L₁₁/L₂₁ is real alone, and, where all waves leave the surface and it is real all along, its
-extremes.
+the c plane. Growing waves have the real values that it takes there, on curves along which it is
+monotonic, and these curves end on the real axis; the least of each sign is a value at such an end. Ends
+are the speeds at which L₁₁/L₂₁ is real alone, and, where all waves leave the surface and it is real all
+along, its extremes.
 """
 
 from collections.abc import Callable, Iterator

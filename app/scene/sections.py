@@ -174,8 +174,8 @@ _SOLVE_KEYS = {
     ),
     "assembler": Key(
         Choice(ASSEMBLERS), "assembler of matrices", "tensor",
-        '`"tensor"`: element matrices by tensor products, inner unknowns condensed; `"dolfinx"`: the same '
-        "weak form by `fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
+        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
+        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
     ),
     "pressure": Key(
         Pressure(), "σ_YY of the traction mode", "closed_form",

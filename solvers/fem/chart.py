@@ -52,7 +52,7 @@ class Chart(Protocol):
         """dX/ds along the surface."""
 
     def from_edges(self, x: Any) -> tuple[Any, Any]:
-        """Distances in s from the two punch edges of points (2, n) of the contact, or of UFL's coordinates."""
+        """Distances in s of points of the contact, (2, n) or UFL's coordinates, from both punch edges."""
 
     def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
         """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.

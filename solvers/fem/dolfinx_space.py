@@ -1,4 +1,4 @@
-"""The moving-frame equations by dolfinx's own assembler: ``fem.form``, ``assemble_matrix``, ``dirichletbc``.
+"""The half-plane by dolfinx's own assembler: ``fem.form``, ``assemble_matrix`` and ``dirichletbc``.
 
 The weak form of Eqs 15-16 is a UFL form over ``dx`` here, and the traction of a friction state one over
 ``ds``. FFCx compiles both, every unknown stays in the matrix, and any form that is registered works as it

@@ -14,13 +14,9 @@ from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement
-<<<<<<< HEAD
-from galinx.postprocess.quantities.quantity import FEM, FOUND
-=======
 from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
-from galinx.postprocess.quantities.quantity import FOUND
+from galinx.postprocess.quantities.quantity import FEM, FOUND
 from galinx.solvers.errors import SolveError
->>>>>>> main
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR
@@ -167,16 +163,10 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-<<<<<<< HEAD
         assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
-        wanted=wanted,
-        mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
-=======
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
->>>>>>> main
+        wanted=wanted, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=layers.tests_of(scene.solid, kind, wanted),
-        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None, 
+        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
         shapes=_shapes(scene, responses, g) if mode == FOUND else 0,
     )  # fmt: skip
 

@@ -69,8 +69,8 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
         result.append(
             f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
             f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; so many are "
-            f"solved as a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these {solver} "
-            f"serves all states, at {LADDERS} {others} its error"
+            f"solved as a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these "
+            f"{solver} serves all states, at {LADDERS} {others} its error"
         )
         speeds = {}
     result += [

@@ -5,10 +5,7 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
-<<<<<<< HEAD
-from galinx.app.plan.fem import DOLFINX, LINEAR, TENSOR
-=======
->>>>>>> main
+from galinx.app.plan.fem import DOLFINX, TENSOR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene

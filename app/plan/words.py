@@ -88,7 +88,8 @@ def expense(plan: Plan) -> str:
     """Estimated time and memory of a plan, and the size of its archive."""
     together = plan.chunk * plan.numbers
     positions = sum(len(values) for values in plan.positions.values())
-    archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers + positions))}"
+    numbers = plan.states * (plan.numbers + len(plan.quantities)) + positions
+    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(plan.quantities)))}"
     if not plan.fem:
         seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
@@ -168,4 +169,7 @@ def _seconds_of_levels(fem: FemPlan, states: int) -> float:
 
 def _size(count: float) -> str:
     """Bytes for a reader."""
-    return f"{count / 1e9:.2g} GB" if count >= 1e8 else f"{count / 1e6:.2g} MB"
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= 0.1 * size:
+            return f"{count / size:.2g} {unit}"
+    return f"{count / 1e3:.2g} kB"

@@ -8,7 +8,7 @@ from typing import Any
 from galinx.app.console.program import program
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.tables import OneOrMore, Rows, Wrapped
+from galinx.app.scene.tables import OneOrMore, Rows, Variations, Wrapped
 from galinx.app.scene.values import Choice, Kind, Number, NumberList
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
@@ -147,7 +147,22 @@ class ModelSection(Section):
         kind = self._models[model]
         own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
-        return {**own, self._chosen: chosen, **self._keys}
+        keys = {**own, self._chosen: chosen, **self._keys}
+        return keys | {"vary": self._variations(model)} if self._several else keys
+
+    def _variations(self, model: str) -> Key:
+        """Tables of parameters; rows of numbers, which all laws share, are not among these."""
+        single = {
+            name: [known for known in parameters(kind).values() if known.single]
+            for name, kind in self._models.items()
+        }
+        own = {known.key: self._key(known, self._models[model]).kind for known in single[model]}
+        every = tuple(dict.fromkeys(known.key for some in single.values() for known in some))
+        return Key(
+            Variations(own, every), "parameters of the laws, table by table", (),
+            "instead of the product of the lists above: the product of each table, with what it leaves "
+            "out as the section has it; laws that are in several tables are computed once",
+        )  # fmt: skip
 
     def _key(self, known: Parameter, model: Any) -> Key:
         value: Kind

@@ -48,17 +48,18 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     (data, attributes), (below, _) = results
     good, sheets = _tables(data, attributes, study)
     report = Report(data, attributes, study, sheets)
-    figures, plain = [], Choice()
-    drawings = (*of_study(data, study), draw_inside(below, inside, plain), mesh(data, study, plain))
-    for drawing in drawings:
+    drawings, plain = [], Choice()
+    for drawing in of_study(data, study):
         progress.say(f"figure: {drawing.name}")
-        report.add(drawing)
-        figures.append((drawing.name, drawing.figure))
-    save(figures, folder)
+        drawings.append(drawing)
+    drawings += [draw_inside(below, inside, plain), mesh(data, study, plain)]
+    pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
+    for drawing in drawings:
+        report.add(drawing, pixels[drawing.name])
     targets["report.html"].write(report.text().encode())
     _print(targets["tables.txt"], sheets, attributes, quiet)
     if not quiet:
-        drawn = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
+        drawn = "Figs 1-10, sinusoidal, laws, inside and mesh as PDF and PNG"
         say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
         print(f"verdict: {'PASS' if good else 'FAIL'}")
         print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")

@@ -131,4 +131,5 @@ FORMS: Registry[Form] = Registry(
         "anisotropic": Form(anisotropic, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
         "nearly incompressible": Form(mixed, ("κ", "c"), pressure=True),
     },
+    Form,
 )

@@ -204,6 +204,24 @@ def test_style_is_left_as_it_was():
     assert dict(matplotlib.rcParams) == before
 
 
+def test_what_somebody_has_set_for_other_figures_is_not_for_these(monkeypatch):
+    """Texts by LaTeX, which may not be there, among it."""
+    import matplotlib
+
+    from galinx.postprocess.figures.canvas import content
+    from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
+
+    def drawn():
+        loop = Loop("f", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])
+        return content(loops_figure([Panel("", [loop])]), "svg")
+
+    plain = drawn()
+    others = {"text.usetex": True, "axes.facecolor": "red", "axes.grid": True, "savefig.bbox": "tight"}
+    for key, value in others.items():
+        monkeypatch.setitem(matplotlib.rcParams, key, value)
+    assert drawn() == plain
+
+
 def test_panels_are_as_large_as_there_is_room():
     room = Room(0.5, 0.1, 0.4, 0.2, 0.3, 0.5)
     figure, axes = panels(2, 3, Size(7.0), 0.5, room)

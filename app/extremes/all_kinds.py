@@ -192,7 +192,9 @@ def _layered(rng: _Random) -> str:
     layer = {"thickness": thickness} | values(coat)
     text = _section("solid", {"kind": "isotropic"} | values(substrate)) + "[[layer]]\n" + _keys(layer)
     if bottom:
-        text += f"to = {{{', '.join(f'{key} = {json.dumps(value)}' for key, value in _of_face(bottom))}}}\n"
+        text += (
+            f"to = {{{', '.join(f'{key} = {json.dumps(value)}' for key, value in _of_face(bottom))}}}\n"
+        )
     return _text(
         rng, text, profile, share * solid.limit(), 10.0 ** rng.uniform(-6.5, -2.0), quantities, [],
         ["sie", "fem"], "confocal",
@@ -266,7 +268,9 @@ def _flat(rng: _Random) -> Flat:
 
 def _table(rng: _Random) -> Table:
     """Convex, far beyond where most contacts reach."""
-    X = np.unique(np.concatenate([-(10.0 ** rng.uniform(-4.5, -2.0, 3)), 10.0 ** rng.uniform(-4.5, -2.0, 3)]))
+    X = np.unique(
+        np.concatenate([-(10.0 ** rng.uniform(-4.5, -2.0, 3)), 10.0 ** rng.uniform(-4.5, -2.0, 3)])
+    )
     X = np.concatenate([[-2e-2], X, [2e-2]])
     P = np.abs(X) ** float(rng.uniform(1.3, 2.5))
     P *= 1e-5 / np.interp(_A, X, P)

@@ -15,7 +15,7 @@ from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
-from galinx.postprocess.quantities.quantity import FOUND
+from galinx.postprocess.quantities.quantity import FEM, FOUND
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import exponent, smooth
@@ -44,6 +44,9 @@ LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
 
+#: Names of the assemblers: element matrices by tensor products, condensed, and dolfinx's own.
+TENSOR, DOLFINX = "tensor", "dolfinx"
+
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
 
@@ -60,6 +63,7 @@ class FemPlan:
         refinement: of the one mesh all speeds share, before it is cut.
         cuts: of every cell's sides.
         form: name of the weak form.
+        assembler: ``TENSOR`` or ``DOLFINX``.
         solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
@@ -80,6 +84,7 @@ class FemPlan:
     refinement: Refinement
     cuts: int
     form: str
+    assembler: str
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
@@ -158,10 +163,10 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
+        assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
+        wanted=wanted, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=layers.tests_of(scene.solid, kind, wanted),
-        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None, 
+        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
         shapes=_shapes(scene, responses, g) if mode == FOUND else 0,
     )  # fmt: skip
 
@@ -256,6 +261,26 @@ def _check_degree_and_solver(scene: Scene) -> None:
         raise BadInput(
             f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
             "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def check_assembler(scene: Scene) -> None:
+    """Does dolfinx's assembler serve what the scene asks of finite elements?
+
+    Raises:
+        BadInput: it does not.
+    """
+    if scene.solve.assembler != DOLFINX or FEM not in scene.solve.methods:
+        return
+    if scene.solve.own_pressure:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": its '
+            "pieces are put together from the deformation of condensed cells"
+        )
+    if scene.time is not None:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
+            "matrices of their own"
         )
 
 

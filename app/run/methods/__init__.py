@@ -5,6 +5,7 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
+from galinx.app.plan.fem import DOLFINX, TENSOR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
@@ -143,3 +144,6 @@ METHODS: Registry[MethodKind] = Registry(
 
 #: What the finite elements may be given: a punch, or the pressure under it.
 MODES = ("contact", "traction")
+
+#: Assemblers of their matrices: element matrices by tensor products, or dolfinx's own.
+ASSEMBLERS = (TENSOR, DOLFINX)

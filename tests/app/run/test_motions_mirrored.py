@@ -172,8 +172,17 @@ def test_response(kind, tmp_path):
     found = []
     for name, strokes, way in (("forward", THERE, 1), ("backward", BACK, -1)):
         text = scene(kind, strokes, way)
-        (tmp_path / f"{name}.toml").write_text(text[: text.index("[time]")] + text[text.index("[solve]") :])
-        changes = ["--set", 'output.quantities=["friction"]', "--points", "3", "-o", tmp_path / f"{name}.png"]
+        (tmp_path / f"{name}.toml").write_text(
+            text[: text.index("[time]")] + text[text.index("[solve]") :]
+        )
+        changes = [
+            "--set",
+            'output.quantities=["friction"]',
+            "--points",
+            "3",
+            "-o",
+            tmp_path / f"{name}.png",
+        ]
         done = here("response", tmp_path / f"{name}.toml", *changes)
         assert done.returncode == 0, done.stderr
         rows = [line.split() for line in done.stdout.splitlines() if line[:1].isdigit()]

@@ -52,6 +52,9 @@ _FRICTIONS, _BETWEEN = (8, 12, 16, 20, 26, 34, 44, 60), 3e-12
 #: Share of what solving every speed costs that may be lost where no fit becomes good enough.
 _REGRET = 0.08
 
+#: Speeds, at both ends of the sweep, at which the discretisation's error is measured in any case.
+_ENDS = 2
+
 
 class HigherDegree(Exception):
     """One of the speeds asks for a higher degree than those before were solved with."""
@@ -209,68 +212,89 @@ class _Training:
                 break  # there is no other speed, or it would cost too much
             before, error = self._solved(numbers)
             chosen += numbers
-            if len(chosen) >= LADDERS and self._estimates.beyond(self._work.plan.tolerance):
+            if len(self._estimates.numbers) > 1 and self._estimates.beyond(self._work.plan.tolerance):
                 break
             number = None
             if error and self._good(error):
                 assert before
                 changes = {worst: self._change(before, worst) for worst in self._worst(before)}
                 error = {word: max(one[word] for one in (error, *changes.values())) for word in error}
-                if self._good(error):
+                if self._good(error) and self._good(error := self._seconded(error, chosen)):
                     assert self._fit
                     return Trained(self._fit, self._estimates, error)
                 number = max(changes, key=lambda worst: self._excess(changes[worst]))
         return self.given_up()
+
+    def _seconded(self, error: dict[str, float], chosen: list[int]) -> dict[str, float]:
+        """The error of a fit that is good, after that of the discretisation was measured at more speeds.
+
+        That was put off, lest it be in vain.
+        """
+        while (missing := LADDERS - len(self._estimates.numbers)) > 0:
+            more = self._far([], chosen)[:missing]
+            if not more:
+                break
+            _, off = self._solved(dict.fromkeys(more, True))
+            chosen += more
+            error = {word: max(value, off.get(word, 0.0)) for word, value in error.items()}
+        return error
 
     def given_up(self) -> Trained | None:
         """What was solved tells of itself."""
         self._say("no fit through speeds is good enough at its cost: each is solved")
         return Trained(self._fit, self._estimates, None) if self._fit else None
 
-    def _next(self, chosen: list[int], number: int | None) -> list[int]:
+    def _next(self, chosen: list[int], number: int | None) -> dict[int, bool]:
         """Numbers of the speeds that are solved next: the given one, and such as are far from all.
 
-        Those that would cost too much, were it in vain, are left out.
+        Each with whether to measure its error, as at the ends of the sweep, and elsewhere as far as that
+        may be in vain. Those that would cost too much are left out.
         """
-        found = [] if number is None else [number]
+        found = self._far([] if number is None else [number], chosen)
+        lost, kept = self._lost, dict[int, bool]()
+        for number in found:
+            measured = len(self._estimates.numbers) + sum(kept.values())
+            for measures in (True, False):
+                more = self._cost(measures) - self._alone[number]
+                allowed = measured < LADDERS if measures else measured >= _ENDS
+                if allowed and lost + more <= self.allowed:
+                    lost += more
+                    kept[number] = measures
+                    break
+        return kept
+
+    def _far(self, found: list[int], chosen: list[int]) -> list[int]:
+        """Numbers of as many speeds as are solved at once: some, and others that are far from all."""
         while len(found) < AT_ONCE:
             number = leja(self._sweep.z, chosen + found)
             if number is None:
                 break
-            found.append(number)
-        lost, kept = self._lost, list[int]()
-        for number in found:
-            measures = len(self._estimates.numbers) + len(kept) < LADDERS
-            more = self._cost(measures) - self._alone[number]
-            if lost + more <= self.allowed:
-                lost += more
-                kept.append(number)
-        return kept
+            found = [*found, number]
+        return found
 
     def _cost(self, measures: bool) -> float:
         """Of a speed at the fit's degree, with or without all that measures its error."""
         assert self._degree
         return _cost_of_ladder(self._degree) if measures else _cost(self._degree)
 
-    def _solved(self, numbers: list[int]) -> tuple[Rational | None, dict[str, float]]:
+    def _solved(self, numbers: dict[int, bool]) -> tuple[Rational | None, dict[str, float]]:
         """Solve speeds, shared out over the ranks, and take them in.
 
         Args:
-            numbers: of the speeds.
+            numbers: of the speeds, and whether to measure the error there.
 
         Returns:
-            The fit before; how far it was off at most where no error was measured, by word.
+            The fit before; how far it was off at most, by word, nothing where there was none.
         """
-        laddered = numbers[: max(LADDERS - len(self._estimates.numbers), 0)]
-        for number in numbers:
-            cost = self._cost(number in laddered)
+        for number, measures in numbers.items():
+            cost = self._cost(measures)
             self.spent, self._lost = self.spent + cost, self._lost + cost - self._alone[number]
 
         def solve(number: int) -> _Solved:
-            return self._measured(number) if number in laddered else self._checked(number)
+            return self._measured(number) if numbers[number] else self._checked(number)
 
         before = self._fit.rational if self._fit else None
-        found = by_turns(numbers, solve, not self._work.plan.shared_speeds)
+        found = by_turns(list(numbers), solve, not self._work.plan.shared_speeds)
         self._take(found)
         off = [one.off for one in found if one.off]
         return before, {word: max(one[word] for one in off) for word in off[0]} if off else {}
@@ -302,6 +326,7 @@ class _Training:
         """Solve a speed with all that measures its error."""
         work, mode, task = self._work, self._mode, self._tasks[number]
         self._tell(task)
+        expected = self._expected(task)
 
         def solved(space: Space, g: NDArray) -> Any:
             return mode.Level(work, task, space, g)
@@ -314,7 +339,21 @@ class _Training:
             return _Solved(
                 number, ladder.degree, self._fit.sampled(task, level) if fits else None,
                 ladder.record() | error.record(), estimates=error.of(self._probes, self._loads),
+                off=self._off(level, expected) if fits else None,
             )  # fmt: skip
+
+    def _expected(self, task: Task) -> list[Gauge] | None:
+        """What the fit says of a speed, None where there is none yet."""
+        if not self._fit or not self._fit.rational:
+            return None
+        with self._fit.level(task) as told:
+            return told.measured(self._probes, self._loads)
+
+    def _off(self, level: Any, expected: list[Gauge] | None) -> dict[str, float] | None:
+        """How far that is from what was solved, by word."""
+        if expected is None:
+            return None
+        return largest_changes(level.measured(self._probes, self._loads), expected)
 
     def _tell(self, task: Task) -> None:
         self._say(f"finite elements at c = {task.response.c:g}, of the fit")
@@ -334,15 +373,14 @@ class _Training:
         return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
-        """Solve a speed that the fit tells."""
+        """Solve a speed alone."""
         work, fit, task = self._work, self._fit, self._tasks[number]
-        assert fit and fit.rational
+        assert fit
         self._tell(task)
-        with fit.level(task) as told:
-            expected = told.measured(self._probes, self._loads)
+        expected = self._expected(task)
         level = self._mode.Level(work, task, fit.space, self._all)
         try:
-            off = largest_changes(level.measured(self._probes, self._loads), expected)
+            off = self._off(level, expected)
             done = WorkDone()
             done.count(level)
             record = fit.record(number) | vars(done)

@@ -132,50 +132,23 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    study, inside = (scenes.read(SCENES / f"{name}.toml") for name in ("study", "inside"))
     targets = {name: folder.target(name, kind) for name, kind in _FILES.items()}
-    block, tractions = _beside()
+    results = _computed(targets, progress)
     if not ranks.is_root():
-        for scene in (study, inside, block, tractions):
-            compute(scene)
         return True  # the verdict is rank 0's
-    from galinx.app.pictures.choice import Choice
-    from galinx.app.pictures.inside import inside as draw_inside
-    from galinx.app.pictures.numerics import mesh
-    from galinx.app.results.report import Report
-    from galinx.app.study.drawings import of_study
-    from galinx.postprocess.figures.canvas import save
-    from galinx.postprocess.hdf5 import archive, reader
-
-    results = []
-    for name, scene in (("study.h5", study), ("inside.h5", inside)):
-        with archive.Writer(targets[name]) as writer:
-            writer.finish(compute(scene, writer, progress))
-        results.append(Computed(scene, *reader.read(targets[name].path, just_sealed=True)))
-    for scene in (block, tractions):
-        memory = Memory()
-        results.append(Computed(scene, memory, compute(scene, memory, progress)))
-    archived, below, *_ = results
-    data = archived.data
+    study = results[0]
     methods, checks = _judged(*results)
     good = all(check.good for check in checks)
     good = good and all(one.attributes["verdict"] == "PASS" for one in results)
-    decided = statements_sheet(statements(data, study.solid))
-    tables = [*_tables(archived), methods]
-    details = [*_details(archived), _displacements(study, data)]
+    decided = statements_sheet(statements(study.data, study.solid))
+    tables = [*_tables(study), methods]
+    details = [*_details(study), _displacements(study)]
     verdict = {
         "verdict": "PASS" if good else "FAIL",
         "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
     }
-    report = Report(data, archived.attributes | verdict, study, [decided, *tables, *details])
-    figures, plain = [], Choice()
-    drawings = (*of_study(data, study), draw_inside(below.data, inside, plain), mesh(data, study, plain))
-    for drawing in drawings:
-        progress.say(f"figure: {drawing.name}")
-        report.add(drawing)
-        figures.append((drawing.name, drawing.figure))
-    save(figures, folder)
-    targets["report.html"].write(report.text().encode())
+    judged = replace(study, attributes=study.attributes | verdict)
+    _draw(judged, results[1], [decided, *tables, *details], folder, targets["report.html"], progress)
     _write(targets["tables.txt"], [*tables, *details])
     _write(targets["statements.txt"], [decided])
     if not quiet:
@@ -187,6 +160,56 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         print(f"verdict: {verdict['verdict']}")
         print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
     return good
+
+
+def _computed(targets: dict[str, Target], progress: Progress) -> list[Computed]:
+    """The study and stresses inside, archived, then the block and the tractions; collective.
+
+    Under MPI rank 0 has them, the others have nothing.
+    """
+    study, inside = (scenes.read(SCENES / f"{name}.toml") for name in ("study", "inside"))
+    beside = _beside()
+    if not ranks.is_root():
+        for scene in (study, inside, *beside):
+            compute(scene)
+        return []
+    from galinx.postprocess.hdf5 import archive, reader
+
+    results = []
+    for name, scene in (("study.h5", study), ("inside.h5", inside)):
+        with archive.Writer(targets[name]) as writer:
+            writer.finish(compute(scene, writer, progress))
+        results.append(Computed(scene, *reader.read(targets[name].path, just_sealed=True)))
+    for scene in beside:
+        memory = Memory()
+        results.append(Computed(scene, memory, compute(scene, memory, progress)))
+    return results
+
+
+def _draw(
+    study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, page: Target,
+    progress: Progress,
+) -> None:  # fmt: skip
+    """Write the figures, and the report with all tables."""
+    from galinx.app.pictures.choice import Choice
+    from galinx.app.pictures.inside import inside as draw_inside
+    from galinx.app.pictures.numerics import mesh
+    from galinx.app.results.report import Report
+    from galinx.app.study.drawings import of_study
+    from galinx.postprocess.figures.canvas import save
+
+    data, scene = study.data, study.scene
+    report = Report(data, study.attributes, scene, list(sheets))
+    figures, plain = [], Choice()
+    drawings = (
+        *of_study(data, scene), draw_inside(inside.data, inside.scene, plain), mesh(data, scene, plain)
+    )  # fmt: skip
+    for drawing in drawings:
+        progress.say(f"figure: {drawing.name}")
+        report.add(drawing)
+        figures.append((drawing.name, drawing.figure))
+    save(figures, folder)
+    page.write(report.text().encode())
 
 
 def _beside() -> list[Scene]:
@@ -237,12 +260,12 @@ def _details(study: Computed) -> list[Sheet]:
     ]
 
 
-def _displacements(scene: Scene, data: dict[str, Any]) -> Sheet:
+def _displacements(study: Computed) -> Sheet:
     """u and v under the punch at both speeds, by finite elements."""
     from galinx.app.results.one_state import under_punch
 
-    numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    X, displacements = under_punch(scene, numbers, _DEGREE)
+    numbers = [state_of(study.data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
+    X, displacements = under_punch(study.scene, numbers, _DEGREE)
     places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
     rows = [
         (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))

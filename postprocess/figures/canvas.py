@@ -55,7 +55,9 @@ class TooSmall(ValueError):
     """A figure does not fit on the size that is asked for."""
 
 
-def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tuple[Figure, NDArray]:
+def panels(
+    rows: int, columns: int, size: Size, high: float, room: Room, heights: Sequence[float] | None = None
+) -> tuple[Figure, NDArray]:
     """A figure with a grid of axes, (rows, columns).
 
     Args:
@@ -63,6 +65,7 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
         size: of the figure.
         high: height of a panel over its width where ``size`` has no height.
         room: around and between.
+        heights: of the rows over each other, all the same if not given, (rows,).
 
     Raises:
         TooSmall: nothing could be seen; the message says how large the figure has to be.
@@ -79,7 +82,8 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
     height = above + rows * tall
     figure = Figure((size.width, height))
     FigureCanvasAgg(figure)
-    place = {
+    place: dict[str, Any] = {
+        "height_ratios": heights,
         "left": room.left / size.width, "right": 1.0 - room.right / size.width,
         "bottom": room.bottom / height, "top": 1.0 - room.top / height,
         "wspace": room.across / wide, "hspace": room.down / tall,
@@ -119,6 +123,16 @@ class Legend:
         self._columns = ceil(len(handles) / max(1, rows))
         #: Room that it needs [in].
         self.height = rows * _LINE + 0.08 if handles else 0.0
+
+    def below(self, axis: Axes, lowered: float) -> None:
+        """Draw it under a panel, so far [in]."""
+        if self._handles:
+            figure = axis.get_figure()
+            place = -lowered / (axis.get_position().height * figure.get_figheight())
+            axis.legend(
+                handles=self._handles, ncols=self._columns, loc="upper center",
+                bbox_to_anchor=(0.5, place), borderaxespad=0.0, columnspacing=1.4, labelspacing=0.2,
+            )  # fmt: skip
 
     def put(self, figure: Figure) -> None:
         """Draw it at the foot of a figure."""

@@ -133,10 +133,15 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         UnwritableArchive: the file system refused.
     """
     targets = {name: folder.target(name, kind) for name, kind in _FILES.items()}
-    results = _computed(targets, progress)
+    study, inside = (_computed(name, targets[f"{name}.h5"], progress) for name in ("study", "inside"))
     if not ranks.is_root():
+        for scene in _beside():
+            compute(scene)
         return True  # the verdict is rank 0's
-    study = results[0]
+    results = [study, inside]
+    for scene in _beside():
+        memory = Memory()
+        results.append(Computed(scene, memory, compute(scene, memory, progress)))
     methods, checks = _judged(*results)
     good = all(check.good for check in checks)
     good = good and all(one.attributes["verdict"] == "PASS" for one in results)
@@ -148,49 +153,37 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
     }
     judged = replace(study, attributes=study.attributes | verdict)
-    _draw(judged, results[1], [decided, *tables, *details], folder, targets["report.html"], progress)
+    page = _draw(judged, inside, [decided, *tables, *details], folder, progress)
+    targets["report.html"].write(page.encode())
     _write(targets["tables.txt"], [*tables, *details])
     _write(targets["statements.txt"], [decided])
     if not quiet:
         lines = Sheet("Verdict", ("", "largest", "at most"), [check.cells for check in checks])
         _print([*tables, decided, lines])
         say(f"more in tables.txt: {', '.join(sheet.title.partition(',')[0] for sheet in details)}")
-        drawn = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
+        drawn = "Figs 1-10, sinusoidal, laws, inside and mesh as PDF and PNG"
         say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
         print(f"verdict: {verdict['verdict']}")
         print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
     return good
 
 
-def _computed(targets: dict[str, Target], progress: Progress) -> list[Computed]:
-    """The study and stresses inside, archived, then the block and the tractions; collective.
-
-    Under MPI rank 0 has them, the others have nothing.
-    """
-    study, inside = (scenes.read(SCENES / f"{name}.toml") for name in ("study", "inside"))
-    beside = _beside()
+def _computed(name: str, target: Target, progress: Progress) -> Computed:
+    """A scene, archived; collective, under MPI rank 0 alone has its data."""
+    scene = scenes.read(SCENES / f"{name}.toml")
     if not ranks.is_root():
-        for scene in (study, inside, *beside):
-            compute(scene)
-        return []
+        return Computed(scene, {}, compute(scene))
     from galinx.postprocess.hdf5 import archive, reader
 
-    results = []
-    for name, scene in (("study.h5", study), ("inside.h5", inside)):
-        with archive.Writer(targets[name]) as writer:
-            writer.finish(compute(scene, writer, progress))
-        results.append(Computed(scene, *reader.read(targets[name].path, just_sealed=True)))
-    for scene in beside:
-        memory = Memory()
-        results.append(Computed(scene, memory, compute(scene, memory, progress)))
-    return results
+    with archive.Writer(target) as writer:
+        writer.finish(compute(scene, writer, progress))
+    return Computed(scene, *reader.read(target.path, just_sealed=True))
 
 
 def _draw(
-    study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, page: Target,
-    progress: Progress,
-) -> None:  # fmt: skip
-    """Write the figures, and the report with all tables."""
+    study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, progress: Progress
+) -> str:
+    """Write the figures; the report, with all of them and all tables."""
     from galinx.app.pictures.choice import Choice
     from galinx.app.pictures.inside import inside as draw_inside
     from galinx.app.pictures.numerics import mesh
@@ -198,18 +191,16 @@ def _draw(
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
 
-    data, scene = study.data, study.scene
-    report = Report(data, study.attributes, scene, list(sheets))
-    figures, plain = [], Choice()
-    drawings = (
-        *of_study(data, scene), draw_inside(inside.data, inside.scene, plain), mesh(data, scene, plain)
-    )  # fmt: skip
-    for drawing in drawings:
+    drawings, plain = [], Choice()
+    for drawing in of_study(study.data, study.scene):
         progress.say(f"figure: {drawing.name}")
-        report.add(drawing)
-        figures.append((drawing.name, drawing.figure))
-    save(figures, folder)
-    page.write(report.text().encode())
+        drawings.append(drawing)
+    drawings += [draw_inside(inside.data, inside.scene, plain), mesh(study.data, study.scene, plain)]
+    pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
+    report = Report(study.data, study.attributes, study.scene, list(sheets))
+    for drawing in drawings:
+        report.add(drawing, pixels[drawing.name])
+    return report.text()
 
 
 def _beside() -> list[Scene]:

@@ -16,7 +16,7 @@ from galinx.app.study.published import (
     intensity_rows,
     like_the_studys,
 )
-from galinx.postprocess.figures.canvas import in_a_page
+from galinx.postprocess.figures.canvas import embedded, in_a_page
 from galinx.postprocess.page import render
 from galinx.postprocess.quantities import runs
 from galinx.postprocess.tables import Sheet, starts_sheet
@@ -66,9 +66,18 @@ class Report:
         self._scaling = scaling(scene if si else None)
         self._pictures: list[dict[str, Any]] = []
 
-    def add(self, drawing: Drawing) -> None:
-        """Take a figure in; it can be saved elsewhere afterwards."""
-        source = in_a_page(drawing.figure, drawing.pixels)
+    def add(self, drawing: Drawing, png: bytes | None = None) -> None:
+        """Take a figure in; it can be saved elsewhere afterwards.
+
+        Args:
+            drawing: which.
+            png: lines as a file's bytes, where there is one already; else they are drawn for the page, as
+                maps always are, whose files are large.
+        """
+        if png is None or drawing.pixels:
+            source = in_a_page(drawing.figure, drawing.pixels)
+        else:
+            source = embedded(png)
         self._pictures.append({"source": source, "caption": drawing.told, "pixels": drawing.pixels})
 
     def text(self) -> str:

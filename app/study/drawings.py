@@ -218,7 +218,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         of = [_state(loops.told, {STROKE: FM2, C: c}) for c in (SS, HS)]
         punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
         both = [np.array([np.where(under, one.σ_YY(X), np.nan), one.σ_XX(X)]) for one in punches]
-        curves.append(Curve(called, look, *both))
+        curves.append(Curve(called, look, both[0], both[1]))
         shown += [loop for loop in (loops.of(of[0], []),) if loop]
         places.append((_AT, states.columns["f"][of[0]]))
     says = _slow_and_fast(loops.told, of)

@@ -119,10 +119,10 @@ class Computed:
     @property
     def checks(self) -> list[Check]:
         """The archive's own verdict, line by line."""
-        compared = json.loads(self.attributes["rules"])
-        allowed = limits(self.scene, [name for name in RULES if name in compared])
-        lines = [Check(RULES[name].text, self.worst(name), limit) for name, limit in allowed.items()]
-        return [line for line in lines if not np.isnan(line.value)]
+        rules, worst = (json.loads(self.attributes[name]) for name in ("rules", "comparisons"))
+        compared = [name for name in RULES if name in rules and RULES[name].text in worst]
+        allowed = limits(self.scene, compared)
+        return [Check(RULES[name].text, self.worst(name), limit) for name, limit in allowed.items()]
 
 
 def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:

@@ -179,24 +179,34 @@ def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
     data = BytesIO()  # matplotlib leaves half of a figure on a full disk
     # Without a date a figure that is drawn again is the same file.
     metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
-    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata)
+    # Pixels that are nearly all white are packed as well at once as after a search.
+    packed = {"pil_kwargs": {"compress_level": 1}} if ending == "png" else {}
+    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, **packed)
     figure.set_layout_engine("none")  # laid out once
     return data.getvalue()
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
     """Write figures by name into a folder in the usual formats; none where one may not be written.
+
+    Returns:
+        The pixels of each by name, as PNG, for pages.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
     figures = list(figures)
-    write(
-        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
+    made = {
+        (name, ending): content(figure, ending)
         for ending in USUAL  # one after the other: matplotlib keeps typeset formulas, not for both
         for name, figure in figures
+    }
+    write(
+        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), data)
+        for (name, ending), data in made.items()
     )
+    return {name: data for (name, ending), data in made.items() if ending == "png"}
 
 
 def write(files: Iterable[tuple[Target, bytes]]) -> None:
@@ -227,5 +237,9 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
     figure.set_layout_engine("none")
-    kind = "png" if pixels else "svg+xml"
-    return f"data:image/{kind};base64,{b64encode(data.getvalue()).decode()}"
+    return embedded(data.getvalue(), "png" if pixels else "svg+xml")
+
+
+def embedded(data: bytes, kind: str = "png") -> str:
+    """The bytes of a picture's file as a data URI."""
+    return f"data:image/{kind};base64,{b64encode(data).decode()}"

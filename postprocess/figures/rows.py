@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, panels
 from galinx.postprocess.figures.loops import F_LABEL, X_LABEL, Panel, draw
 from galinx.postprocess.figures.style import COLOURS, GREY, LINES, PAGE, Look, styled
-from galinx.postprocess.figures.surface import along, limits, over_a, parts, picked
+from galinx.postprocess.figures.surface import along, broken, limits, over_a, picked
 
 #: Height of a row [in], and of the panels of differences over it.
 _HIGH, _FLAT = 1.62, 0.5
@@ -86,14 +86,7 @@ def rows_figure(
         size = Size(size.width, beside + sum(heights) * _HIGH)
     figure, axes = panels(len(heights), len(labels), size, 0.5, room, heights)
     for column, label in enumerate(labels):
-        shown = [
-            one[column]
-            for row in rows
-            for curve in row.curves
-            for one in (curve.line, curve.markers)
-            if one is not None
-        ]
-        _draw_column(axes[:, column], X, np.array(shown), rows, column)
+        _draw_column(axes[:, column], X, rows, column)
         _difference(axes[:, column], X, {name: one[column] for name, one in differences.items()})
         for axis in axes[: len(rows), column]:
             axis.set_ylabel(label)
@@ -133,16 +126,17 @@ def laws_figure(
     for curve, (at, f) in zip(row.curves, places):
         axes[0, 0].plot(at, f, curve.look.marker, color=curve.look.colour)
     for column, label in enumerate(labels):
-        shown = [one[column] for curve in row.curves for one in (curve.line, curve.markers)]
-        _draw_column(axes[:, column + 1], X, np.array(shown), [row], column)
+        _draw_column(axes[:, column + 1], X, [row], column)
         axes[0, column + 1].set_ylabel(label)
     lettered(axes.flat, ["loops, and the place shown", row.title, row.title])
     legend.put(figure)
     return figure
 
 
-def _draw_column(axes: NDArray, X: NDArray, shown: NDArray, rows: Sequence[Row], column: int) -> None:
+def _draw_column(axes: NDArray, X: NDArray, rows: Sequence[Row], column: int) -> None:
     """Rows of one stress, all between the same limits; positions are named below the last axis."""
+    both = [one for row in rows for curve in row.curves for one in (curve.line, curve.markers)]
+    shown = np.array([one[column] for one in both if one is not None])
     half, y = along(X, shown), limits(X, shown)
     for axis in axes:
         over_a(axis, half)
@@ -154,11 +148,10 @@ def _draw_column(axes: NDArray, X: NDArray, shown: NDArray, rows: Sequence[Row],
         axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
         for n, curve in enumerate(row.curves):
             if curve.line is not None:
-                for part in parts(X):
-                    axis.plot(
-                        X[part], curve.line[column][part], color=curve.look.colour,
-                        linestyle=curve.look.line, linewidth=curve.width,
-                    )  # fmt: skip
+                axis.plot(
+                    *broken(X, curve.line[column]), color=curve.look.colour, linestyle=curve.look.line,
+                    linewidth=curve.width,
+                )  # fmt: skip
             if curve.markers is not None:
                 at = picked(X, half, n, len(row.curves), _MARKERS)
                 axis.plot(
@@ -172,10 +165,7 @@ def _difference(axes: NDArray, X: NDArray, differences: Mapping[str, NDArray]) -
         return
     axis: Axes = axes[-1]
     for n, values in enumerate(differences.values()):
-        for part in parts(X):
-            axis.plot(
-                X[part], np.maximum(values[part], _LEAST), color=COLOURS[-2], linestyle=LINES[n],
-                linewidth=0.8,
-            )  # fmt: skip
+        x, y = broken(X, np.maximum(values, _LEAST))
+        axis.plot(x, y, color=COLOURS[-2], linestyle=LINES[n], linewidth=0.8)
     axis.set_yscale("log")
     axis.set_ylabel(r"$|\Delta\sigma|/(N/2a)$")

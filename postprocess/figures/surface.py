@@ -180,10 +180,8 @@ def _draw(
     for n, curve in enumerate(column.curves):
         h, m = (1.0, 0.0) if ends is None else (values[curve.state] for values in ends)
         places = m + h * X
-        for part in parts(X):
-            axis.plot(
-                places[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
-            )
+        x, y = broken(X, lines[curve.state])
+        axis.plot(m + h * x, y, color=curve.look.colour, linestyle=curve.look.line)
         if exact is not None and found is not None:
             pick = picked(X, half, n, len(column.curves))
             axis.plot(
@@ -208,6 +206,14 @@ def picked(X: NDArray, half: float, n: int, curves: int, most: int = _MARKERS) -
     step = 2.0 * half / count
     wanted = -half + step * (np.arange(count) + (n + 0.5) / curves)
     return np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+
+
+def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
+    """Positions and values of a line that is broken at the edges of the punch, for one call of plot."""
+    gap = [np.nan]
+    pieces = [(X[part], values[part]) for part in parts(X) if not np.isnan(values[part]).all()]
+    xs, ys = ([one for piece in pieces for one in (piece[n], gap)] for n in (0, 1))
+    return np.concatenate([*xs, gap]), np.concatenate([*ys, gap])
 
 
 def parts(X: NDArray) -> tuple[NDArray, NDArray, NDArray]:

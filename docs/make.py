@@ -45,6 +45,7 @@ Words that `run.sh` knows besides the commands:
 |---|---|
 | `./run.sh test` | run all tests, those on two ranks included |
 | `./run.sh bench` | measure run time against error, see [Benchmarks](benchmarks.md) |
+| `./run.sh bench accuracy` | compute the tables of [Verification](verification.md) again |
 | `./run.sh docs` | write these reference pages and build all pages as HTML into `site/` |
 | `./run.sh -n RANKS COMMAND …` | run a command on MPI ranks of this machine, up to 16 a core |
 

@@ -13,7 +13,7 @@ from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.rule import Comparison, Rule, largest_of
-from galinx.postprocess.rules_of_ends import OF_ENDS
+from galinx.postprocess.rules_of_ends import OF_ENDS, extremes_of
 from galinx.postprocess.rules_of_layers import ON_LAYERS
 from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
@@ -195,6 +195,11 @@ RULES: Registry[Rule] = Registry(
             "σ_XX pointwise, over itself or the largest",
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
         ),
+        "extremes of sigma_XX": Rule(
+            "highest and lowest σ_XX, over the larger of them",
+            (*at.HIGHEST.values(), *at.LOWEST.values()), extremes_of(CLOSED_FORM), tolerances=1.0,
+            own_pressure=True,
+        ),
         "estimate of sigma_XX": Rule(
             "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,),
             largest_of(at.ESTIMATE_IN_PLANE), tolerances=1.0, own_pressure=True,
@@ -233,4 +238,5 @@ RULES: Registry[Rule] = Registry(
             (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",
         ),
     },
+    Rule,
 )  # fmt: skip

@@ -144,6 +144,8 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("yield within, right", yielding.REACH_RIGHT),
     ("depth of yield", yielding.DEPTH),
     ("waves in a stroke", {"": validity.CROSSINGS}),
+    ("flutter from, g > 0", {"": validity.FLUTTER["positive"]}),
+    ("flutter from, g < 0", {"": validity.FLUTTER["negative"]}),
     ("slip turned, left", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
     ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
     ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),

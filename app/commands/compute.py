@@ -88,7 +88,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
                 stop.too_late()
             progress.say("checking the archive")
             with clock("archive"):
-                writer.finish(attributes)
+                writer.finish(attributes, journal.about_to_publish)
             journal.complete()
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except UnwritableArchive as error:

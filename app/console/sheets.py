@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from galinx.app.console.streams import bare, plain
+from galinx.app.console.streams import bare, plain, width
 from galinx.postprocess.tables import Sheet
 
 
@@ -25,7 +25,7 @@ class _PlainConsole(Console):
 def new_console(file: Any = None, colours: bool = False) -> Console:
     """A console that guesses nothing about what numbers are, and wraps no line."""
     return _PlainConsole(
-        file=bare(file or sys.stdout), highlight=False, markup=False, soft_wrap=True,
+        file=bare(file or sys.stdout), highlight=False, markup=False, soft_wrap=True, width=width(),
         color_system="auto" if colours else None,
     )  # fmt: skip
 

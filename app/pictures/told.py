@@ -134,6 +134,12 @@ class Told:
         ]
 
 
+def drive_label(c: float, g: float, way: float) -> str:
+    """How a legend names a motion: its speed over c_s, σ_XY/σ_YY, and the way ±1 it goes along X."""
+    towards = f", towards ${'-+'[way > 0]}X$" * (c > 0.0 and way != 0)
+    return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
+
+
 def spread(values: Sequence[Any], most: int) -> list[Any]:
     """At most so many of some values, the first and the last among them, evenly between these."""
     if len(values) <= most:

@@ -16,9 +16,10 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
 from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Output, Scene
+from galinx.app.scene.sense import FRICTIONS
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+from galinx.postprocess.quantities.quantity import INTENSITIES
 
 
 @dataclass(frozen=True)
@@ -203,9 +204,10 @@ def _alone(state: OneState) -> OneState:
 def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
     """The scene with finite elements, at all its speeds that these can do, and those that are wanted.
 
-    All speeds share one mesh; with the same speeds and places it is that of a run.
+    All speeds share one mesh; with the same speeds and places it is that of a run. States are steady
+    ones, whatever else the scene asks for.
     """
-    mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
+    steady = tuple(name for name in scene.output.quantities if name not in FRICTIONS)
     every = order(scene).speeds
     possible = tuple(v for v in every if v in wanted or scene.solid.response(v).margin > 0.0)
     strokes = tuple(
@@ -216,7 +218,9 @@ def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
         scene,
         motion=replace(scene.motion, c=possible, speed=None, strokes=strokes),
         solve=replace(scene.solve, methods=("fem",)),
-        output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
+        output=replace(scene.output, quantities=steady) if steady else Output(quantities=(INTENSITIES,)),
+        slider=None,
+        time=None,
     )
 
 

@@ -177,6 +177,7 @@ class Solve:
     cuts: int
     sweep: str
     solver: str
+    assembler: str
     pressure: Any
 
     @property

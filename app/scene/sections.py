@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Any
 
-from galinx.app.run.methods import METHODS, MODES
+from galinx.app.run.methods import ASSEMBLERS, METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.layers import LayerSections
 from galinx.app.scene.materials import LIBRARY
@@ -184,6 +184,11 @@ _SOLVE_KEYS = {
     ),
     "solver": Key(
         Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
+    ),
+    "assembler": Key(
+        Choice(ASSEMBLERS), "assembler of matrices", "tensor",
+        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
+        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
     ),
     "pressure": Key(
         Pressure(), "σ_YY of the traction mode", "closed_form",

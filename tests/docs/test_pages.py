@@ -8,6 +8,7 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import h5py
 import pytest
 from examples import (
     DOCS,
@@ -66,6 +67,19 @@ def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
         if (found := fault(piece, told))
     ]
     assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if commands(page)], ids=name_of)
+def test_no_example_of_a_page_fails_at_its_defaults(page, outputs, folder):
+    outputs[page].result()
+    archives = sorted((folder / page.name).rglob("*.h5"))
+    verdicts = {path.name: _verdict(path) for path in archives}
+    assert "FAIL" not in verdicts.values(), verdicts
+
+
+def _verdict(path):
+    with h5py.File(path) as file:
+        return file.attrs["verdict"]
 
 
 @pytest.mark.parametrize("page", [README], ids=name_of)

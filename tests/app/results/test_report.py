@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from galinx.app.results.tabulated import curves, states_table
 from galinx.postprocess.page.symbols import markup
 
 CHROMIUM = shutil.which("chromium")
+CLOSED = {"solve.methods": ["closed_form"]}
 
 
 @pytest.fixture(scope="module")
@@ -168,6 +170,53 @@ def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
     assert told == [
         0, 5, width, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
     ]  # fmt: skip
+
+
+#: Clicks, drags, sorts, chooses and types into everything on a page.
+EVERYTHING = Path(__file__).with_name("everything.js").read_text(encoding="utf-8")
+
+
+def browsed(page, folder, script):
+    """Title of a page after a script at its end, and what its console says."""
+    probe = folder / "everything.html"
+    probe.write_text(page.replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+    done = subprocess.run(
+        [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1200,900",
+         f"--user-data-dir={folder / 'profile'}", "--enable-logging=stderr", "--dump-dom",
+         "--virtual-time-budget=60000", probe.as_uri()],
+        capture_output=True, text=True, timeout=200,
+    )  # fmt: skip
+    console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+    return json.loads(
+        html.unescape(re.findall("<title>(.*?)</title>", done.stdout, re.DOTALL)[0])
+    ), console
+
+
+#: Pages of all kinds: what they have differs.
+PAGES = {
+    "flat": ("tables4_5", CLOSED),
+    "friction alone": ("table1", {}),
+    "cylinder": ("cylinder", CLOSED | {"output.quantities": ["sif", "surface"], "output.map": None}),
+    "coating": ("coating", {"solve.methods": ["sie"], "output.quantities": ["surface", "interfaces"]}),
+    "slider": ("slider", {}),
+}  # fmt: skip
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")
+@pytest.mark.parametrize("name, si", [*((name, False) for name in PAGES), ("cylinder", True)])
+def test_everything_on_a_page_does_what_it_says(name, si, tmp_path):
+    result = computed(*PAGES[name])
+    result.report(tmp_path / "report.html", si=si)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    (faults, told), console = browsed(page, tmp_path, EVERYTHING)
+    assert not faults and not console and told["saved"] == "states.csv"
+    if "surface/X_over_a" not in result.data:
+        assert "left" not in told
+        return
+    assert told["left"] == pytest.approx(-1.0, abs=0.02) and told["right"] == pytest.approx(1.0, abs=0.02)
+    assert told["all"] == pytest.approx(0.0, abs=0.1) == told["double click"]
+    assert told["dragged"] == pytest.approx(-1.5, abs=0.1) == told["not dragged"]
+    assert told["drawn"] == 1  # of one method, for every state and quantity
 
 
 @pytest.mark.parametrize(

@@ -83,8 +83,8 @@ def worst(name: str, changes: dict[str, Any] | None = None) -> dict[str, float]:
 
 def row_of(name: str, columns: Iterable[str]) -> list[str]:
     """The row of a scene."""
-    found, tolerance = worst(name), galinx.template(name).solve.tolerance
-    return [f"`{name}`", short(tolerance), *(short(found.get(column)) for column in columns)]
+    errors, tolerance = worst(name), galinx.template(name).solve.tolerance
+    return [f"`{name}`", short(tolerance), *(short(errors.get(column)) for column in columns)]
 
 
 def scenes() -> str:
@@ -97,14 +97,14 @@ def others() -> str:
 
 def tolerances() -> str:
     """Estimated and true errors of K_I, |f| <= 1, both directions."""
-    asked = {"friction.mu_c": [0.3, 1.0], "output.quantities": ["friction", "sif"]}
+    changes = {"friction.mu_c": [0.3, 1.0], "output.quantities": ["friction", "sif"]}
     heads = ["tolerance", *(f"c = {c:g}: {what}" for c, what in product(SPEEDS, ("estimate", "true")))]
     rows = []
     for tolerance in TOLERANCES:
         row = [short(tolerance)]
         for c in SPEEDS:
-            found = worst("tables4_5", asked | {"motion.c": c, "solve.tolerance": tolerance})
-            row += [short(found["estimate"]), short(found["K_I"])]
+            errors = worst("tables4_5", changes | {"motion.c": c, "solve.tolerance": tolerance})
+            row += [short(errors["estimate"]), short(errors["K_I"])]
         rows.append(row)
     return markdown(heads, rows)
 
@@ -172,7 +172,7 @@ def extremes() -> str:
         return of_archive(Path(folder) / "stress.h5")
 
 
-#: A kind of random scenes, and what is said of it.
+#: A kind of random scenes, and its figures.
 _KIND = re.compile(r"([a-z ]+?) ([\d.]+ to [\d.]+, median .*?)(?:; (?=[a-z ]+ [\d.]+ to)|$)")
 
 
@@ -180,11 +180,11 @@ def of_archive(path: Path) -> str:
     rows, kinds = [], []
     with h5py.File(path) as file:
         for name in file:
-            told = list(file[f"{name}/verdicts"].asstr())
+            verdicts = list(file[f"{name}/verdicts"].asstr())
             if name == "random":  # the first is of each kind of scene
-                kinds = _KIND.findall(told.pop(0).partition("errors: ")[2])
-            rows.append((name, file[f"{name}/verdicts"].attrs["long_name"], "; ".join(told)))
-    return markdown(("row", "extremes", "said"), rows) + "\n\n" + markdown(
+                kinds = _KIND.findall(verdicts.pop(0).partition("errors: ")[2])
+            rows.append((name, file[f"{name}/verdicts"].attrs["long_name"], "; ".join(verdicts)))
+    return markdown(("row", "extremes", "result"), rows) + "\n\n" + markdown(
         ("random scenes", "estimate over true error: of K_I and σ_YY, of K_I alone, of stresses"), kinds
     )  # fmt: skip
 
@@ -232,16 +232,16 @@ def put(page: str, name: str, table: str) -> str:
         raise ValueError(
             f"the page has no table {name}: expected <!-- ./run.sh bench accuracy {name} -->"
         )
-    return place.sub(lambda found: found[1] + table + found[2], page)
+    return place.sub(lambda match: match[1] + table + match[2], page)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"{', '.join(TABLES)}; all by default")
-    asked = parser.parse_args().tables or list(TABLES)
-    if unknown := [name for name in asked if name not in TABLES]:
+    names = parser.parse_args().tables or list(TABLES)
+    if unknown := [name for name in names if name not in TABLES]:
         parser.error(f"no table {', '.join(unknown)}; expected one of {', '.join(TABLES)}")
-    for name in asked:
+    for name in names:
         print(f"table {name}", file=sys.stderr, flush=True)
         table = TABLES[name]()
         print(table, flush=True)

@@ -27,29 +27,31 @@ _linked: set[str] = set()
 
 def names(text: str) -> dict[str, int]:
     """Lines, from 1, of what a program names: functions, classes, and of these methods and fields."""
-    found: dict[str, int] = {}
+    lines: dict[str, int] = {}
 
     def look(body: list[ast.stmt], before: str) -> None:
         for node in body:
             if isinstance(node, ast.FunctionDef | ast.ClassDef):
-                found[before + node.name] = node.lineno
+                lines[before + node.name] = node.lineno
             if isinstance(node, ast.ClassDef):
                 look(node.body, f"{before}{node.name}.")
             targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
-            found.update({before + one.id: node.lineno for one in targets if isinstance(one, ast.Name)})
+            lines.update(
+                {before + name.id: node.lineno for name in targets if isinstance(name, ast.Name)}
+            )
 
     look(ast.parse(text).body, "")
-    return found
+    return lines
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Links to source files lead to their pages in the site."""
     up = "../" * page.url.count("/")
 
-    def link(found: re.Match[str]) -> str:
-        _linked.add(found[2])
-        shown = found[1].replace("_", "_<wbr>")
-        return f'<a href="{up}source/{found[2]}.html#{found[1]}"><code>{shown}</code></a>'
+    def link(match: re.Match[str]) -> str:
+        _linked.add(match[2])
+        name = match[1].replace("_", "_<wbr>")
+        return f'<a href="{up}source/{match[2]}.html#{match[1]}"><code>{name}</code></a>'
 
     return LINK.sub(link, markdown)
 

@@ -115,15 +115,15 @@ def test_the_page_has_the_accuracy_of_tables_4_and_5(accuracy, tables_run, monke
     """Errors are those of a run within a factor of three; below 1e-11 no digit of them lasts."""
     monkeypatch.setattr(accuracy.galinx, "compute", lambda _: tables_run)
     page = accuracy.PAGE.read_text(encoding="utf-8")
-    (shown,) = re.findall(r"^\| (`tables4_5` \| 1e-6 .*) \|$", page, re.MULTILINE)
-    shown, computed = shown.split(" | "), accuracy.row_of("tables4_5", accuracy.COMPARED)
-    assert shown[:2] == computed[:2] and len(shown) == len(computed) == 9
-    for one, other in zip(map(float, shown[2:]), map(float, computed[2:])):
-        assert max(one, other) < max(1e-11, 3.0 * min(one, other))
+    (row,) = re.findall(r"^\| (`tables4_5` \| 1e-6 .*) \|$", page, re.MULTILINE)
+    printed, computed = row.split(" | "), accuracy.row_of("tables4_5", accuracy.COMPARED)
+    assert printed[:2] == computed[:2] and len(printed) == len(computed) == 9
+    for old, new in zip(map(float, printed[2:]), map(float, computed[2:])):
+        assert max(old, new) < max(1e-11, 3.0 * min(old, new))
 
 
-def test_what_other_commands_say_becomes_tables(accuracy, tmp_path):
-    said = "\n".join(
+def test_output_of_other_commands_becomes_tables(accuracy, tmp_path):
+    printed = "\n".join(
         f"seed {seed}, {kind}: 9 s, pressure {p:.1e}, K_I {K:.1e} of 4.0e-07, "
         f"sigma_XX {σ:.1e} of 9.0e-07, interfaces 1.2e-07 of 9.3e-07"
         for seed, kind, p, K, σ in (
@@ -131,7 +131,7 @@ def test_what_other_commands_say_becomes_tables(accuracy, tmp_path):
             (0, "graded", 2.9e-7, 1e-10, 6e-8),
         )
     )  # fmt: skip
-    table = accuracy.of_stacks(said).splitlines()
+    table = accuracy.of_stacks(printed).splitlines()
     assert table[2] == "| uniform | 2 | 3e-7 | 1.4e-7 (4e-7) | 5.5e-8 (9e-7) | 1.2e-7 (9.3e-7) |"
     assert table[3] == "| some graded | 1 | 2.9e-7 | 1e-10 (4e-7) | 6e-8 (9e-7) | 1.2e-7 (9.3e-7) |"
     with h5py.File(tmp_path / "stress.h5", "w") as file:

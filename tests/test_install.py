@@ -133,7 +133,7 @@ def test_the_conda_environment_has_what_the_package_needs():
     assert {CONDA.get(name, name): least for name, least in needed.items()}.items() <= listed.items()
 
 
-def test_the_study_is_cited_alike_everywhere():
+def test_the_study_is_cited_everywhere():
     yaml = pytest.importorskip("yaml")
     (study,) = yaml.safe_load((HOME / "CITATION.cff").read_text(encoding="utf-8"))["references"]
     assert study["doi"] == "10.1007/s42452-020-03989-0" and study["year"] == 2021
@@ -143,12 +143,12 @@ def test_the_study_is_cited_alike_everywhere():
         assert study["title"] in " ".join((HOME / page).read_text(encoding="utf-8").split()), page
 
 
-def test_the_packages_metadata_tell_its_licence_and_its_links(names_and_site):
+def test_the_metadata_of_the_package_name_its_licence_and_its_links(names_and_site):
     _, site = names_and_site
-    told = next(Path(site).glob("*.dist-info/METADATA")).read_text(encoding="utf-8")
-    assert "License: MIT" in told and "License :: OSI Approved :: MIT License" in told
-    assert "Keywords: contact mechanics,tribology" in told.replace(", ", ",")
-    assert "https://doi.org/10.1007/s42452-020-03989-0" in told
+    metadata = next(Path(site).glob("*.dist-info/METADATA")).read_text(encoding="utf-8")
+    assert "License: MIT" in metadata and "License :: OSI Approved :: MIT License" in metadata
+    assert "Keywords: contact mechanics,tribology" in metadata.replace(", ", ",")
+    assert "https://doi.org/10.1007/s42452-020-03989-0" in metadata
     assert any(path.name == "LICENSE" for path in Path(site).rglob("LICENSE"))
 
 

@@ -48,10 +48,10 @@ def test_the_page_of_equations_names_code_and_tests_that_exist_for_each():
     sources = runpy.run_path(str(HOME / "docs" / "sources.py"))
     page = (HOME / "docs" / "equations.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([\d–, ]+) \|(.*)\|$", page, re.MULTILINE)
-    shown, faults = [], []
+    numbers_shown, faults = [], []
     for numbers, row in rows:
         for first, _, last in (part.partition("–") for part in numbers.split(", ")):
-            shown += range(int(first), int(last or first) + 1)
+            numbers_shown += range(int(first), int(last or first) + 1)
         links = sources["LINK"].findall(row)
         for name, file in links:
             path = HOME / f"{file}.py"
@@ -61,5 +61,5 @@ def test_the_page_of_equations_names_code_and_tests_that_exist_for_each():
         if not any(of_tests) or all(of_tests):
             faults.append(f"Eq {numbers}: expected code and a test")
     assert not faults, "\n".join(faults)
-    assert sorted(shown) == [*range(1, 59)]
+    assert sorted(numbers_shown) == [*range(1, 59)]
     assert page.count("](../") == sum(len(sources["LINK"].findall(row)) for _, row in rows)

@@ -40,8 +40,8 @@ def transform(punch, at):
         d = (ends[1:, None] + ends[:-1, None]) / 2.0 + half * x
         distances = (d, 2.0 - d) if edge < 0.0 else (2.0 - d, d)
         t = edge + np.sign(other) * d
-        left = (punch.σ_YY_by_distance(*distances) - punch.σ_YY(at)) / (t - at)
-        return float(np.sum(half * w * left))
+        regular = (punch.σ_YY_by_distance(*distances) - punch.σ_YY(at)) / (t - at)
+        return float(np.sum(half * w * regular))
 
     pole = punch.σ_YY(at) * np.log((1.0 - at) / (1.0 + at))
     return (over(-1.0, 1.0) + over(1.0, -1.0) + pole) / np.pi
@@ -56,11 +56,11 @@ def test_collocation_points_are_n_minus_1_zeros_with_opposite_exponents():
     punch, N = FlatPunch(FAST, FRICTION), 8
     with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
         t, w = roots_jacobi(N, punch.α, punch.β)
-    left = []
+    residuals = []
     for exponents in ((-punch.α, -punch.β), (-punch.β, -punch.α)):
         r, _ = roots_jacobi(N - 1, *exponents)
-        left.append(np.abs((w / (t - r[:, None])).sum(axis=1) / np.pi).max())
-    assert left[0] < 1e-12 and left[1] > 0.5
+        residuals.append(np.abs((w / (t - r[:, None])).sum(axis=1) / np.pi).max())
+    assert residuals[0] < 1e-12 and residuals[1] > 0.5
 
 
 def test_the_stiffness_over_the_load_has_the_unit_of_one_over_a_length():

@@ -5,6 +5,7 @@
 #   ./run.sh bench [-o DIR]            measure run time against error
 #   ./run.sh bench big [UNKNOWNS]      linear solvers on meshes of up to so many unknowns
 #   ./run.sh bench scaling             every step on one rank and on two
+#   ./run.sh bench assemblers          matrices by tensor products and by dolfinx
 #   ./run.sh bench accuracy [TABLE]    tables of docs/verification.md, computed again
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more

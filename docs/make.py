@@ -292,10 +292,11 @@ def _section(section: Any) -> list[str]:
         if isinstance(getattr(known.kind, "options", None), Registry)
     )
     own = {model: parameters(models[model]).keys() for model in alternatives}
-    common = {key: known for key, known in keys.items() if key not in own[next(iter(own))]}
+    first = own[next(iter(own))]
+    common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
     parts = [_table(heads, rows(common))]
     for model, keys in alternatives.items():
-        of_model = {key: known for key, known in keys.items() if key in own[model]}
+        of_model = {k: known for k, known in keys.items() if k in own[model] or known.stands_for}
         about = models[model].about
         what = f", {about}" * (about != model)
         parts += [f'With `{chosen} = "{model}"`{what}:\n', _table(heads, rows(of_model))]

@@ -27,12 +27,14 @@ class Sheet:
         columns: their heads, with units.
         rows: cells as text.
         notes: lines below.
+        words: are all cells words, which may take several lines?
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     notes: Sequence[str] = ()
+    words: bool = False
 
 
 #: Columns of the states' table after what tells states apart: (head, quantity, form).

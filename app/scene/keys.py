@@ -27,6 +27,7 @@ class Key:
         default: value of a key that is not given.
         note: what documentation says beyond ``about``.
         without: what documentation says instead of a default of None.
+        stands_for: a model's parameter that follows from this key; models without it do not have the key.
     """
 
     kind: Kind
@@ -34,6 +35,7 @@ class Key:
     default: Any = REQUIRED
     note: str = ""
     without: str = "none"
+    stands_for: str = ""
 
 
 class Section:
@@ -147,7 +149,8 @@ class ModelSection(Section):
         kind = self._models[model]
         own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
-        keys = {**own, self._chosen: chosen, **self._keys}
+        besides = {key: known for key, known in self._keys.items() if known.stands_for in ("", *own)}
+        keys = {**own, self._chosen: chosen, **besides}
         return keys | {"vary": self._variations(model)} if self._several else keys
 
     def _variations(self, model: str) -> Key:

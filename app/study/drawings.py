@@ -136,8 +136,8 @@ STRESSES = {
     "fig9": Stresses(
         "Fig 9. What σ₀ l/N does at X/L = 0.2, slow (SS) and at high speed (HS), with μ_C = 0.5: in "
         "FM1 friction is nearer to its full value, in FM2 it still points backward at 12 500/m and "
-        "forward above. In FM1 the pressure slants the more to X = -a; the study says, to the leading "
-        "end, which its printed Eq 25 would make of it.",
+        "forward above. In FM1 the more of it, the larger the pressure at X = -a, and the nearer the top "
+        "of the curve, the least pressure, to X = +a: the study says that it slants to the leading end.",
         MIDDLE | {PLACE: 0.2}, STROKE, (FM1, FM2), _SIGMA, VARIED[_SIGMA],
     ),
     "fig10": Stresses(

@@ -96,7 +96,7 @@ def mixed(trial: tuple[Any, Any], test: tuple[Any, Any], constants: Any) -> Any:
     return energy - p * ufl.tr(Gw) - q * ufl.tr(Gu) - compliance * p * q
 
 
-def gradient(u: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
+def gradient(u: Any, x: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
     """∇u along X and Y on a mesh that is drawn in a conformal chart of the plane X + pY.
 
     Times the chart's stretch and over the root of the plane's, which make ∫ … dX dY an integral over the
@@ -104,10 +104,11 @@ def gradient(u: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
 
     Args:
         u: displacement.
+        x: coordinates of the mesh.
         chart: see :class:`.chart.Chart`.
         plane: Re p and Im p.
     """
-    cos, sin = chart.rotation(ufl.SpatialCoordinate(u.ufl_domain()), ufl)
+    cos, sin = chart.rotation(x, ufl)
     turned = ufl.as_matrix([[cos, sin], [-sin, cos]])
     contracted = ufl.as_matrix([[1.0, plane[0]], [0.0, plane[1]]])
     return ufl.grad(u) * turned * contracted / ufl.sqrt(plane[1])
@@ -129,15 +130,16 @@ def weak_form(
         degree: of quadrature.
     """
     dx = ufl.dx(metadata={"quadrature_degree": degree})
+    x = ufl.SpatialCoordinate(spaces[0].mesh)
     trials, tests = ([of(space) for space in spaces] for of in (ufl.TrialFunction, ufl.TestFunction))
     if not form.pressure:
-        Gu, Gw = (gradient(of[0], chart, plane) for of in (trials, tests))
+        Gu, Gw = (gradient(of[0], x, chart, plane) for of in (trials, tests))
         return [[form.energy(Gu, Gw, constants) * dx]]
 
     def parts(functions: Sequence[Any]) -> list[tuple[Any, Any]]:
         u, p = functions
         still = ufl.as_matrix([[0.0, 0.0], [0.0, 0.0]])
-        return [(gradient(u, chart, plane), 0.0), (still, p / size)]
+        return [(gradient(u, x, chart, plane), 0.0), (still, p / size)]
 
     return [[form.energy(u, w, constants) * dx for u in parts(trials)] for w in parts(tests)]
 
@@ -155,8 +157,7 @@ def traction_form(
         degree: of quadrature.
     """
     ds = ufl.Measure("ds", subdomain_data=facets, metadata={"quadrature_degree": degree})
-    w = ufl.TestFunction(space)
-    x = ufl.SpatialCoordinate(w.ufl_domain())
+    w, x = ufl.TestFunction(space), ufl.SpatialCoordinate(space.mesh)
     left, right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
     return traction(left, right) * w[1] * stretch * ds(tag)
 

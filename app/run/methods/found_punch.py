@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
@@ -45,7 +45,7 @@ _NEAREST = 1e-6
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FoundAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
+    with reached(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
         yield FoundAtSpeed(ladder, error)
 
 

@@ -1,6 +1,7 @@
 """A contact with kinks at one degree, and what its error is measured on."""
 
 from dataclasses import replace
+from functools import cached_property
 from math import ceil, log
 from typing import Any
 
@@ -82,15 +83,25 @@ class OwnMeshes:
     Args:
         work: of all states.
         places: of the kinks over the half-width.
-        more: rings around these.
+        body: what slides over what.
 
     Attributes:
         plan: of all states.
     """
 
-    def __init__(self, work: Discretisation, places: NDArray, more: int) -> None:
-        self._work, self.plan = work, work.plan
+    def __init__(self, work: Discretisation, places: NDArray, body: Body) -> None:
+        self._work, self._places, self._body, self.plan = work, places, body, work.plan
+        more = rings_around_kinks(work.plan, body)
         self._mesh = work.own_mesh(with_kinks(work.plan.refinement, places, more))
+
+    @cached_property
+    def finer(self) -> "OwnMeshes":
+        """With cells for a tighter tolerance."""
+        return OwnMeshes(self._work.finer, self._places, self._body)
+
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+        self._work.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree."""

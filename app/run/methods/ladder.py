@@ -23,6 +23,9 @@ class Spaces(Protocol):
 
     def space(self, degree: int, cuts: int = 1) -> Space: ...
 
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+
 
 class Level(Protocol):
     """A solution at one degree; what it measures can be asked for after its release."""

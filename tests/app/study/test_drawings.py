@@ -6,7 +6,7 @@ formulas of their own.
 
 import numpy as np
 import pytest
-from support import computed
+from support import HOME, computed
 
 from galinx.app.study.drawings import of_study
 
@@ -257,3 +257,32 @@ def test_laws_stand_side_by_side_on_contact_stresses(drawings):
         for mark, one in zip(markers[:4], f):  # these know no speed
             x, y = mark.T
             np.testing.assert_allclose(y, stresses(x, one, HS)[column], rtol=1e-7, atol=1e-7)
+
+
+def test_what_leans_is_as_the_page_of_signs_says():
+    """The numbers of docs/signs.md, and the place where the pressure is least."""
+    ends = np.array([-0.9, 0.9]), np.array([-1.1, 1.1])
+    table = {
+        ("sigma", 12500.0, 0.2): (0.1967, -1.5496, -1.3706, 0.5824, -0.5130),
+        ("sigma", 50000.0, 0.2): (0.4323, -1.6531, -1.2641, 1.3799, -1.0456),
+        ("delta", 0.8, 0.4): (0.4611, -1.6654, -1.2513, 1.4853, -1.1052),
+        ("delta", 1.5, 0.4): (0.3750, -1.6284, -1.2898, 1.1754, -0.9236),
+    }
+    page = (HOME / "docs" / "signs.md").read_text(encoding="utf-8")
+    for (key, value, X), expected in table.items():
+        f = f_of(**(MIDDLE | {key: value}), motion="FM1", X=X)
+        numbers = (f, *stresses(ends[0], f, SS)[0], *stresses(ends[1], f, SS)[1])
+        np.testing.assert_allclose(numbers, expected, atol=6e-5)
+        assert "| {:.4f} | {:.4f} | {:.4f} | {:+.4f} | {:.4f} |".format(*expected) in page
+    x = np.linspace(-0.9, 0.9, 1801)
+    assert x[stresses(x, 0.660, HS)[0].argmax()] == pytest.approx(0.17, abs=2e-3)
+    differences = [
+        [
+            np.abs(
+                np.subtract(*(stresses(x, f_of(**REFERENCE, motion=m, X=at), SS)[0] for m, at in pair))
+            ).max()
+            for pair in ((("FM1", X), ("BM1", X)), (("FM1", X), ("BM1", 1.0 - X)))
+        ]
+        for X in (0.2, 0.5, 1.0)
+    ]
+    np.testing.assert_allclose(differences, [[0.44, 0.17], [0.47, 0.47], [0.0, 0.59]], atol=5e-3)

@@ -216,7 +216,7 @@ class MeasuredError:
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
     def _rate(self, word: str) -> Rate:
-        """What is counted on, or how changes fell over two degrees: from one to the next it may be luck."""
+        """What is counted on, or how changes fell over two degrees: over one it may be luck."""
         rate, changes, degree = self._usual(word), self._ladder.changes, self._ladder.degree
         earlier = changes.get(degree - _SEEN, {}).get(word)
         if not earlier:

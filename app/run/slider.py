@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from galinx.app.errors import BadInput
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import slider as rows
-from galinx.solvers.friction.slider import Ride, cycle, pull
+from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
 
 #: Sliders of a scene, times at which each is archived, and steps of the last cycle.
 MOST, TIMES, STEPS = 200, 4001, 1001
@@ -54,6 +54,7 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
         found.append({
             rows.POSITION.path: x, rows.VELOCITY.path: v, rows.FRICTION.path: f,
             rows.CYCLE_VELOCITY.path: cycle_v, rows.CYCLE_FRICTION.path: cycle_f,
+            rows.OUTCOME.path: outcome(ride, slider.drive_speed),
             rows.PERIOD.path: last.period, rows.SLIP.path: last.slip,
             rows.PEAK.path: last.peak, rows.LEAST.path: last.least,
         })  # fmt: skip

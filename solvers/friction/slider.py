@@ -146,6 +146,27 @@ def cycle(ride: Ride, drive_speed: float) -> Cycle:
     return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
 
 
+#: What becomes of a slider.
+STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
+    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
+    "no whole cycle yet",
+)  # fmt: skip
+#: Share of the drive's speed within which one is another: of steady sliding, and of a stop in a cycle.
+_STEADY, _STOPPED = 1e-3, 1e-6
+
+
+def outcome(ride: Ride, drive_speed: float) -> str:
+    """What has become of a slider at the end of a motion, in words, by the drive's speed [m/s]."""
+    last = cycle(ride, drive_speed)
+    if np.isfinite(last.period):
+        return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
+    if len(ride.crossings) > 1 or abs(ride.v[-1] / drive_speed - 1.0) < _STEADY:
+        return STEADY
+    if len(ride.crossings) == 0:
+        return STAYS
+    return ONE_SLIP if ride.v[-1] <= _STOPPED * drive_speed else SHORT
+
+
 def pull(
     slider: Slider, law: FrictionLaw, load: float, done: Callable[[float], None] = lambda share: None
 ) -> Ride:

@@ -171,8 +171,8 @@ def _sweep(data: dict[str, Any], scene: Scene, told: Told, choice: Choice) -> Sw
 def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Column]:
     """What an archive has one number a state of, but how good these are.
 
-    In units where they are asked for, and where every state has a half-width of its own: over that, numbers
-    of states could not be compared.
+    In units where they are asked for, and where every state has a half-width of its own: over that,
+    numbers of states could not be compared.
     """
     found = {}
     in_units = choice.in_si or contacts_of_states(data) is not None
@@ -181,17 +181,13 @@ def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Co
         if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
         by = next((of for of in rows if of != FEM), "")
-        told = (in_si(first, name, scene, data) if in_units else None) or as_archived(first, name)
-        larger = (
-            _LARGER.get(told.unit, (1.0, told.unit)) if told.unit != first.unit else (1.0, first.unit)
-        )
-        exact, fem = (
-            larger[0] * told.of(data[rows[of].path]) if of in rows else None for of in (by, FEM)
-        )
-        label = _label(first)
-        if told.unit != first.unit:
-            label = label.removesuffix(" over $a$")
-        found[name] = Column(label, unit(larger[1]).removeprefix(r"\,"), exact, fem, by)
+        told = in_si(first, name, scene, data) if in_units else None
+        if told is None or told.unit not in _LARGER:
+            told = as_archived(first, name)
+        factor, shown = _LARGER.get(told.unit, (1.0, told.unit))
+        exact, fem = (factor * told.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
+        label = _label(first).removesuffix(" over $a$" if told.unit != first.unit else "")
+        found[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
     return found
 
 

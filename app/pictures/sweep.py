@@ -184,9 +184,10 @@ def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Co
         told = in_si(first, name, scene, data) if in_units else None
         if told is None or told.unit not in _LARGER:
             told = as_archived(first, name)
-        factor, shown = _LARGER.get(told.unit, (1.0, told.unit))
+        other = told.unit != first.unit
+        factor, shown = _LARGER[told.unit] if other else (1.0, told.unit)
         exact, fem = (factor * told.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
-        label = _label(first).removesuffix(" over $a$" if told.unit != first.unit else "")
+        label = _label(first).removesuffix(" over $a$" if other else "")
         found[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
     return found
 

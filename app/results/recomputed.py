@@ -104,7 +104,12 @@ def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], lis
     for method in (CLOSED_FORM, SIE):
         if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
             continue
-        own = [quantity for quantity in plan.quantities if quantity.of and quantity.method == method]
+        # How good numbers are may be rounding alone.
+        own = [
+            quantity
+            for quantity in plan.quantities
+            if quantity.of and quantity.method == method and not quantity.accuracy
+        ]
         if method == CLOSED_FORM:
             own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
         methods = (method,) if method in plan.methods else ()

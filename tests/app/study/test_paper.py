@@ -64,11 +64,7 @@ def test_every_other_line_passes_and_each_can_fail(wrong):
     _, _, results = wrong
     _, checks = paper._judged(*results)
     assert [check.text for check in checks if not check.good] == []
-<<<<<<< HEAD
-    assert len(checks) == 17
-=======
     assert len(checks) == 18
->>>>>>> main
 
     def failing(**spoiled):
         names = ("study", "inside", "block", "tractions", "tensor", "dolfinx")

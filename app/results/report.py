@@ -15,6 +15,7 @@ from galinx.app.study.published import (
     intensities,
     intensity_rows,
     like_the_studys,
+    limit_of_steady_motion,
 )
 from galinx.postprocess.figures.canvas import embedded, in_a_page
 from galinx.postprocess.page import render
@@ -63,7 +64,7 @@ class Report:
     ) -> None:
         self._data, self._attributes, self._scene = data, attributes, scene
         self._sheets = _published(data, scene) if sheets is None else sheets
-        self._scaling = scaling(scene if si else None)
+        self._scaling = scaling(scene if si else None, data)
         self._pictures: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:
@@ -117,8 +118,12 @@ def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
     """The study's tables that the archive has all states of, for the study's solid."""
     if not like_the_studys(scene.solid):
         return []
-    found = {name: intensity_rows(name, data) for name in INTENSITIES}
-    return [intensities(name, rows) for name, rows in found.items() if rows]
+    a, found = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
+    return [
+        intensities(name, rows, limit_of_steady_motion(name, data, a))
+        for name, rows in found.items()
+        if rows
+    ]
 
 
 def _versions(attributes: dict[str, Any]) -> str:

@@ -246,6 +246,8 @@ def limit_of_steady_motion(name: str, data: dict[str, Any], half_width: float) -
         data: an archive with its states.
         half_width: a [m].
     """
+    if CROSSINGS.path not in data:
+        return ""
     often = data[CROSSINGS.path][data[states.SPEED.path] == published()[name]["c"]]
     if not often.size or not often.min() < FEW:
         return ""

@@ -75,11 +75,12 @@ class Report:
             png: lines as a file's bytes, where there is one already; else they are drawn for the page, as
                 maps always are, whose files are large.
         """
+        picture = {"caption": drawing.told, "pixels": drawing.pixels, "width": None}
         if png is None or drawing.pixels:
-            source = in_a_page(drawing.figure, drawing.pixels)
-        else:
-            source = embedded(png)
-        self._pictures.append({"source": source, "caption": drawing.told, "pixels": drawing.pixels})
+            picture["source"] = in_a_page(drawing.figure, drawing.pixels)
+        else:  # as wide as it would be if it were drawn for the page
+            picture |= {"source": embedded(png), "width": round(96.0 * drawing.figure.get_figwidth())}
+        self._pictures.append(picture)
 
     def text(self) -> str:
         """The page."""

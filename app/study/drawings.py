@@ -56,7 +56,7 @@ _PROBLEM = (
 )
 _PROCEDURE = (
     "Fig 3. From friction to stresses. Numbers are those of the study's equations. Finite elements are "
-    "given the friction coefficient alone; the integral equation judges them."
+    "given the friction coefficient alone, and compared with the integral equation."
 )
 _BLOCK = (
     "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a high, "

@@ -16,6 +16,7 @@ from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import colours, say
 from galinx.app.run.flow import compute
 from galinx.app.run.judge import limits
+from galinx.app.run.methods import ASSEMBLERS
 from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
@@ -62,8 +63,8 @@ _STROKE, _PLACE = "FM1", 0.8
 #: Polynomials of the expansion; one would do for a flat punch.
 _TERMS = 8
 
-#: Degree of the displacements that are printed with four digits.
-_DEGREE = 7
+#: Degree of the displacements that are printed with four digits, and of what both assemblers compute.
+_DEGREE, _ASSEMBLED = 7, 6
 
 
 @dataclass(frozen=True)
@@ -204,12 +205,21 @@ def _draw(
 
 
 def _beside() -> list[Scene]:
-    """The study's block, and Dahl's friction with the exact pressure as tractions, both in one state."""
+    """Scenes at the fast speed alone, whose results stand beside the study's.
+
+    The block, and Dahl's friction with the exact pressure as tractions, in one state each; and K_I of the
+    tables by either assembler on one mesh.
+    """
     found = []
     for name, words in (("box", ("sif",)), ("traction", ("sif", "surface"))):
         scene = scenes.read(SCENES / f"{name}.toml")
         motion = replace(scene.motion, c=(FAST,), strokes=("forward",), X_over_L=(_PLACE,))
         found.append(replace(scene, motion=motion, output=replace(scene.output, quantities=words)))
+    tables = scenes.read(SCENES / "tables4_5.toml")
+    motion, output = replace(tables.motion, c=(FAST,)), replace(tables.output, quantities=("sif",))
+    for name in ASSEMBLERS:
+        solve = replace(tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name)
+        found.append(replace(tables, motion=motion, solve=solve, output=output))
     return found
 
 
@@ -272,7 +282,7 @@ def _displacements(study: Computed) -> Sheet:
 
 
 def _judged(
-    study: Computed, inside: Computed, block: Computed, tractions: Computed
+    study: Computed, inside: Computed, block: Computed, tractions: Computed, *assembled: Computed
 ) -> tuple[Sheet, list[Check]]:
     """The methods beside each other, and every line of the verdict."""
     scene, data = study.scene, study.data
@@ -299,6 +309,10 @@ def _judged(
         Check(
             "Dahl's friction and the pressure as tractions: v,X under the punch over that beside it",
             tractions.worst("slope under the punch"), 1e-5,
+        ),
+        Check(
+            "K_I by dolfinx's own assembler on the same mesh at the same degree, relative",
+            _apart(*assembled), 1e-9,
         ),
     ]  # fmt: skip
     return _methods(study, block, off), checks
@@ -367,6 +381,12 @@ def _collocation(scene: Scene, data: dict[str, Any]) -> float:
         expanded = collocation.solve(scene.solid.response(c), float(data[of.RATIO.path][i]), _TERMS)
         worst.append(np.abs(expanded.K_I / data[of.K_I_BOTH.path][i] - 1.0).max())
     return float(max(worst))
+
+
+def _apart(one: Computed, other: Computed) -> float:
+    """Largest relative difference of K_I of finite elements, at both edges in all states."""
+    paths = (of.K_I_LEFT[FEM].path, of.K_I_RIGHT[FEM].path)
+    return float(max(np.abs(other.data[path] / one.data[path] - 1.0).max() for path in paths))
 
 
 def _raw(data: dict[str, Any]) -> float:

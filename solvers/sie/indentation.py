@@ -1,6 +1,7 @@
 """How deep a punch is, from the pressure below it: the surface's displacement by line loads.
 
-Line loads move the surface, by v,X = (n + g n₁₂) H[σ_YY] - g q σ_YY, so that at the left end of the contact
+Line loads move the surface, by v,X = (n + g n₁₂) H[σ_YY] - g q σ_YY, so that at the left end of the
+contact
 
     μ v(-1) = -(n + g n₁₂)/π ∫ σ_YY(t) log((1 + t)/D) dt + (g q/2) ∫ σ_YY(t) dt,
 
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from galinx.solvers.solids.line_loads import DATUM
 from galinx.solvers.solids.solid import Response
 
-#: Places of the tanh-sinh rule, and how far from the ends it begins: they cluster there, and meet no kink.
+#: Places of the tanh-sinh rule, and how far it goes towards the ends.
 _COUNT, _FAR = 400, 2.9
 
 

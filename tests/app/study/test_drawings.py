@@ -223,6 +223,14 @@ def test_loops_are_those_of_the_studys_panels(drawings):
     assert widths == sorted(widths, reverse=True) and len(set(widths)) == 4  # none hides another
 
 
+def test_the_scene_of_fig_6_is_drawn_where_its_lists_meet():
+    """Of laws that are no product of lists, each parameter is drawn where most laws have the others."""
+    (drawing,) = computed("fig6").drawings(figures=("friction",))
+    panels = drawing.figure.axes
+    assert [len(loops_of(axis)) for axis in panels] == [4, 3, 4] and "not shown" not in drawing.told
+    assert all(r"\mu_C = 0.5" in axis.get_title(loc="left") for axis in panels[1:])
+
+
 def test_the_block_has_the_studys_proportions(drawings):
     panel = drawings["fig4"].figure.axes[0]
     edges = np.concatenate([path.vertices for path in panel.collections[0].get_paths()])

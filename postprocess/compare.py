@@ -161,6 +161,18 @@ RULES: Registry[Rule] = Registry(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
         ),
+        "residual": Rule(
+            "residual of the integral equation at the closed form's pressure, relative",
+            (of.RESIDUAL[CLOSED_FORM],), largest_of(of.RESIDUAL[CLOSED_FORM]), limit=1e-8,
+        ),
+        "residual of finite elements": Rule(
+            "residual of the integral equation at the finite elements' pressure, relative",
+            (of.RESIDUAL[FEM],), largest_of(of.RESIDUAL[FEM]), tolerances=10.0,
+        ),
+        "residual inside": Rule(
+            "stresses inside against line loads and equilibrium, over the largest",
+            (at.RESIDUAL_INSIDE,), largest_of(at.RESIDUAL_INSIDE), limit=1e-8, own_pressure=True,
+        ),
         "K_I": Rule(
             "K_I at both ends, relative",
             (*of.K_I_LEFT.values(), *of.K_I_RIGHT.values()),

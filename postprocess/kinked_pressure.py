@@ -49,12 +49,17 @@ class KinkedPressure:
         cusp: float = 0.0,
     ) -> None:
         facets = facets_of(s, degree)
-        self._chart, self._kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
+        self._chart, self.kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
         self._known = [places_at_end(gap) for gap in gaps_of(kinks)]
         self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:
+        """Positions over a between which it is a polynomial but for the chart's stretch."""
+        return np.asarray(self._chart.surface_position(self._start[1:]))
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
         """At positions over a, (n,); NaN beside the contact."""
@@ -64,7 +69,7 @@ class KinkedPressure:
         for d, known, values, exponent in ends:
             near = (d > 0.0) & (d < known[0])
             found[near] = towards_end(d[near], known, values, exponent)
-        for number, at in enumerate(self._kinks if self._cusp else ()):
+        for number, at in enumerate(self.kinks if self._cusp else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)
                 near = (d >= 0.0) & (d < series.known.min())
@@ -75,14 +80,14 @@ class KinkedPressure:
     def largest(self) -> tuple[float, float]:
         """Largest pressure over N/(2a), and its place over a: nearer and nearer to the best nodes."""
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
-        r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self._kinks]))
+        r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         r = r[under_punch(r)]
         p = -self.σ_YY(r)
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
         found = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
         if self._cusp:
-            found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self._kinks)]
+            found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
         return max(found)
 
     def _nearer(self, low: float, high: float) -> tuple[float, float]:
@@ -90,7 +95,7 @@ class KinkedPressure:
         while step > _STEP:
             # Next to a kink it may have a cusp, which is no place that a grid would meet.
             r = np.linspace(low, high, _LOOKED_AT)
-            r = np.unique(np.append(r, self._kinks[(self._kinks > r[0]) & (self._kinks < r[-1])]))
+            r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
             p = -self.σ_YY(r)
             i, step = int(p.argmax()), (high - low) / (_LOOKED_AT - 1)
             low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
@@ -107,7 +112,7 @@ class KinkedPressure:
             number: of the kink.
             values: at positions over a, (n,).
         """
-        at = self._kinks[number]
+        at = self.kinks[number]
         if not self._cusp:
             return float(values(np.array([at]))[0])
         both = [(side, self._series(number, side)) for side in (-1.0, 1.0)]
@@ -116,8 +121,8 @@ class KinkedPressure:
 
     def _series(self, number: int, side: float) -> Series:
         """Of the pressure on one side of a kink."""
-        ends = np.concatenate([[-1.0], self._kinks, [1.0]])
-        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self._kinks[number])
+        ends = np.concatenate([[-1.0], self.kinks, [1.0]])
+        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
         return towards_cusp(float(gap), self._cusp)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:

@@ -32,9 +32,9 @@ from galinx.solvers.profiles import smooth
 from galinx.solvers.sie.indentation import indentation, places
 from galinx.solvers.solution import Places
 
-#: States that are computed again: of flat punches, of others, over layers, and where the largest stress
-#: is looked for; and numbers of them.
-_FLAT, _OTHERS, _LAYERED, _YIELD, _NUMBERS = 2000, 24, 4, 3, 1_000_000
+#: States that are computed again: under flat punches, smooth ones and ones with kinks, over layers, and
+#: where the largest stress is looked for; and numbers of them.
+_FLAT, _SMOOTH, _KINKED, _LAYERED, _YIELD, _NUMBERS = 2000, 24, 6, 4, 3, 1_000_000
 #: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
 #: apart which were solved with other frictions beside them.
 _SAME, _PLACE, _TOLERANCES = 1e-6, 1e-3, 10.0
@@ -100,7 +100,7 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
 
 def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
     """What is computed again: methods, states and quantities."""
-    count, states_looked_at = plan.states, _FLAT if plan.body.flat else _OTHERS
+    count, most_of_all = plan.states, _FLAT if plan.body.flat else _most(plan)
     for method in (CLOSED_FORM, SIE):
         if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
             continue
@@ -111,12 +111,17 @@ def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], lis
         largest = [quantity for quantity in own if quantity.asked_by == stresses.YIELD]
         others = [quantity for quantity in own if quantity not in largest]
         numbers = sum(int(np.prod(plan.shape(quantity))) for quantity in others)
-        most = min(states_looked_at, max(_NUMBERS // max(numbers, 1), _YIELD))
+        most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
         if method == SIE:
             most = _LAYERED
         for quantities, few in ((others, most), (largest, _YIELD)):
             if quantities:
                 yield methods, _spread(count, few), quantities
+
+
+def _most(plan: Plan) -> int:
+    """States at most whose closed form takes its time."""
+    return _SMOOTH if smooth(plan.body.profile) else _KINKED
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
@@ -189,7 +194,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
     data, fem, body = archive.data, plan.fem, plan.body
     if not fem or body.layered:
         return
-    some = _spread(plan.states, _OTHERS)
+    some = _spread(plan.states, _most(plan))
     yield from _of_invariants(archive, plan, some)
     slow = body.solid.limit() > max(plan.tasks.order.speeds)
     if (

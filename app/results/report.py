@@ -64,7 +64,7 @@ class Report:
     ) -> None:
         self._data, self._attributes, self._scene = data, attributes, scene
         self._sheets = _published(data, scene) if sheets is None else sheets
-        self._scaling = scaling(scene if si else None)
+        self._scaling = scaling(scene if si else None, data)
         self._pictures: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.in_plane import extreme
 from galinx.postprocess.quantities.quantity import (
+    ALONE,
     BESIDE,
     CLOSED_FORM,
     FEM,
@@ -85,6 +86,14 @@ ESTIMATE_INSIDE = Quantity(
     "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
     "from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
+    range=Range(at_least=0.0), accuracy=True,
+)  # fmt: skip
+
+RESIDUAL_INSIDE = Quantity(
+    "states/closed_form/residual_inside", "1",
+    "residual of stresses inside, their difference from sums of line loads at some of the points and "
+    "that of their resultants at a depth from equilibrium, over the largest",
+    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, compared=("residual inside",),
     range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 

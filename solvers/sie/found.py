@@ -4,8 +4,8 @@ Exact for parabolas and tilted flat punches, by quadrature for every other conve
 over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -91,6 +91,19 @@ class Contacts:
         found = np.empty((len(self.g), len(r)))
         for group in self.groups:
             found[group.rows] = group.pressure.σ_YY(group.off(r))
+        return found
+
+    def alike(self) -> Iterator[tuple[NDArray[np.int64], "Contacts", Sequence[float]]]:
+        """Numbers of states whose pressure is of one kind, these states, and kinks of their pressure."""
+        for group in self.groups:
+            own = replace(group, rows=np.arange(len(group.rows)))
+            yield group.rows, Contacts(self.response, self.g[group.rows], (own,)), group.cusps[0]
+
+    def pressure(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY, also next to where it is infinite, (states, points)."""
+        found = np.empty((len(self.g), len(r)))
+        for group in self.groups:
+            found[group.rows] = group.pressure.σ_YY(r)
         return found
 
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:

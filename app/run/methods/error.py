@@ -14,7 +14,16 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import AT_DEPTHS, SAFETY, SLOWER, Rate, before, of_degrees, remaining
+from galinx.postprocess.estimate import (
+    AT_DEPTHS,
+    SAFETY,
+    SLOWER,
+    SLOWEST,
+    Rate,
+    before,
+    of_degrees,
+    remaining,
+)
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.solvers.fem.space import Space
@@ -142,8 +151,9 @@ class MeasuredError:
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
-                pairs = (float(pair[i].max()) for pair in self._sample.values())
-                self.changes[degree] = max(pairs, default=0.0)
+                by_word = {word: float(pair[i].max()) for word, pair in self._sample.items()}
+                ladder.changes[degree] = by_word
+                self.changes[degree] = max(by_word.values(), default=0.0)
         tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(found[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
         errors = self._errors(found, probes)
@@ -206,6 +216,15 @@ class MeasuredError:
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
     def _rate(self, word: str) -> Rate:
+        """What is counted on, or how changes fell over two degrees: over one it may be luck."""
+        rate, changes, degree = self._usual(word), self._ladder.changes, self._ladder.degree
+        earlier = changes.get(degree - _SEEN, {}).get(word)
+        if not earlier:
+            return rate
+        ρ = min((changes[degree][word] / earlier) ** (1.0 / _SEEN), SLOWEST)
+        return Rate(max(ρ, rate.usual), max(ρ, rate.believed), rate.least)
+
+    def _usual(self, word: str) -> Rate:
         if word == AT_INTERFACES:
             return AT_DEPTHS
         if word != INTENSITIES:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from galinx.app.run.methods.closed_form import Punches
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.found import Contacts, Exponents, contacts
+from galinx.solvers.sie.residual import of_contact, of_field
 from galinx.solvers.solution import Surface, Turns
 
 #: Distance over a from an end or a kink from which on stresses are looked at.
@@ -47,6 +48,28 @@ class FoundPunches(Punches):
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
         return self._contacts.largest()
+
+    @cached_property
+    def residual(self) -> NDArray[np.float64]:
+        found, body, load = np.empty(len(self.g)), self.task.body, self.task.body.load
+        for rows, some, kinks in self._contacts.alike():
+            loaded = body.loaded(load[rows] if np.ndim(load) else load)
+            exponents = Exponents(some.of("α"), some.of("β"))
+            lengths = some.of("centre"), some.of("half_width")
+            found[rows] = of_contact(
+                self.task.response, some.g, exponents, loaded, some.pressure, lengths, kinks
+            )
+        return found
+
+    @cached_property
+    def residual_inside(self) -> NDArray[np.float64]:
+        found = np.empty(len(self.g))
+        for rows, some, kinks in self._contacts.alike():
+            found[rows] = of_field(
+                self.task.response, some.g, (some.of("α"), some.of("β")), some.pressure, some.inside,
+                self.task.places.points, kinks,
+            )  # fmt: skip
+        return found
 
     @cached_property
     def surface(self) -> Surface:

@@ -36,6 +36,7 @@ from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
+from galinx.solvers.sie.residual import of_contact
 from galinx.solvers.solution import Body, Surface
 
 #: Distance over a from a free end from which on stresses are looked at, the end itself besides.
@@ -269,6 +270,15 @@ class FoundPunches:
         value, top = largest(lambda x: -σ_YY(x), lambda i, x: -σ_YY(x)[i])
         infinite = ~self.found.free.all(axis=1)
         return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        found = self.found
+        return of_contact(
+            self.at.task.response, self.g, self.local, self.body, found.pressure.σ_YY,
+            (found.centre, found.half_width),
+        )  # fmt: skip
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

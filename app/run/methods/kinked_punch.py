@@ -98,6 +98,11 @@ class KinkedPunches(OnOwnMeshes):
         return values, places
 
     @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        return np.array([state.residual for state in self.found])
+
+    @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return np.array([state.level.contact.v0[0] for state in self.found])

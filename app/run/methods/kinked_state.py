@@ -22,6 +22,7 @@ from galinx.postprocess.near_ends import turns_at_ends
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
+from galinx.solvers.sie.residual import of_contact
 from galinx.solvers.solution import Surface, Turns
 
 
@@ -70,6 +71,18 @@ class KinkedState:
     def largest(self) -> tuple[float, float]:
         """Largest pressure over N/(2a), and its place over a."""
         return self.level.pressure.largest()
+
+    @cached_property
+    def residual(self) -> float:
+        """What the pressure leaves of the integral equation, relative."""
+        level, ends, one = self.level, self.ends, np.ones(1)
+        local = FlatPunch(self.task.response, level.contact.g)
+        left = of_contact(
+            self.task.response, level.contact.g, Exponents(local.α + 1.0, local.β + 1.0), self.task.body,
+            lambda r: level.pressure.σ_YY(r)[None], (ends.centre * one, ends.half_width * one),
+            level.pressure.kinks, level.pressure.breaks,
+        )  # fmt: skip
+        return float(left[0])
 
     def at(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (..., 2) over a, (3, ...)."""

@@ -232,7 +232,7 @@ def test_numbers_have_prefixes(value, shown):
 
 def test_in_si_the_table_and_the_curves_have_units(map_run):
     scene, data = map_run.scene, map_run.data
-    table = states_table(data, scaling(scene))
+    table = states_table(data, scaling(scene, data))
     columns = {column["csv"]: i for i, column in enumerate(table["data"]["columns"])}
     speed = columns["speed [m/s]"]
     assert [row[speed] for row in table["data"]["rows"]] == pytest.approx(data["states/speed"], rel=1e-11)
@@ -263,7 +263,8 @@ def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
 
 
 def test_in_si_curves_are_in_megapascals(surface_run):
-    plain, si = curves(surface_run.data), curves(surface_run.data, scaling(surface_run.scene))
+    data = surface_run.data
+    plain, si = curves(data), curves(data, scaling(surface_run.scene, data))
     assert plain["data"]["unit"] == "/ (N/2a)" and si["data"]["unit"] == "[MPa]"
     one, other = (np.array(found["data"]["values"][0][0], dtype=float) for found in (plain, si))
     np.testing.assert_allclose(other, 27.65 * one, rtol=1e-4)  # of five digits

@@ -10,7 +10,7 @@ from typing import Any
 from mpi4py import MPI
 
 from galinx.app.console.progress import Progress
-from galinx.app.plan.fem import FemPlan
+from galinx.app.plan.fem import DOLFINX, TENSOR, FemPlan
 from galinx.app.plan.task import Plan
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells
@@ -21,7 +21,11 @@ from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.space import Space
+
+#: Spaces by the assembler of their matrices.
+SPACES: dict[str, type[Space]] = {TENSOR: Space, DOLFINX: DolfinxSpace}
 
 #: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
 #: them are by about ε/√d. And the least, above rounding.
@@ -87,11 +91,7 @@ class Discretisation:
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree on a mesh; speeds share it, its form and its numbering."""
         if (degree, cuts) not in self._spaces:
-            with quiet_compiler():
-                self._spaces[degree, cuts] = Space(
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
-                    self.plan.terms, self.clock, self._progress.warn,
-                )  # fmt: skip
+            self._spaces[degree, cuts] = self.space_of(self.mesh(cuts), degree)
         return self._spaces[degree, cuts]
 
     def space_on(self, pattern: QuadMesh, degree: int) -> Space:
@@ -107,7 +107,7 @@ class Discretisation:
     def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
         """The space of a degree on such a mesh."""
         with quiet_compiler():
-            return Space(
+            return SPACES[self.plan.assembler](
                 *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
                 self.clock, self._progress.warn,
             )  # fmt: skip

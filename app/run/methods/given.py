@@ -38,7 +38,7 @@ def one_state(
     loaded = LoadedHalfPlane(work.space(degree), task.response)
     try:
         punch = FlatPunch(task.response, g)
-        loaded.load(punch.σ_YY_by_distance)
+        loaded.load(punch.traction)
         yield loaded.space, loaded.fields, np.array([1.0, g]), punch.σ_YY
     finally:
         loaded.destroy()
@@ -61,7 +61,7 @@ class LoadsAtDegree:
         self._columns: dict[float, int] = {}
         for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
-            self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
+            self.loaded.load(FlatPunch(task.response, value).traction)
         self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.loaded.fields))
 
     @property

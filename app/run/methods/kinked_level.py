@@ -138,6 +138,7 @@ class KinkedLevel:
         field: its displacement over N/(2μ), condensed.
         displacement: what is read off that.
         pressure: the contact's.
+        kinks: places at which it is finite for all that.
         factor: of the linear system, freed, with numbers of its work.
     """
 
@@ -165,6 +166,7 @@ class KinkedLevel:
             cusp(body.profile),
         )  # fmt: skip
         tips = places if jumps(body.profile) else np.empty(0)
+        self.kinks = places if not len(tips) else np.empty(0)
         self._task, self._across = _off(task, tips), _ACROSS[off_tips(_ACROSS, tips)]
         self.displacement = KinkedDisplacement(task, space, self.field, gaps_of(places), exponents)
         self._gauges = StressGauges(work, self._task, self.displacement.at_places_of)

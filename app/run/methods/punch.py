@@ -31,6 +31,7 @@ from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.states import ContactStates, Punch
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.residual import of_contact
 from galinx.solvers.solution import Body, Places, Surface
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
@@ -250,6 +251,11 @@ class Punches:
     def exponents(self) -> NDArray[np.float64]:
         """At X = a and X = -a, fitted from the raw pressure, (states, 2)."""
         return self.at.level.recovery.exponents(self.contact.normal)
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        return of_contact(self.at.task.response, self.g, self.local, self.body, self._pressure.σ_YY)
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

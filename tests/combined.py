@@ -54,7 +54,7 @@ LAYERS = {
 } | {
     f"{name} layer": [{"thickness": 0.9e-3} | {key: value for key, value in one.items()}]
     for name, one in SOLID.items()
-    if name not in ("isotropic", "sheet")
+    if name != "sheet"  # one solid cannot be in plane stress, the other in plane strain
 }  # fmt: skip
 
 #: Profiles by name, as in a scene's [punch]: at least one of every registered kind.

@@ -5,6 +5,8 @@
 #   ./run.sh bench [-o DIR]            measure run time against error
 #   ./run.sh bench big [UNKNOWNS]      linear solvers on meshes of up to so many unknowns
 #   ./run.sh bench scaling             every step on one rank and on two
+#   ./run.sh bench assemblers          matrices by tensor products and by dolfinx
+#   ./run.sh bench accuracy [TABLE]    tables of docs/verification.md, computed again
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
@@ -33,7 +35,7 @@ packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h
   libopenblas0-serial openmpi-bin gcc libc6-dev)
 docs_packages=(mkdocs libjs-mathjax)
 test_packages=(python3-pytest python3-pytest-xdist python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
-  python3-vtk9 python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel
+  python3-vtk9 chromium python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel
   "${docs_packages[@]}")
 
 missing() { # the packages of the arguments that are not installed

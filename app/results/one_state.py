@@ -5,6 +5,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app import ranks
@@ -163,6 +164,41 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
         return in_physical_plane(
             found.space, response, found.fields, found.weights, half_width, body.displacement
         )
+
+
+def under_punch(
+    scene: Scene, numbers: Sequence[int], degree: int | None = None
+) -> tuple[NDArray, NDArray]:
+    """Displacements of states under the punch; not collective, of one rank only.
+
+    Args:
+        scene: the scene.
+        numbers: of the states, as in :func:`chosen`.
+        degree: polynomial degree; None for that which the scene's tolerance suggests.
+
+    Returns:
+        Positions over a, (n,), and u and v [m] relative to the surface 100 a away, (states, 2, n).
+
+    Raises:
+        BadInput: no such state, or finite elements have no answer there.
+        SolveError: the equations could not be solved.
+    """
+    X, fields = np.empty(0), []
+    for one in solved([_alone(state) for state in chosen(scene, numbers, [degree] * len(numbers))]):
+        nodes = one.space.contact
+        X = one.space.chart.surface_position(nodes.s)
+        at_nodes = np.empty((2, len(nodes.s)))
+        for i in (0, 1):
+            values = [field.getValues(nodes.dofs(i)) for field in one.fields]
+            at_nodes[i, nodes.owned] = scene.body.displacement * (one.weights @ np.array(values))
+        fields.append(at_nodes)
+    return X, np.array(fields)
+
+
+def _alone(state: OneState) -> OneState:
+    """The same with a mesh that no other rank shares."""
+    assert state.plan.fem
+    return replace(state, plan=replace(state.plan, fem=replace(state.plan.fem, shared_speeds=True)))
 
 
 def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:

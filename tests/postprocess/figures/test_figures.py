@@ -115,10 +115,12 @@ def test_an_inset_goes_where_no_curve_is():
 
 def test_the_studys_figures_are_legible(study_run):
     shown = list(of_study(study_run.data, study_run.scene))
-    assert [drawing.name for drawing in shown] == [f"fig{n}" for n in (2, 5, 6, 7, 8, 9, 10)]
+    named = [f"fig{n}" for n in range(1, 11)]
+    assert [drawing.name for drawing in shown] == [*named, "sinusoidal", "laws"]
     legible(shown)
     widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
-    assert widths == {3.5, 7.0}
+    assert widths == {3.5, 5.0, 7.0}
+    assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0  # of a page, in mm
 
 
 def test_what_is_not_legible_is_found():

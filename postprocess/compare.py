@@ -13,7 +13,7 @@ from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities import yielding as to
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
 from galinx.postprocess.rule import Comparison, Rule, largest_of
-from galinx.postprocess.rules_of_ends import OF_ENDS
+from galinx.postprocess.rules_of_ends import OF_ENDS, extremes_of
 from galinx.postprocess.rules_of_layers import ON_LAYERS
 from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
@@ -161,6 +161,18 @@ RULES: Registry[Rule] = Registry(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
         ),
+        "residual": Rule(
+            "residual of the integral equation at the closed form's pressure, relative",
+            (of.RESIDUAL[CLOSED_FORM],), largest_of(of.RESIDUAL[CLOSED_FORM]), limit=1e-8,
+        ),
+        "residual of finite elements": Rule(
+            "residual of the integral equation at the finite elements' pressure, relative",
+            (of.RESIDUAL[FEM],), largest_of(of.RESIDUAL[FEM]), tolerances=10.0,
+        ),
+        "residual inside": Rule(
+            "stresses inside against line loads and equilibrium, over the largest",
+            (at.RESIDUAL_INSIDE,), largest_of(at.RESIDUAL_INSIDE), limit=1e-8, own_pressure=True,
+        ),
         "K_I": Rule(
             "K_I at both ends, relative",
             (*of.K_I_LEFT.values(), *of.K_I_RIGHT.values()),
@@ -194,6 +206,11 @@ RULES: Registry[Rule] = Registry(
         "sigma_XX": Rule(
             "σ_XX pointwise, over itself or the largest",
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
+        ),
+        "extremes of sigma_XX": Rule(
+            "highest and lowest σ_XX, over the larger of them",
+            (*at.HIGHEST.values(), *at.LOWEST.values()), extremes_of(CLOSED_FORM), tolerances=1.0,
+            own_pressure=True,
         ),
         "estimate of sigma_XX": Rule(
             "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,),
@@ -233,4 +250,5 @@ RULES: Registry[Rule] = Registry(
             (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",
         ),
     },
+    Rule,
 )  # fmt: skip

@@ -5,17 +5,18 @@ piecewise polynomial that has the nodal forces is as good as they are; towards t
 local analysis says.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.near_ends import places_at_end, towards_cusp, towards_end
+from galinx.postprocess.near_ends import Series, places_at_end, towards_cusp, towards_end
 from galinx.postprocess.pressure import density_of_forces, facets_of, lagrange, reference_nodes
 from galinx.solvers.contact import under_punch
 
-#: Places at which a largest pressure is looked for at a time; steps between them that are small enough.
-_LOOKED_AT, _STEP = 81, 2e-5
+#: Most tops that are looked at more nearly; places at a time; steps between them that are small enough.
+_TOPS, _LOOKED_AT, _STEP = 4, 41, 2e-5
 
 
 def gaps_of(kinks: NDArray) -> tuple[float, float]:
@@ -48,12 +49,17 @@ class KinkedPressure:
         cusp: float = 0.0,
     ) -> None:
         facets = facets_of(s, degree)
-        self._chart, self._kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
+        self._chart, self.kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
         self._known = [places_at_end(gap) for gap in gaps_of(kinks)]
         self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:
+        """Positions over a between which it is a polynomial but for the chart's stretch."""
+        return np.asarray(self._chart.surface_position(self._start[1:]))
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
         """At positions over a, (n,); NaN beside the contact."""
@@ -63,31 +69,61 @@ class KinkedPressure:
         for d, known, values, exponent in ends:
             near = (d > 0.0) & (d < known[0])
             found[near] = towards_end(d[near], known, values, exponent)
+        for number, at in enumerate(self.kinks if self._cusp else ()):
+            for side in (-1.0, 1.0):
+                series, d = self._series(number, side), side * (r - at)
+                near = (d >= 0.0) & (d < series.known.min())
+                if near.any():
+                    found[near] = series.through(self._piecewise(at + side * series.known))(d[near])
         return found
 
     def largest(self) -> tuple[float, float]:
-        """Largest pressure over N/(2a), and its place over a, by looking nearer and nearer."""
-        low, high, step = -1.0, 1.0, 1.0
-        while step > _STEP:
-            # Next to a kink it may have a cusp, which is no place that a grid would meet.
-            r = np.linspace(low, high, _LOOKED_AT)[1:-1]
-            r = np.unique(np.append(r, self._kinks[(self._kinks > r[0]) & (self._kinks < r[-1])]))
-            p = -self.σ_YY(r)
-            i, step = int(p.argmax()), (high - low) / (_LOOKED_AT - 1)
-            low, high = max(r[i] - 2.0 * step, -1.0), min(r[i] + 2.0 * step, 1.0)
-        found = [(float(p[i]), float(r[i]))]
+        """Largest pressure over N/(2a), and its place over a: nearer and nearer to the best nodes."""
+        nodes = self._start[:, None] + self._length[:, None] * self._nodes
+        r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
+        r = r[under_punch(r)]
+        p = -self.σ_YY(r)
+        tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+        tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
+        found = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
         if self._cusp:
-            found += [(self._at_cusp(i), float(kink)) for i, kink in enumerate(self._kinks)]
+            found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
         return max(found)
 
-    def _at_cusp(self, number: int) -> float:
-        """The pressure at a kink, from both sides: no polynomial has a cusp."""
-        at, ends = self._kinks[number], np.concatenate([[-1.0], self._kinks, [1.0]])
-        found = []
-        for side, other in ((-1.0, ends[number]), (1.0, ends[number + 2])):
-            known, weights = towards_cusp(abs(other - at), self._cusp)
-            found.append(-float(weights @ self._piecewise(at + side * known)))
-        return float(np.mean(found))
+    def _nearer(self, low: float, high: float) -> tuple[float, float]:
+        step = 1.0
+        while step > _STEP:
+            # Next to a kink it may have a cusp, which is no place that a grid would meet.
+            r = np.linspace(low, high, _LOOKED_AT)
+            r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
+            p = -self.σ_YY(r)
+            i, step = int(p.argmax()), (high - low) / (_LOOKED_AT - 1)
+            low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
+        return float(p[i]), float(r[i])
+
+    def at_kink(self, number: int) -> float:
+        """σ_YY over N/(2a) at a kink."""
+        return self.limit_at_kink(number, self._piecewise)
+
+    def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
+        """A stress or strain at a kink, by the limit from both sides where it has a cusp there.
+
+        Args:
+            number: of the kink.
+            values: at positions over a, (n,).
+        """
+        at = self.kinks[number]
+        if not self._cusp:
+            return float(values(np.array([at]))[0])
+        both = [(side, self._series(number, side)) for side in (-1.0, 1.0)]
+        limits = [series.through(values(at + side * series.known))(np.zeros(1)) for side, series in both]
+        return float(np.mean(limits))
+
+    def _series(self, number: int, side: float) -> Series:
+        """Of the pressure on one side of a kink."""
+        ends = np.concatenate([[-1.0], self.kinks, [1.0]])
+        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
+        return towards_cusp(float(gap), self._cusp)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         at = self._chart.surface_coordinate(r)

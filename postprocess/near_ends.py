@@ -4,9 +4,13 @@ By the local analysis they are smooth functions there, one of them times a power
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from galinx.solvers.solution import Surface, Turns
 
 #: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
 #: there, and the degree of the polynomial through them.
@@ -41,6 +45,9 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
 _SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (1e-3, 5e-2), (24, 12), 3
+#: Distance over a from an end within which stresses beside it tell what they are at it; singular values
+#: below which terms are one.
+_BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
 #: Powers of the distance, over d^a, with which solids graded from the surface on add logarithms.
 _LOGS = (1.0, 2.0)
 #: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more
@@ -81,16 +88,70 @@ def _two_series(
     return known, terms, np.linalg.pinv(terms(known))
 
 
-def towards_cusp(gap: float, exponent: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distances (m,) from a kink at which the pressure is to be known, and what multiplies it there to
-    give that at the kink, (m,).
+@dataclass(frozen=True)
+class Series:
+    """A(d) + d^a B(d), A and B smooth, from what it is at some distances d.
+
+    Attributes:
+        known: these distances over a, (m,).
+        terms: the two series' terms at other distances, of (n,) (n, terms).
+        amplitudes: what gives the terms' amplitudes by values at these, (terms, m).
+    """
+
+    known: NDArray[np.float64]
+    terms: Callable[[NDArray], NDArray]
+    amplitudes: NDArray[np.float64]
+
+    def by_known(self, d: NDArray) -> NDArray[np.float64]:
+        """What multiplies values at the known distances to give those at others, (n, m)."""
+        return np.asarray(self.terms(d) @ self.amplitudes)
+
+    def through(self, values: NDArray) -> Callable[[NDArray], NDArray]:
+        """The sum by distance, from its values at the known ones, (m,)."""
+        return lambda d: self.by_known(d) @ values
+
+
+def towards_cusp(gap: float, exponent: float) -> Series:
+    """Pressure or slopes next to a kink under which they have a cusp.
 
     Args:
         gap: distance of the next kink or end, over a.
         exponent: of the distance from the kink, in (0, 1).
     """
-    known, terms, amplitudes = _two_series(gap, _SEEN_AT_CUSP, exponent)
-    return known, (terms(np.zeros(1)) @ amplitudes)[0]
+    return Series(*_two_series(gap, _SEEN_AT_CUSP, exponent))
+
+
+def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[np.float64]:
+    """σ_XX at the ends of contacts by the limit from beside them, NaN at sharp ones, (states, 2).
+
+    Args:
+        X: positions over a, (n,).
+        σ_XX: there, (states, n).
+        exponents: of the pressure at the left and the right end, (states, 2).
+    """
+    found = np.full(exponents.shape, np.nan)
+    for i, side in enumerate((-1.0, 1.0)):
+        d = side * X - 1.0
+        beside = (d > 0.0) & (d < _BESIDE_END)
+        for row in np.flatnonzero(exponents[:, i] > 0.0):
+            a = exponents[row, i]
+            x = d[beside] / _BESIDE_END
+            terms = np.column_stack([np.ones_like(x), x, x**a, x ** (1.0 + a)])
+            found[row, i] = np.linalg.lstsq(terms, σ_XX[row, beside], rcond=_NO_DIGIT)[0][0]
+    return found
+
+
+def turns_at_ends(surface: Surface, local: Any) -> Turns:
+    """Stresses of states at both ends, NaN at sharp ones.
+
+    Args:
+        surface: of the states.
+        local: exponents α at X = a and β at X = -a, (states,).
+    """
+    exponents = np.column_stack([local.β, local.α])
+    σ_XX = in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
+    none = np.where(np.isnan(σ_XX), np.nan, 0.0)
+    return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
 
 
 def slopes_towards_ends(

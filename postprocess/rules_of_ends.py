@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import strata as on_layers
+from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.postprocess.rule import Rule
 
@@ -24,6 +26,18 @@ def _largest_pressure(other: str) -> Callable[[dict[str, Any], Any], float | Non
         fem, exact = (data[of.LARGEST[method].path] for method in (FEM, other))
         off = np.abs(fem / exact - 1.0)
         return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
+
+    return measure
+
+
+def extremes_of(other: str) -> Callable[[dict[str, Any], Any], float]:
+    """The measure of highest and lowest in-plane stresses, against another method."""
+
+    def measure(data: dict[str, Any], _: Any) -> float:
+        rows = (at.HIGHEST, at.LOWEST) if other == CLOSED_FORM else (on_layers.HIGHEST, on_layers.LOWEST)
+        exact = np.array([data[row[other].path] for row in rows])
+        fem = np.array([data[row[FEM].path] for row in (at.HIGHEST, at.LOWEST)])
+        return float((np.abs(fem - exact) / np.abs(exact).max(axis=0)).max())
 
     return measure
 

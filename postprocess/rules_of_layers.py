@@ -10,6 +10,7 @@ from galinx.postprocess.quantities import strata as on_layers
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import FEM, SIE, Quantity
 from galinx.postprocess.rule import Rule, largest_of
+from galinx.postprocess.rules_of_ends import extremes_of
 from galinx.solvers.contact import under_punch
 
 #: Share of the larger intensity, or of the mean pressure, below which the other is not measured against
@@ -91,6 +92,11 @@ ON_LAYERS: dict[str, Rule] = {
         "σ_XX against the integral equation, over itself or the largest",
         (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
         tolerances=1.0, own_pressure=True,
+    ),
+    "extremes of sigma_XX over layers": Rule(
+        "highest and lowest σ_XX against the integral equation, over the larger of them",
+        (at.HIGHEST[FEM], at.LOWEST[FEM], on_layers.HIGHEST[SIE], on_layers.LOWEST[SIE]),
+        extremes_of(SIE), tolerances=1.0, own_pressure=True,
     ),
     "estimate of the integral equation": Rule(
         "estimated error of the integral equation over layers, relative",

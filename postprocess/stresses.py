@@ -5,8 +5,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import from_edge
-
 
 def flatness(surface: Any) -> NDArray[np.float64]:
     """Largest |v,X| for |X| <= 0.9a over the largest for |X| >= 1.1a, dimensionless, (states,).
@@ -17,16 +15,6 @@ def flatness(surface: Any) -> NDArray[np.float64]:
     X = np.abs(surface.places.X)
     under, beside = (np.abs(surface.v_X[:, part]).max(axis=1) for part in (X <= 0.9, X >= 1.1))
     return under / beside
-
-
-def away_from_edges(X: NDArray, values: NDArray) -> NDArray[np.float64]:
-    """Values further than 0.01 a from the punch's edges, at which stresses are singular.
-
-    Args:
-        X: positions over a, (n,).
-        values: there, (states, n).
-    """
-    return values[:, from_edge(X) > 0.01]
 
 
 def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) -> NDArray[np.float64]:

@@ -28,12 +28,14 @@ class Sheet:
         columns: their heads, with units.
         rows: cells as text.
         notes: lines below.
+        words: are all cells words, which may take several lines?
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     notes: Sequence[str] = ()
+    words: bool = False
 
 
 #: Columns of the states' table after what tells states apart: (head, quantity, form).
@@ -143,6 +145,8 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("yield within, right", yielding.REACH_RIGHT),
     ("depth of yield", yielding.DEPTH),
     ("waves in a stroke", {"": validity.CROSSINGS}),
+    ("flutter from, g > 0", {"": validity.FLUTTER["positive"]}),
+    ("flutter from, g < 0", {"": validity.FLUTTER["negative"]}),
     ("slip turned, left", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
     ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
     ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),

@@ -184,6 +184,21 @@ class Body:
 
 
 @dataclass(frozen=True)
+class Turns:
+    """Stresses by their limits at places on the surface where they have a power of the distance.
+
+    That is at free ends of a contact, and under kinks of the punch: no sample meets a top there.
+
+    Attributes:
+        X: the places over a, (states, k).
+        σ: σ_XX, σ_YY, σ_XY there, (3, states, k).
+    """
+
+    X: NDArray[np.float64]
+    σ: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Surface:
     """Stresses on the surface Y = 0.
 
@@ -193,6 +208,7 @@ class Surface:
         σ_XX: in-plane stress, (states, n).
         raw: contact stress by which no exponent is assumed; finite elements alone have it.
         v_X: slopes μ v,X; finite elements alone have them.
+        turns: stresses by the limit; None where they are infinite at both ends, and nowhere cusped.
     """
 
     places: Places
@@ -200,6 +216,7 @@ class Surface:
     σ_XX: NDArray[np.float64]
     raw: NDArray[np.float64] | None = None
     v_X: NDArray[np.float64] | None = None
+    turns: Turns | None = None
 
 
 class Solution(Protocol):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from galinx.app.plan.fem import FemPlan, plan_fem
+from galinx.app.plan.fem import FemPlan, check_assembler, plan_fem
 from galinx.app.plan.limits import (
     check_found,
     check_layers,
@@ -28,7 +28,7 @@ from galinx.app.scene.sense import FRICTIONS, oddities
 from galinx.meshes import store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
 from galinx.postprocess.quantities import strata as layers
-from galinx.postprocess.quantities.quantity import LOCAL, SWEPT
+from galinx.postprocess.quantities.quantity import ALONE, LOCAL, SWEPT
 from galinx.postprocess.yielding.strength import places as yield_places
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.linear import LinearPressure
@@ -62,6 +62,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
         check_size(body.loaded(load), methods)
     check_layers(scene, body, methods)
     check_found(scene, body, methods)
+    check_assembler(scene)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
@@ -76,7 +77,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
         responses = [body.response(c) for c in known.speeds]
         fem = plan_fem(scene, responses, _asked(scene, places), friction.g)
         warnings += warnings_of(fem)
-    modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep))
+    modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     plan = Plan(
@@ -175,12 +176,17 @@ def surface_grid() -> np.ndarray:
     return np.unique(np.concatenate([-right, right]))
 
 
+#: Distance over a to which interfaces are looked at, and beyond which stresses only fall.
+_FARTHEST = 40.0
+
+
 def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """Depths of interfaces over a, and positions along them: as fine at the edges as these are near."""
+    """Depths of interfaces over a, and positions along them: as fine at the edges as these are near, and
+    so far that a largest stress behind the punch is among them."""
     if not isinstance(body.solid, Layered):
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
-    far = np.geomspace(5.0, max(6.0, 5.0 * depths[-1]), 33)
+    far = np.geomspace(5.0, max(_FARTHEST, 5.0 * depths[-1]), 49)
     X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0, -far, far])
     return depths, np.unique(np.round(X, 9))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.sie.found import Exponents
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Body, Surface, Turns
 
 
 def under_loads(states: Callable[..., Any], body: Body, g: NDArray, load: NDArray | None) -> Any:
@@ -103,6 +103,16 @@ class Alike:
         return self._once.tangential_force[self._of]
 
     @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        return self._once.residual[self._of]
+
+    @property
+    def residual_inside(self) -> NDArray[np.float64]:
+        """How far stresses inside are from line loads and equilibrium, relative, (states,)."""
+        return self._once.residual_inside[self._of]
+
+    @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation over N/(2μ), (states,)."""
         return self._once.v0[self._of]
@@ -124,7 +134,8 @@ class Alike:
         raw, v_X = (
             None if values is None else values[self._of] for values in (found.raw, found.v_X)
         )  # fmt: skip
-        return Surface(found.places, found.σ_YY[self._of], found.σ_XX[self._of], raw, v_X)
+        turns = found.turns and Turns(found.turns.X[self._of], found.turns.σ[:, self._of])
+        return Surface(found.places, found.σ_YY[self._of], found.σ_XX[self._of], raw, v_X, turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

@@ -55,7 +55,9 @@ class TooSmall(ValueError):
     """A figure does not fit on the size that is asked for."""
 
 
-def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tuple[Figure, NDArray]:
+def panels(
+    rows: int, columns: int, size: Size, high: float, room: Room, heights: Sequence[float] | None = None
+) -> tuple[Figure, NDArray]:
     """A figure with a grid of axes, (rows, columns).
 
     Args:
@@ -63,6 +65,7 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
         size: of the figure.
         high: height of a panel over its width where ``size`` has no height.
         room: around and between.
+        heights: of the rows over each other, all the same if not given, (rows,).
 
     Raises:
         TooSmall: nothing could be seen; the message says how large the figure has to be.
@@ -79,7 +82,8 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
     height = above + rows * tall
     figure = Figure((size.width, height))
     FigureCanvasAgg(figure)
-    place = {
+    place: dict[str, Any] = {
+        "height_ratios": heights,
         "left": room.left / size.width, "right": 1.0 - room.right / size.width,
         "bottom": room.bottom / height, "top": 1.0 - room.top / height,
         "wspace": room.across / wide, "hspace": room.down / tall,
@@ -119,6 +123,16 @@ class Legend:
         self._columns = ceil(len(handles) / max(1, rows))
         #: Room that it needs [in].
         self.height = rows * _LINE + 0.08 if handles else 0.0
+
+    def below(self, axis: Axes, lowered: float) -> None:
+        """Draw it under a panel, so far [in]."""
+        if self._handles:
+            figure = axis.get_figure()
+            place = -lowered / (axis.get_position().height * figure.get_figheight())
+            axis.legend(
+                handles=self._handles, ncols=self._columns, loc="upper center",
+                bbox_to_anchor=(0.5, place), borderaxespad=0.0, columnspacing=1.4, labelspacing=0.2,
+            )  # fmt: skip
 
     def put(self, figure: Figure) -> None:
         """Draw it at the foot of a figure."""
@@ -165,24 +179,34 @@ def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
     data = BytesIO()  # matplotlib leaves half of a figure on a full disk
     # Without a date a figure that is drawn again is the same file.
     metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
-    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata)
+    # Pixels that are nearly all white are packed as well at once as after a search.
+    packed = {"pil_kwargs": {"compress_level": 1}} if ending == "png" else {}
+    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, **packed)
     figure.set_layout_engine("none")  # laid out once
     return data.getvalue()
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
     """Write figures by name into a folder in the usual formats; none where one may not be written.
+
+    Returns:
+        The pixels of each by name, as PNG, for pages.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
     figures = list(figures)
-    write(
-        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
+    made = {
+        (name, ending): content(figure, ending)
         for ending in USUAL  # one after the other: matplotlib keeps typeset formulas, not for both
         for name, figure in figures
+    }
+    write(
+        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), data)
+        for (name, ending), data in made.items()
     )
+    return {name: data for (name, ending), data in made.items() if ending == "png"}
 
 
 def write(files: Iterable[tuple[Target, bytes]]) -> None:
@@ -213,5 +237,9 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
     figure.set_layout_engine("none")
-    kind = "png" if pixels else "svg+xml"
-    return f"data:image/{kind};base64,{b64encode(data.getvalue()).decode()}"
+    return embedded(data.getvalue(), "png" if pixels else "svg+xml")
+
+
+def embedded(data: bytes, kind: str = "png") -> str:
+    """The bytes of a picture's file as a data URI."""
+    return f"data:image/{kind};base64,{b64encode(data).decode()}"

@@ -38,6 +38,9 @@ OWN_PRESSURE, PUNCH = "own pressure", "punch"
 #: punch or a pressure of the user's own.
 FOUND, FINITE = "found ends", "finite stresses"
 
+#: One method, the numbers of which are compared with no other's.
+ALONE = "one method"
+
 #: So many speeds that some may tell the others.
 SWEPT = "fitted speeds"
 
@@ -57,8 +60,8 @@ class Quantity:
         of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
             None where the run itself puts it in.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
-        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND``, ``FINITE`` or
-            ``SWEPT`` where only that one gives it.
+        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND``, ``FINITE``,
+            ``ALONE`` or ``SWEPT`` where only that one gives it.
         asked_by: word of output.quantities; "" where every solution gives it.
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.
@@ -105,8 +108,10 @@ class Table(Registry[Quantity]):
         """Add a quantity, and return it.
 
         Raises:
+            TypeError: it is no quantity.
             ValueError: its path is taken, or a text of it has a control character.
         """
+        self.check(getattr(quantity, "path", ""), quantity)
         for text in (quantity.unit, quantity.about):
             if fault := unseen(text):
                 raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")
@@ -122,4 +127,4 @@ class Table(Registry[Quantity]):
 
 
 #: All quantities but the parameters of friction laws; every module adds its own.
-QUANTITIES = Table("quantity")
+QUANTITIES = Table("quantity", kind=Quantity)

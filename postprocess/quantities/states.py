@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities.quantity import (
+    ALONE,
     ANYWHERE,
     CLOSED_FORM,
     FEM,
@@ -185,6 +186,17 @@ TRUE_ERROR = Quantity(
     needs=tuple(row.path for side in (K_I_LEFT, K_I_RIGHT) for row in side.values()),
     range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
+#: By method, of one alone.
+RESIDUAL = {
+    method: Quantity(
+        f"states/{method}/residual", "1",
+        "residual of the integral equation at the contact pressure, by a rule of its own, over the "
+        "pressure's part in it",
+        (STATE,), lambda s, _: s.residual, method, ALONE, compared=(rule,), range=_NOT_NEGATIVE,
+        accuracy=True,
+    )
+    for method, rule in ((CLOSED_FORM, "residual"), (FEM, "residual of finite elements"))
+}  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",

@@ -5,7 +5,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from galinx.postprocess.in_plane import extreme
 from galinx.postprocess.quantities.quantity import (
+    ALONE,
     BESIDE,
     CLOSED_FORM,
     FEM,
@@ -15,7 +17,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.postprocess.stresses import away_from_edges, principal, von_mises
+from galinx.postprocess.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
@@ -53,20 +55,19 @@ IN_PLANE = {
 }  # fmt: skip
 
 
-def _extreme(method: str, end: str, of: Callable[[Any], NDArray], what: str) -> Quantity:
+def _extreme(method: str, end: str, sign: float, what: str) -> Quantity:
     return Quantity(
         f"states/{method}/sigma_XX_{end}", "N/(2a)",
-        f"{what} in-plane stress on the surface, further than 0.01 a from the edges", (STATE,),
-        lambda s, _: of(away_from_edges(s.surface.places.X, s.surface.σ_XX)), method, asked_by=ON_SURFACE,
+        f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
+        "from sharp edges and 0.02 a from tips, at which it is infinite",
+        (STATE,), lambda s, body: extreme(s, body, sign), method, asked_by=ON_SURFACE,
+        compared=("extremes of sigma_XX", "extremes of sigma_XX over layers") * (method == FEM),
     )  # fmt: skip
 
 
 def extremes(method: str) -> tuple[Quantity, Quantity]:
     """Highest and lowest in-plane stress by a method."""
-    return (
-        _extreme(method, "max", lambda values: values.max(axis=1), "highest"),
-        _extreme(method, "min", lambda values: values.min(axis=1), "lowest"),
-    )
+    return _extreme(method, "max", 1.0, "highest"), _extreme(method, "min", -1.0, "lowest")
 
 
 _METHODS = (CLOSED_FORM, FEM)
@@ -85,6 +86,14 @@ ESTIMATE_INSIDE = Quantity(
     "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
     "from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
+    range=Range(at_least=0.0), accuracy=True,
+)  # fmt: skip
+
+RESIDUAL_INSIDE = Quantity(
+    "states/closed_form/residual_inside", "1",
+    "residual of stresses inside, their difference from sums of line loads at some of the points and "
+    "that of their resultants at a depth from equilibrium, over the largest",
+    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, compared=("residual inside",),
     range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 

@@ -2,7 +2,9 @@
 
 Stresses vary over the distance to the pressure's knots, all of which lie on the surface. So the solid is
 looked at in depths that double, at places along X half the depth apart: the finer the shallower,
-and only where knots are as near to one another; and on the surface itself, between all knots.
+and only where knots are as near to one another; and on the surface itself, between all knots. Where a
+contact ends, or its punch has a kink, stresses rise like a power of the distance: there the solid is
+looked at in circles whose radii grow, and the stress at the place itself is that of the limit.
 """
 
 from collections.abc import Callable
@@ -25,9 +27,18 @@ _APART, _AROUND, _SHALLOW = 0.5, 4, 4.0
 #: Places on the surface between two knots.
 _BETWEEN = 4
 
+#: Radii of circles around a place where stresses have a power of the distance, over that of the next
+#: smaller one, and directions from there, along the surface and down.
+_WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
+
 #: Places from which the largest is looked for, and most rounds in which it is; by how much the step falls
 #: where it is near, and below which share of the first a round that finds nothing better is the last.
-_STARTS, _ROUNDS, _FINER, _SMALLEST = 3, 40, 2.0, 1e-3
+_STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
+#: Rounds after which the best starts alone go on, and how many these are.
+_ALL_OF_THEM, _BEST = 3, 3
+#: How far around a place none may be better, over its step; and the least stress of a start, over the
+#: largest.
+_OWN, _LEAST = 1.5, 0.7
 
 #: Halvings in which a depth is found, and what the distance of places along X falls by in each: it has to
 #: follow a largest stress that moves as the depth changes.
@@ -101,27 +112,6 @@ class Levels:
         best = np.stack(levels, axis=1)
         return best, np.take_along_axis(there, best, 1)
 
-    def peak(self, stress: Stress, there: NDArray) -> Peak:
-        """The largest of all.
-
-        Args:
-            stress: of which.
-            there: the same at :attr:`places`, (states, n).
-        """
-        best, values = self.best(there)
-        above, below = (np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)[:, i:] for i in (0, 2))
-        peaks = (values >= above[:, :-2]) & (values >= below)
-        starts = np.argsort(np.where(peaks, -values, np.inf), axis=1, kind="stable")[:, :_STARTS]
-        place = np.take_along_axis(best, starts, 1)
-        climb = _Climb(self.places[place], self.steps[place])
-        for _ in range(_ROUNDS):
-            climb.take(stress)
-            if climb.done:
-                break
-        winner = climb.value.argmax(axis=1)
-        rows = np.arange(len(there))
-        return Peak(climb.value[rows, winner], *climb.top[rows, winner].T)
-
     def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
         """Depth over a of the deepest place at which a stress is 1 or more, 0 where it is so nowhere.
 
@@ -144,6 +134,58 @@ class Levels:
         found = _deepest(stress, X, inner, outer)
         found = np.where(passed[:, -1], np.nan, found)
         return np.where(somewhere | (peak.value >= 1.0), found, 0.0)
+
+
+def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places around others on the surface, and a step from each to its neighbours.
+
+    Args:
+        centres: X over a of those of every state, (states, k); NaN for none.
+        nearest: radius over a of the smallest circle.
+
+    Returns:
+        Arrays (states, n, 2) and (n,).
+    """
+    radii = 1.0 / _WIDER ** np.arange(np.ceil(-np.log(nearest) / np.log(_WIDER)) + 1.0)
+    r, φ = (grid.ravel() for grid in np.meshgrid(radii, _DIRECTIONS, indexing="ij"))
+    along, down = r * np.cos(φ), np.where((φ > 0.0) & (φ < np.pi), -r * np.sin(φ), 0.0)
+    X = centres[:, :, None] + along
+    places = np.stack([X, np.broadcast_to(down, X.shape)], axis=-1)
+    return places.reshape(len(centres), -1, 2), np.tile(_APART * r, centres.shape[1])
+
+
+def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Peak:
+    """The largest of all.
+
+    Args:
+        stress: of which.
+        places: where states were looked at, of all (1, n, 2) or of each (states, n, 2).
+        steps: from each to its neighbours, (n,).
+        there: the stress at these, (states, n).
+    """
+    starts = _starts(places, steps, there)
+    climb = _Climb(np.take_along_axis(places, starts[..., None], 1), steps[starts])
+    for rounds in range(_ROUNDS):
+        climb.take(stress)
+        if climb.done:
+            break
+        if rounds == _ALL_OF_THEM:
+            climb.keep(_BEST)
+    winner, rows = climb.value.argmax(axis=1), np.arange(len(there))
+    return Peak(climb.value[rows, winner], *climb.top[rows, winner].T)
+
+
+def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64]:
+    """Numbers of the best places without a better one around, (states, ``_STARTS``)."""
+    found = np.empty((len(there), _STARTS), dtype=np.int64)
+    for i, values in enumerate(there):
+        if i < len(places):
+            distance = np.abs(places[i][:, None] - places[i]).max(axis=-1)
+            around = distance <= _OWN * steps[:, None]
+        tops = np.flatnonzero(values >= np.where(around, values, -np.inf).max(axis=1))
+        tops = tops[np.argsort(-values[tops], kind="stable")][:_STARTS]
+        found[i] = np.resize(tops[values[tops] >= _LEAST * values[tops[0]]], _STARTS)
+    return found
 
 
 def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
@@ -175,6 +217,16 @@ class _Climb:
         self.top, self.value = places.copy(), np.full(steps.shape, -np.inf)
         self._middle, self._h, self._least = places.copy(), steps.copy(), _SMALLEST * steps
         self.done = False
+
+    def keep(self, count: int) -> None:
+        """Go on from so many starts, those with the largest values."""
+        some = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
+        self.value, self._h, self._least = (
+            np.take_along_axis(x, some, 1) for x in (self.value, self._h, self._least)
+        )
+        self.top, self._middle = (
+            np.take_along_axis(x, some[..., None], 1) for x in (self.top, self._middle)
+        )
 
     def take(self, stress: Stress) -> None:
         """Look at nine places, and step."""

@@ -4,8 +4,8 @@ Exact for parabolas and tilted flat punches, by quadrature for every other conve
 over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,8 +25,11 @@ from galinx.solvers.solids.solid import Response
 NEXT_TO_TIP = 1e-6
 #: Distance over a from a cusp of the pressure at which it is looked at.
 _CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
-#: Places at which a largest pressure is looked for, and how often nearer.
-_LOOKED_AT, _ROUNDS = 41, 8
+#: Places at which a largest pressure is looked for, kinks and places beside them besides; most tops that
+#: are looked at more nearly, places between their neighbours, and how often nearer.
+_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
+_BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
+_TOPS, _BETWEEN, _ROUNDS = 5, 21, 8
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,19 @@ class Contacts:
             found[group.rows] = group.pressure.σ_YY(group.off(r))
         return found
 
+    def alike(self) -> Iterator[tuple[NDArray[np.int64], "Contacts", Sequence[float]]]:
+        """Numbers of states whose pressure is of one kind, these states, and kinks of their pressure."""
+        for group in self.groups:
+            own = replace(group, rows=np.arange(len(group.rows)))
+            yield group.rows, Contacts(self.response, self.g[group.rows], (own,)), group.cusps[0]
+
+    def pressure(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY, also next to where it is infinite, (states, points)."""
+        found = np.empty((len(self.g), len(r)))
+        for group in self.groups:
+            found[group.rows] = group.pressure.σ_YY(r)
+        return found
+
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
         """In-plane stress on the whole surface, off the ends, (states, points)."""
         found, answer = np.empty((len(self.g), len(r))), self.response
@@ -123,6 +139,20 @@ class Contacts:
                 σ_YY = np.zeros((1, len(r)))
                 σ_YY[:, np.abs(r) < 1.0] = alone.σ_YY(r[np.abs(r) < 1.0])
                 found[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
+        return found
+
+    @property
+    def turns(self) -> NDArray[np.float64]:
+        """Places over the half-width at which stresses are finite and have a power of the distance: free
+        ends and kinks; NaN for none, (states, k)."""
+        each: list[list[float]] = [[] for _ in self.g]
+        for group in self.groups:
+            kinks = [] if len(group.infinite) else list(group.cusps[0])
+            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
+                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
+        found = np.full((len(each), max(map(len, each))), np.nan)
+        for row, places in zip(found, each):
+            row[: len(places)] = places
         return found
 
     def _alone(self, row: int, group: Group) -> "Contacts":
@@ -163,15 +193,30 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def largest(
     pressure: Callable[[NDArray], NDArray], cusps: tuple[Sequence[float], float] = ((), 0.0)
 ) -> tuple[float, float]:
-    """The largest pressure under a punch and its place, by looking nearer and nearer; a parabola at last.
+    """The largest pressure under a punch and its place, by looking nearer and nearer to several tops.
 
     Args:
         pressure: at r in (-1, 1), (points,).
-        cusps: places at which it has a cusp, and the exponent there.
+        cusps: places at which it has a cusp, and the exponent there; 0 where it is d log d.
     """
-    low, high = -1.0, 1.0
+    places, exponent = cusps
+    beside = np.ravel(np.add.outer(np.array(places, dtype=float), _BESIDE_KINKS))
+    r = np.unique(np.concatenate([_LOOKED_AT, beside[np.abs(beside) < 1.0]]))
+    p = pressure(r)
+    tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+    tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
+    found = [_nearer(pressure, *r[[i - 1, i + 1]]) for i in tops.tolist()]
+    if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
+        for at in places:
+            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
+            found.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
+    return max(found)
+
+
+def _nearer(pressure: Callable[[NDArray], NDArray], low: float, high: float) -> tuple[float, float]:
+    """The largest pressure between two places, and where; a parabola at last."""
     for _ in range(_ROUNDS):
-        r = np.linspace(low, high, _LOOKED_AT)[1:-1]
+        r = np.linspace(low, high, _BETWEEN)
         p = pressure(r)
         i = int(np.clip(np.argmax(p), 1, len(r) - 2))
         step = r[1] - r[0]
@@ -182,13 +227,7 @@ def largest(
     bend = left - 2.0 * middle + right
     u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
     top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
-    found = [(float(max(top, middle)), float(r[i] + u * step))]
-    places, exponent = cusps
-    if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
-        for at in places:
-            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
-            found.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
-    return max(found)
+    return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
 
 
 @dataclass(frozen=True)
@@ -294,8 +333,7 @@ def _by_quadrature(
         for row in np.flatnonzero(inverse == k).tolist():
             group = Group(
                 np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
-                np.array([m]), np.zeros((1, 2)), tips,
-                ([(x - m) / h for x in kinks(profile) if abs(x - m) < h], cusp(profile)),
+                np.array([m]), np.zeros((1, 2)), tips, pressure.cusps,
             )  # fmt: skip
             found.append(group)
     return found
@@ -311,6 +349,9 @@ def pressure_of(
     def slope(r: NDArray) -> NDArray[np.float64]:
         return unit * np.asarray(profile.slope(m + h * r), dtype=float)
 
-    pressure = FreeEnds(panels, slope(panels.t), slope, response.n + g * response.n12, g * response.q)
+    cusps = [(x - m) / h for x in kinks(profile) if abs(x - m) < h], cusp(profile)
+    pressure = FreeEnds(
+        panels, slope(panels.t), slope, response.n + g * response.n12, g * response.q, cusps
+    )
     tips = tuple((x - m) / h for x in kinks(profile)) if jumps(profile) else ()
     return pressure, tips

@@ -112,12 +112,13 @@ class _Pieces:
         if share != 0.0:
             growth = log1p(share * growth) / share  # of L
         near = self._pressure * growth + self._slope * d * np.log(right / left)
-        w = np.where(self._far, self._w, np.inf)
+        far = self._far & (abs(self._w + share * d) > _FAR)
+        w = np.where(far, self._w, np.inf)
         v, moved = 1.0 / w, 1.0 / (w + share * d)
         δ = -d * v * moved * (v + moved)  # of v²
         T, by_v2 = _series(v**2, 3, moved**2)
-        far = self._mean * growth - 2.0 * self._slope * δ * (T + moved**2 * by_v2)
-        return np.where(self._far, far, near)
+        by_series = self._mean * growth - 2.0 * self._slope * δ * (T + moved**2 * by_v2)
+        return np.where(far, by_series, near)
 
     @property
     def _mean(self) -> NDArray[np.float64]:

@@ -35,8 +35,14 @@ _LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
 _NEAR = 2.4
 
-#: A step over Im y from which on two values are far enough from one another to be subtracted.
-_APART = 0.05
+#: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
+_FAR, _CLOSE = 200.0, 0.1
+
+#: Distance from a cusp of the pressure that is as good as none, and that from which it is extrapolated.
+_AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
+
+#: Gauss points along a short step, from its start to its end, over which the derivative is summed.
+_along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
 
 
 def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
@@ -120,8 +126,8 @@ class Panels:
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
         near = np.abs(ζ + root) < _NEAR
-        kernel = _kernel(self.b, np.where(near[..., None], 1.0, self.x - y[:, None, None]), derived)
-        by_panel = np.einsum("pkn,pkn,n->pk", values, kernel, _w) * self.half
+        kernel = _kernels(self.b, self.x, y, derived)
+        by_panel = ((values * kernel) @ _w) * self.half
         found = np.where(near, 0.0, by_panel).sum(axis=1)
         point, panel = np.nonzero(near)
         ξ = self.x[panel] - y[point][:, None]
@@ -147,6 +153,24 @@ class Panels:
                 term = np.exp(k * ξ) / k
                 found = found + value * (-k * term if derived else sign * term)
         return found
+
+
+def _kernels(b: float, x: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
+    """:func:`_kernel` of x - y, (points, panels, nodes): the exponential of a sum is a product."""
+    far = np.abs(y.real) > _FAR
+    at = np.where(far, 0.0, y)[:, None, None]
+    E = np.exp(x) * np.exp(-at)
+    rest = 1.0 - E
+    with np.errstate(divide="ignore", invalid="ignore"):
+        kernel = np.exp(b * x) * np.exp(-b * at) / rest
+        if derived:
+            kernel *= -(b + E / rest)
+    close = np.abs(rest) < _CLOSE
+    close[far] = True
+    point, *node = np.nonzero(close)
+    ξ = x[tuple(node)] - y[point]
+    kernel[close] = _kernel(b, np.where(ξ == 0.0, 1.0, ξ), derived)
+    return kernel
 
 
 def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
@@ -221,7 +245,7 @@ class FreeEnds:
         f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
         slope: the same at any positions in the contact.
         n, Q: n + g n₁₂ and g q of the half-plane.
-        infinite: positions at which the pressure is infinite.
+        cusps: positions at which the pressure has a cusp, and its exponent there, below 1; 0 for none.
     """
 
     panels: Panels
@@ -229,7 +253,7 @@ class FreeEnds:
     slope: Any
     n: float
     Q: float
-    infinite: Sequence[float] = ()
+    cusps: tuple[Sequence[float], float] = ((), 0.0)
 
     @property
     def _factor(self) -> float:
@@ -240,7 +264,19 @@ class FreeEnds:
         f = self.slope(r)
         # Without f(r) nothing cancels towards the ends.
         T = self.panels.transform(self.f - f[:, None], np.log1p(-r) - np.log1p(r))
-        return -self._factor * np.sin(np.pi * self.panels.a) * T
+        found = -self._factor * np.sin(np.pi * self.panels.a) * T
+        places, exponent = self.cusps
+        for at in places if exponent else ():
+            here = np.abs(r - at) < _AT_CUSP
+            if here.any():  # what is left of the smallest panel there is not small
+                found[here] = self._at_cusp(at, exponent)
+        return found
+
+    def _at_cusp(self, at: float, exponent: float) -> float:
+        """σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
+        d = _BESIDE_CUSP * np.array([-1.0, 1.0])
+        near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
+        return near + (near - far) / (2.0**exponent - 1.0)
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface, (points,)."""
@@ -258,22 +294,16 @@ class FreeEnds:
         return found.reshape(np.shape(z))
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        shape = np.broadcast_shapes(np.shape(z), np.shape(step))
         z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
-        y, shape = _seen(z), np.shape(z)
-        moved = _seen(z + share * step)
-        δ = np.asarray(-step / (1.0 - z) - step / (1.0 + z), dtype=complex)
+        found, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
+        z, step = z[stepped], step[stepped]
+        δ: NDArray = -step / (1.0 - z) - step / (1.0 + z)
         if share != 0.0:
             δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
-        small = np.abs(share * δ) < _APART * np.minimum(y.imag, moved.imag)
-        found = np.empty(shape, dtype=complex)
-        τ, w = np.polynomial.legendre.leggauss(6)
-        found[small] = sum(
-            weight * self.panels.derivative(self.f, y[small] + node * share * δ[small])
-            for node, weight in zip((τ + 1.0) / 2.0, w / 2.0)
-        ) * δ[small]  # fmt: skip
-        apart = [self.panels.transform(self.f, some[~small]) for some in (y, moved)]
-        if share != 0.0:
-            found[~small] = (apart[1] - apart[0]) / share
+        y = _seen(z)
+        for node, weight in zip(_along, _along_weights):
+            found[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
         return (self._phase * found).reshape(shape)
 
     @property

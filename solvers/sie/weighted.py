@@ -72,7 +72,7 @@ class Weighted:
         moved = z + share * step
         near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
         near = (near - self._leading * step) / self._sin
-        far = np.abs(z) > _FAR
+        far = np.minimum(np.abs(z), np.abs(moved)) > _FAR
         return np.where(far, self._far_change(np.where(far, z, np.inf), step, share), near)
 
     @property

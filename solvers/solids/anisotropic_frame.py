@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.solids.line_loads import line_loads
+from galinx.solvers.solids.potentials import value_and_change
 from galinx.solvers.solids.roots import Roots, roots
 from galinx.solvers.solids.solid import Potential
 
@@ -189,7 +190,7 @@ class AnisotropicFrame:
         p, other = self.roots.each
         z = X + p * Y
         # Φ of a matrix with two eigenvalues: Φ(z₁) + Φ[z₁, z₂] Y (G - p₁).
-        at, change = 1j * Φ.at(z), 1j * Φ.change(z, Y + 0j, other - p)
+        at, change = (1j * part for part in value_and_change(Φ, z, Y + 0j, other - p))
         beyond = self.G - p * np.eye(2)
         strain = self._Y[0], (beyond @ self._Y)[0]
         tractions = np.eye(2), self.L @ beyond @ self._Y

@@ -14,6 +14,37 @@ from galinx.solvers.solids.solid import Potential
 #: c² below which its part in the difference of the potentials, over c², has no digit left.
 _AT_REST = 1e-30
 
+#: A step over the distance from the contact from which on a potential's two values differ by enough to be
+#: subtracted; a longer one may lead from where one form of the potential serves to where another does.
+_APART = 0.05
+
+
+def value_and_change(
+    Φ: Potential, z: NDArray, step: NDArray, share: complex
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Φ(z) and (Φ(z + share·step) - Φ(z))/share, to full accuracy for steps of any length.
+
+    Args:
+        Φ: a pressure's potential.
+        z, step: positions below the surface over a, and steps from there, of one shape.
+        share: how much of the step is gone; its limit is taken where it is 0.
+    """
+    at, moved = Φ.at(z), z + share * step
+    apart = np.abs(share * step) > _APART * np.minimum(_from_contact(z), _from_contact(moved))
+    if not apart.any():
+        return at, Φ.change(z, step, share)
+    # Where a potential is not asked for it is looked at in a place that it knows.
+    difference = (Φ.at(np.where(apart, moved, z)) - at) / share
+    if apart.all():
+        return at, difference
+    near = Φ.change(z, np.where(apart, 0.0, step), share)
+    return at, np.where(apart, difference, near)
+
+
+def _from_contact(z: NDArray) -> NDArray[np.float64]:
+    """Distance from -1 <= z <= 1."""
+    return np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
+
 
 def stresses(frame: Any, Φ: Potential, g: Any, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
     """σ_XX, σ_YY, σ_XY over N/(2a) at points below the surface.
@@ -35,7 +66,7 @@ def stresses(frame: Any, Φ: Potential, g: Any, X: ArrayLike, Y: ArrayLike) -> N
         raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use the formulas of the surface there")
     z = X + 1j * frame.β_s * Y
     δ = 1j * Y * (1.0 - frame.k) / (frame.β_d + frame.β_s)  # (z_d - z_s)/c²
-    Φ_s, d = Φ.at(z), Φ.change(z, δ, frame.c**2 if frame.c**2 >= _AT_REST else 0.0)
+    Φ_s, d = value_and_change(Φ, z, δ, frame.c**2 if frame.c**2 >= _AT_REST else 0.0)
     return np.array(field(frame, g, -Φ_s.imag, Φ_s.real, -d.imag, d.real))
 
 

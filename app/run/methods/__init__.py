@@ -5,7 +5,7 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.fem import LINEAR
+from galinx.app.plan.fem import DOLFINX, TENSOR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
@@ -84,7 +84,12 @@ def _closed_form_refusal(scene: Scene, body: Body, quantity: Quantity | None) ->
 
 #: What only a punch has.
 _INTENSITIES_OF_LAYERS = (*strata.K_I_LEFT.values(), *strata.K_I_RIGHT.values(), strata.ESTIMATE)
-_INTENSITIES = (states.K_I_BOTH, states.K_I_LEFT[CLOSED_FORM], states.K_I_RIGHT[CLOSED_FORM])
+_INTENSITIES = (
+    states.RESIDUAL[CLOSED_FORM],
+    states.K_I_BOTH,
+    states.K_I_LEFT[CLOSED_FORM],
+    states.K_I_RIGHT[CLOSED_FORM],
+)
 
 
 def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
@@ -106,6 +111,8 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
         )
     if quantity is None:
         return ""
+    if quantity is states.RESIDUAL[FEM]:
+        return "the equation of layers is a method of its own, sie"
     if quantity is states.INDENTATION:
         return "the far boundary moves with the load"
     if body.found and quantity is stresses.RAW_PRESSURE:
@@ -118,13 +125,15 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if body.layered:
         return _of_layers(scene, body, quantity)
-    if body.found and not isinstance(body.profile, LINEAR):
+    if body.found and not smooth(body.profile):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
         if quantity is stresses.RAW_PRESSURE:
             return "σ_YY itself is that of the nodal forces there"
     if why := _of_found_ends(body, quantity):
         return why
+    if quantity is states.RESIDUAL[FEM] and scene.solve.mode == "traction":
+        return "the pressure is put in"
     if quantity is states.SLOPE and (body.pressure or not body.flat):
         return "the pressure is given" if body.pressure else "the punch is not flat"
     return _without_σ_ZZ(body, quantity)
@@ -139,7 +148,11 @@ METHODS: Registry[MethodKind] = Registry(
             "mesh and finite elements", _finite_elements, _finite_elements_refusal, loads=True
         ),
     },
+    MethodKind,
 )
 
 #: What the finite elements may be given: a punch, or the pressure under it.
 MODES = ("contact", "traction")
+
+#: Assemblers of their matrices: element matrices by tensor products, or dolfinx's own.
+ASSEMBLERS = (TENSOR, DOLFINX)

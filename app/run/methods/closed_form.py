@@ -14,6 +14,7 @@ from galinx.app.run.methods.method import Solver
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.residual import of_contact, of_field
 from galinx.solvers.solution import Surface
 
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
@@ -74,6 +75,29 @@ class Punches:
         """The edges, where every sharp punch is like a flat one."""
         return FlatPunch(self.task.response, self.g)
 
+    def _pressure_at(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at positions (n,) under the punch, (states, n)."""
+        raise NotImplementedError
+
+    @cached_property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        task = self.task
+        return of_contact(task.response, self.g, self.local, task.body, self._pressure_at)
+
+    @cached_property
+    def residual_inside(self) -> NDArray[np.float64]:
+        """How far stresses inside are from line loads and equilibrium, relative, (states,)."""
+        task, local = self.task, self.local
+        return of_field(
+            task.response, self.g, (local.α, local.β), self._pressure_at, self._stresses_at,
+            task.places.points,
+        )  # fmt: skip
+
+    def _stresses_at(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY inside, (3, states, n)."""
+        raise NotImplementedError
+
     def _strength(self, exact: FlatPunch | GivenPressure) -> Strength:
         """Yield, where stresses are known at all points."""
         task = self.task
@@ -95,6 +119,12 @@ class Punches:
 
 class FlatPunches(Punches):
     """Flat punches, exact."""
+
+    def _pressure_at(self, r: NDArray) -> NDArray[np.float64]:
+        return self._over_places.σ_YY(r)
+
+    def _stresses_at(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        return self._over_places.inside(X, Y)
 
     @property
     def K_I(self) -> NDArray[np.float64]:
@@ -127,6 +157,17 @@ class FlatPunches(Punches):
 
 class OwnPressures(Punches):
     """A pressure of the user's own, exact."""
+
+    @cached_property
+    def residual_inside(self) -> NDArray[np.float64]:
+        none = np.zeros(len(self.g))
+        return of_field(
+            self.task.response, self.g, (none, none), self._pressure_at, self._over_places.inside,
+            self.task.places.points, self._pressure.knots,
+        )  # fmt: skip
+
+    def _pressure_at(self, r: NDArray) -> NDArray[np.float64]:
+        return np.tile(self._pressure(r), (len(self.g), 1))
 
     @property
     def _pressure(self) -> LinearPressure:
@@ -171,6 +212,9 @@ class ShapedPunches(Punches):
             solve(response, value, TERMS, body.loaded(load).slope)
             for value, load in zip(self.g.tolist(), loads)
         ]
+
+    def _pressure_at(self, r: NDArray) -> NDArray[np.float64]:
+        return np.array([expansion.σ_YY(r) for expansion in self._expansions])
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:

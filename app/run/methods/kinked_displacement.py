@@ -39,6 +39,10 @@ class KinkedDisplacement(Displacement):
         """The same, asked at other places."""
         return KinkedDisplacement(task, self._space, self._fields[0], self._gaps, self._exponents)
 
+    def strain(self, X: NDArray) -> NDArray[np.float64]:
+        """μ u,X over N/(2a) at positions on the surface, (n,), as the polynomials have it."""
+        return SurfaceSlopes(self._space, self._fields, X).of(np.ones((1, 1)))[0][0]
+
     @cached_property
     def _slopes(self) -> Any:
         places, of_places = slopes_towards_ends(self._task.places.X, self._gaps, self._exponents)

@@ -24,6 +24,9 @@ from galinx.app.run.methods.own_meshes import OnOwnMeshes, OwnMeshesAtSpeed
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.profiles import jumps
 
+#: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides.
+_NEAREST = 1e-2
+
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["KinkedAtSpeed"]:
@@ -95,6 +98,11 @@ class KinkedPunches(OnOwnMeshes):
         return values, places
 
     @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        return np.array([state.residual for state in self.found])
+
+    @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
         return np.array([state.level.contact.v0[0] for state in self.found])
@@ -103,8 +111,9 @@ class KinkedPunches(OnOwnMeshes):
     def strength(self) -> Strength:
         """Yield."""
         return Strength(
-            self._stresses, self.body, self.task.response, self.g, self.local, self.half_width
-        )
+            self._stresses, self.body, self.task.response, self.g, self.local, self.half_width,
+            self.surface.turns, _NEAREST,
+        )  # fmt: skip
 
     def _stresses(self, points: NDArray) -> NDArray[np.float64]:
         """At points of all states, (1, n, 2), or of each, (states, n, 2): (3, states, n)."""

@@ -12,7 +12,7 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.ladder import WorkDone
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.found import Exponents
-from galinx.solvers.solution import Body, Surface
+from galinx.solvers.solution import Body, Surface, Turns
 
 #: What is known of every surface.
 _ON_SURFACE = ("σ_YY", "σ_XX", "v_X")
@@ -105,9 +105,21 @@ class OnOwnMeshes:
         """Stresses on the surface."""
         each = [state.surface for state in self.found]
         σ_YY, σ_XX, v_X = (np.array([getattr(one, name)[0] for one in each]) for name in _ON_SURFACE)
-        return Surface(self.task.places, σ_YY, σ_XX, None, v_X)
+        turns = together([one.turns for one in each if one.turns is not None])
+        return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
         return np.stack([state.inside for state in self.found], axis=1)
+
+
+def together(each: list[Turns]) -> Turns | None:
+    """Of one state each, as many places as the state with most has; None of none."""
+    if not each:
+        return None
+    most = max(one.X.shape[1] for one in each)
+    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
+    for i, one in enumerate(each):
+        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
+    return Turns(X, σ)

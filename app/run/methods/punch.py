@@ -14,7 +14,7 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.pressure import (
@@ -31,6 +31,7 @@ from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.states import ContactStates, Punch
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.residual import of_contact
 from galinx.solvers.solution import Body, Places, Surface
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
@@ -50,7 +51,7 @@ def negligible(work: Any) -> float:
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
+    with reached(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
         yield PunchesAtSpeed(ladder, error)
 
 
@@ -250,6 +251,11 @@ class Punches:
     def exponents(self) -> NDArray[np.float64]:
         """At X = a and X = -a, fitted from the raw pressure, (states, 2)."""
         return self.at.level.recovery.exponents(self.contact.normal)
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        return of_contact(self.at.task.response, self.g, self.local, self.body, self._pressure.σ_YY)
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

@@ -1,0 +1,210 @@
+"""How far an answer is from the equations that it was not computed by.
+
+A pressure is put into the singular integral equation N̂ H[σ_YY] - Q σ_YY = μ v,X, N̂ = n + g n₁₂, Q = g q.
+A field inside is held against the line loads that its pressure is made of, and its resultants at a depth
+against those of the surface. All integrals over the contact are one rule in x = log((1 + t)/(1 - t)), in
+which powers of the distance from the ends are exponentials; the pressure without such powers is smooth
+there but for kinks, towards which panels halve.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from galinx.solvers.sie.weighted import Weighted
+from galinx.solvers.solids.solid import Response
+
+#: Panels' ends where nothing is near: beyond |x| = 12 all is powers of e^x, beyond 300 nothing is left.
+_OUTER = np.append(np.arange(12.0, 300.0, 8.0), 300.0)
+_ENDS = np.concatenate([-_OUTER[::-1], np.linspace(-12.0, 12.0, 17)[1:-1], _OUTER])
+#: Points and weights of a panel; the shortest panel.
+_τ, _w = np.polynomial.legendre.leggauss(12)
+_SHORTEST = 1e-9
+
+#: Places under the punch at which the equation is looked at, and how far from a kink.
+_AT, _OFF_KINKS = np.cos(np.pi * (np.arange(16) + 0.5) / 16.0), 0.02
+#: Nearer to an end than this the pressure without its powers is that at this distance.
+_NEXT_TO_END = 1e-7
+
+#: Points inside that are looked at, and along a line at a depth, over what that is wider than deep.
+_INSIDE, _ALONG = 6, 64
+#: Least depth over a at which a point is looked at.
+_DEEP = 1e-3
+
+#: σ_YY over N/(2a) at positions (n,) of all states: (states, n).
+Pressure = Callable[[NDArray], NDArray]
+
+
+class Rule:
+    """Points in (-1, 1) and weights.
+
+    Args:
+        at: positions towards which panels halve.
+        sizes: to which, in x.
+
+    Attributes:
+        t, left, right: positions, and distances from both ends, (n,).
+    """
+
+    def __init__(self, at: ArrayLike = (), sizes: ArrayLike = _SHORTEST) -> None:
+        at, sizes = np.broadcast_arrays(np.asarray(at, dtype=float), sizes)
+        ends = [_ENDS]
+        for t, size in zip(at[np.abs(at) < 1.0], sizes[np.abs(at) < 1.0]):
+            steps = 0.5 ** np.arange(np.ceil(max(-np.log2(max(size, _SHORTEST)), 1.0)))
+            x = 2.0 * np.arctanh(t)
+            ends += [x + np.concatenate([-steps, [0.0], steps])]
+        x = np.unique(np.concatenate(ends))
+        middle, half = (x[1:] + x[:-1]) / 2.0, np.diff(x) / 2.0
+        x = (middle[:, None] + half[:, None] * _τ).ravel()
+        self.left, self.right = 2.0 / (1.0 + np.exp(-x)), 2.0 / (1.0 + np.exp(x))
+        self.t = np.where(x < 0.0, self.left - 1.0, 1.0 - self.right)
+        self._weights = (half[:, None] * _w).ravel() * self.left * self.right / 2.0
+
+    def weights(self, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+        """Of ∫ (1 - t)^α (1 + t)^β F dt, (states, n); exponents (states,)."""
+        return self._weights * self.right ** α[:, None] * self.left ** β[:, None]
+
+    def smooth(self, pressure: Pressure, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+        """A pressure over (1 - t)^α (1 + t)^β, (states, n)."""
+        return _smooth(pressure, np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END), α, β)
+
+
+def _smooth(pressure: Pressure, r: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
+
+
+def of_pressure(
+    response: Response,
+    g: NDArray,
+    exponents: tuple[NDArray, NDArray],
+    slope: Pressure,
+    pressure: Pressure,
+    kinks: Sequence[float] | NDArray = (),
+    breaks: Sequence[float] | NDArray = (),
+) -> NDArray[np.float64]:
+    """What a pressure leaves of the integral equation, over its own part in it, (states,).
+
+    Args:
+        response: of the half-plane.
+        g: σ_XY/σ_YY, (states,).
+        exponents: α at the right and β at the left end, (states,) each; their sum is whole.
+        slope: μ v,X under the punch over N/(2a).
+        pressure: the pressure.
+        kinks: places at which the pressure is not smooth.
+        breaks: places between which it is a polynomial, if it is one.
+    """
+    α, β = exponents
+    sizes = np.append(np.full(len(kinks), _SHORTEST), np.full(len(breaks), 1.0))
+    rule, kinks = Rule(np.append(kinks, breaks), sizes), np.asarray(kinks, dtype=float)
+    s = _AT[np.abs(_AT[:, None] - kinks).min(axis=1, initial=1.0) > _OFF_KINKS]
+    p, at = rule.smooth(pressure, α, β), _smooth(pressure, s, α, β)
+    order = np.round(α + β).astype(int)
+    H = np.empty_like(at)
+    for kind in np.unique(order).tolist():
+        some = order == kind
+        ends = α[some, None], β[some, None]
+        H[some] = Weighted(*ends, 1.0, 0.0, kind).hilbert(s) * at[some]
+    weights = rule.weights(α, β) / np.pi
+    # Σ w (p(t) - p(s))/(t - s), as a matrix and what it has of p(s).
+    divided = 1.0 / (rule.t[:, None] - s)
+    H += (weights * p) @ divided - at * (weights @ divided)
+    σ = pressure(s)
+    own = (response.n + g * response.n12)[:, None]
+    left = own * H - (g * response.q)[:, None] * σ - slope(s)
+    return np.asarray(np.abs(left).max(axis=1) / (own[:, 0] * np.abs(σ).max(axis=1)))
+
+
+def of_contact(
+    response: Response,
+    g: NDArray,
+    local: Any,
+    body: Any,
+    pressure: Pressure,
+    lengths: tuple[NDArray, NDArray] | None = None,
+    kinks: Sequence[float] | NDArray = (),
+    breaks: Sequence[float] | NDArray = (),
+) -> NDArray[np.float64]:
+    """:func:`of_pressure` of a punch.
+
+    Args:
+        response, g, pressure, kinks, breaks: the same.
+        local: exponents α and β, (states,).
+        body: what slides over what, under the load of each state.
+        lengths: middle and half-width of each contact [m], (states,), where ends are found.
+    """
+    m, h = lengths or (np.zeros(len(g)), np.full(len(g), body.half_width))
+    unit = np.broadcast_to(h / body.displacement, g.shape)
+
+    def slope(s: NDArray) -> NDArray[np.float64]:
+        X = m[:, None] + h[:, None] * s
+        return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
+
+    return of_pressure(response, g, (local.α, local.β), slope, pressure, kinks, breaks)
+
+
+class _LineLoads:
+    """Φ of line loads on the surface, see :class:`galinx.solvers.solids.solid.Potential`.
+
+    Args:
+        t: their positions, (n,).
+        loads: ∫σ_YY of each, (states, n).
+    """
+
+    def __init__(self, t: NDArray, loads: NDArray) -> None:
+        self._t, self._loads = t, loads / np.pi
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        return self._sum(1.0 / (self._t - z[..., None]))
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        z, step = (np.broadcast_to(part, np.broadcast_shapes(z.shape, step.shape)) for part in (z, step))
+        moved = self._t - (z + share * step)[..., None]
+        return self._sum(step[..., None] / ((self._t - z[..., None]) * moved))
+
+    def _sum(self, kernel: NDArray) -> NDArray[np.complex128]:
+        return np.asarray(np.einsum("sn,spn->sp", self._loads, np.broadcast_to(
+            kernel, (len(self._loads), *kernel.shape[1:])
+        )))  # fmt: skip
+
+
+def of_field(
+    response: Any,
+    g: NDArray,
+    exponents: tuple[NDArray, NDArray],
+    pressure: Pressure,
+    inside: Callable[[NDArray, NDArray], NDArray],
+    points: NDArray,
+    kinks: Sequence[float] | NDArray = (),
+) -> NDArray[np.float64]:
+    """How far stresses inside are from line loads and from equilibrium, over the largest, (states,).
+
+    Args:
+        response, g, exponents, pressure, kinks: of :func:`of_pressure`.
+        inside: σ_XX, σ_YY, σ_XY at X and Y (n,), (3, states, n).
+        points: at which line loads are summed, some of many, (m, 2).
+    """
+    α, β = exponents
+    deep = points[points[:, 1] <= -_DEEP]
+    some = deep[np.unique(np.linspace(0, len(deep) - 1, min(_INSIDE, len(deep))).astype(int))]
+    X, Y = some.T
+    feet = [X + p * Y for p in response.roots.each]
+    at = np.concatenate([kinks, *(z.real for z in feet)])
+    sizes = np.concatenate([np.full(len(kinks), _SHORTEST), *(0.3 * np.abs(z.imag) for z in feet)])
+    rule = Rule(at, sizes)
+    loads = rule.weights(α, β) * rule.smooth(pressure, α, β)
+    off = np.zeros(len(g))
+    if len(some):
+        wanted = response.inside(_LineLoads(rule.t, loads), g[:, None], X[None], Y[None])
+        size = np.abs(wanted).max(axis=(0, 2))
+        off = np.abs(inside(X, Y) - wanted).max(axis=(0, 2)) / size
+    # Along a line below the surface: X = L tan θ, in which what is analytic in 1/X is periodic.
+    depth = 1.0 / min(p.imag for p in response.roots.each)
+    L = depth * max(abs(p) for p in response.roots.each)
+    count = int(np.ceil(_ALONG * max(L, 1.0)))
+    θ = np.pi * ((np.arange(count) + 0.5) / count - 0.5)
+    _, σ_YY, σ_XY = inside(L * np.tan(θ), np.full(count, -depth))
+    weights, N = np.pi / count * L / np.cos(θ) ** 2, loads.sum(axis=1)
+    balance = np.maximum(np.abs(σ_YY @ weights - N), np.abs(σ_XY @ weights - g * N))
+    return np.asarray(np.maximum(off, balance / np.abs(loads).sum(axis=1)))

@@ -1,0 +1,119 @@
+"""Largest stresses of both methods, against samples of the closed form that know nothing of a search."""
+
+import numpy as np
+import pytest
+from support import THOROUGH
+
+import galinx
+from galinx.app.scene.read import parse
+from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.solvers.profiles import cusp
+from galinx.solvers.sie.found import contacts
+
+#: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
+MISSED, NEXT_TO_CUSP = 1e-6, 1e-4
+
+PUNCHES = {
+    "parabolic": lambda rng: "radius = 0.02",
+    "rounded_flat": lambda rng: f"flat_half_width = {10.0 ** rng.uniform(-5.0, -3.0)}\nradius = 0.02",
+    "power": lambda rng: f"exponent = {exponent(rng)}\ncoefficient = 0.5",
+    "table": lambda rng: f"shape = {table(rng)}",
+}
+
+
+def exponent(rng):
+    """With a cusp of the pressure, or without."""
+    return rng.choice([rng.uniform(1.25, 2.0), rng.uniform(2.0, 5.0)])
+
+
+def table(rng):
+    """Points of a convex curve that no contact reaches beyond."""
+    X = np.sort(np.concatenate([[-0.2, 0.2], rng.uniform(-2e-3, 2e-3, 5)]))
+    return [[x, 12.0 * x**2] for x in X.tolist()]
+
+
+def random_scene(seed, profile, methods):
+    """Four states of a punch with free ends on an isotropic or orthotropic solid."""
+    rng = np.random.default_rng(seed)
+    plane = rng.choice(["strain", "stress"])
+    solid = f"E = 2e11\nnu = {rng.uniform(0.0, 0.45)}\nrho = 7800\nplane = '{plane}'"
+    if rng.random() < 0.4:
+        solid = (
+            f"kind = 'orthotropic'\nE1 = {10.0 ** rng.uniform(10.0, 11.3)}\nE2 = 1e10\nE3 = 1e10\n"
+            f"nu12 = 0.25\nnu13 = 0.25\nnu23 = 0.3\nG12 = {rng.uniform(3e9, 7e9)}\nrho = 1600\n"
+            f"angle = {rng.uniform(0.0, 180.0)}"
+        )
+    load, mu = 10.0 ** rng.uniform(4.0, 5.5), rng.uniform(0.0, 0.9, 2).tolist()
+    share = rng.choice([0.0, rng.uniform(0.05, 0.9)])
+    punch = PUNCHES[profile](np.random.default_rng(seed))
+
+    def at(c):
+        return parse(
+            f"[solid]\n{solid}\nyield_strength = 3e8\n"
+            f"[punch]\nload = {load}\nprofile = '{profile}'\n{punch}\n"
+            f"[friction]\nmodel = 'coulomb'\nmu_c = {mu}\n"
+            f"[motion]\nc = {c}\nX_over_L = [0.5]\nstrokes = ['forward', 'backward']\n"
+            f"[solve]\nmethods = {methods}\n[output]\nquantities = ['sif', 'surface', 'yield']\n"
+        )
+
+    return at(share * at(0.0).solid.limit())
+
+
+def samples(rng, measure, X, Y, around=250, rounds=5):
+    """Largest value of a measure at places, and at random ones around the best, nearer and nearer."""
+    values = measure(X, Y)
+    for k in range(rounds):
+        best = rng.choice(np.argsort(-values)[: 60 if k == 0 else 20], around)
+        size = 0.3 ** (k + 1) * np.maximum(np.hypot(np.abs(np.abs(X[best]) - 1.0), Y[best]), 1e-8)
+        x, y = (at[best] + size * rng.normal(size=around) for at in (X, Y))
+        y = np.where((Y[best] == 0.0) & (rng.random(around) < 0.7), 0.0, -np.abs(y))
+        X, Y, values = (np.append(a, b) for a, b in ((X, x), (Y, y), (values, measure(x, y))))
+    return values.max()
+
+
+def sampled(contact, solid, rng):
+    """Largest von Mises and shear stress, highest σ_XX on the surface, largest pressure of one state."""
+
+    def σ(X, Y):
+        return contact.stresses(X, Y)[:, 0]
+
+    def mises(X, Y):
+        XX, YY, XY = σ(X, Y)
+        return von_mises(XX, YY, XY, solid.σ_ZZ(XX, YY, XY))
+
+    ξ = np.concatenate([[0.0], np.geomspace(1e-4, 3.0, 16)])
+    η = np.unique(np.concatenate([np.linspace(-np.pi, 0.0, 50), -np.geomspace(1e-4, 0.1, 6)]))
+    ξ, η = (grid.ravel() for grid in np.meshgrid(ξ, np.append(η, -np.pi - η[-8:-1])))
+    z = np.cosh(ξ + 1j * η)
+    beside = (ξ > 0.0) & (np.abs(z.imag) < 1e-14)
+    turns = contact.turns[0]
+    X, Y = np.append(z.real, turns), np.append(np.where((ξ == 0.0) | beside, 0.0, z.imag), 0.0 * turns)
+    X0, none = np.append(X[Y == 0.0], np.cos(np.linspace(0.0, np.pi, 401))), np.zeros
+    inside = X0[np.abs(X0) < 1.0]
+    return np.array(
+        [
+            samples(rng, mises, X, Y),
+            samples(rng, lambda X, Y: maximum_shear(*σ(X, Y)), X, Y),
+            samples(rng, lambda X, Y: σ(X, 0.0 * Y)[0], X0, none(len(X0))),
+            samples(rng, lambda X, Y: -σ(X, 0.0 * Y)[1], inside, none(len(inside))),
+        ]
+    )
+
+
+NAMES = ("von_mises", "max_shear", "sigma_XX_max", "largest_pressure")
+CASES = [(seed, tuple(PUNCHES)[seed % 4]) for seed in range(50 if THOROUGH else 4)]
+
+
+@pytest.mark.parametrize("seed, profile", CASES)
+def test_no_sample_is_larger_than_the_largest(seed, profile):
+    scene = random_scene(seed, profile, ["closed_form", "fem"] if THOROUGH else ["closed_form"])
+    data = galinx.compute(scene).data
+    body, response = scene.body, scene.solid.response(float(data["states/c"][0]))
+    allowed = NEXT_TO_CUSP if cusp(body.profile) else MISSED
+    for i in range(len(data["states/g"])) if THOROUGH else (0,):
+        contact = contacts(response, data["states/g"][i : i + 1], body.profile, body.compression)
+        largest = sampled(contact, scene.solid, np.random.default_rng(seed))
+        size = np.array([*largest[:2], max(largest[2], largest[3]), largest[3]])
+        for method in ("closed_form", "fem") if THOROUGH else ("closed_form",):
+            found = np.array([data[f"states/{method}/{name}"][i] for name in NAMES])
+            assert (largest - found <= allowed * size).all(), (method, found / largest - 1.0)

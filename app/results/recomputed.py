@@ -26,7 +26,7 @@ from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.hdf5.reader import Archive
 from galinx.postprocess.quantities import QUANTITIES, Quantity, runs, states, stresses, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, FOUND, LOCAL, SIE, STATE
+from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, FOUND, LOCAL, SIE, STATE
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import smooth
 from galinx.solvers.sie.indentation import indentation, places
@@ -104,7 +104,12 @@ def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], lis
     for method in (CLOSED_FORM, SIE):
         if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
             continue
-        own = [quantity for quantity in plan.quantities if quantity.of and quantity.method == method]
+        # Residuals may be rounding alone; comparisons have them.
+        own = [
+            quantity
+            for quantity in plan.quantities
+            if quantity.of and quantity.method == method and quantity.mode != ALONE
+        ]
         if method == CLOSED_FORM:
             own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
         methods = (method,) if method in plan.methods else ()

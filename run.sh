@@ -5,10 +5,16 @@
 #   ./run.sh bench [-o DIR]            measure run time against error
 #   ./run.sh bench big [UNKNOWNS]      linear solvers on meshes of up to so many unknowns
 #   ./run.sh bench scaling             every step on one rank and on two
+#   ./run.sh bench assemblers          matrices by tensor products and by dolfinx
+#   ./run.sh bench accuracy [TABLE]    tables of docs/verification.md, computed again
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
-trap 'echo "error: interrupted" >&2; exit 3' INT TERM HUP
+fail() { # end with a status, and say why to whoever listens
+  echo "error: $2" >&2 || true
+  exit "$1"
+}
+trap 'fail 3 interrupted' INT TERM HUP
 home=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 # The cores that this process may use; asked before, and without, the threads that each is to have.
 cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
@@ -16,8 +22,7 @@ cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 python=${GALINX_PYTHON:-/usr/bin/python3}
 if [ -n "${GALINX_PYTHON:-}" ] &&
   ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then
-  echo "error: GALINX_PYTHON is $python, expected a Python of version 3.11 or newer" >&2
-  exit 3
+  fail 3 "GALINX_PYTHON is $python, expected a Python of version 3.11 or newer"
 fi
 python=$(command -v "$python")
 mpirun=mpirun
@@ -30,7 +35,7 @@ packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h
   libopenblas0-serial openmpi-bin gcc libc6-dev)
 docs_packages=(mkdocs libjs-mathjax)
 test_packages=(python3-pytest python3-pytest-xdist python3-hypothesis python3-sympy python3-mpmath python3-jsonschema
-  python3-vtk9 python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel
+  python3-vtk9 chromium python3-nbclient python3-ipykernel python3-pip python3-setuptools python3-wheel
   "${docs_packages[@]}")
 
 missing() { # the packages of the arguments that are not installed
@@ -48,15 +53,13 @@ set_up() {
   mapfile -t wanted < <(missing "$@")
   [ ${#wanted[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
-    echo "error: Debian packages are missing; ask an administrator to run" >&2
-    echo "  apt-get update && apt-get install --no-install-recommends ${wanted[*]}" >&2
-    exit 3
+    fail 3 "Debian packages are missing; ask an administrator to run
+  apt-get update && apt-get install --no-install-recommends ${wanted[*]}"
   fi
-  echo "installing: ${wanted[*]}" >&2
+  echo "installing: ${wanted[*]}" >&2 || true
   if ! { apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y \
     --no-install-recommends "${wanted[@]}"; } >&2; then
-    echo "error: apt-get could not install ${wanted[*]}; see its messages above" >&2
-    exit 3
+    fail 3 "apt-get could not install ${wanted[*]}; see its messages above"
   fi
 }
 
@@ -122,8 +125,7 @@ if [ "${1:-}" = -n ]; then
   # More on a core would only fill the machine; and bash counts in 64 bits.
   most=$((16 * cores))
   if ! [[ "${2:-}" =~ ^[1-9][0-9]{0,5}$ ]] || [ "$2" -gt "$most" ]; then
-    echo "error: -n ${2:-}: expected a number of ranks up to $most, as in ./run.sh -n 2 run SCENE.toml" >&2
-    exit 2
+    fail 2 "-n ${2:-}: expected a number of ranks up to $most, as in ./run.sh -n 2 run SCENE.toml"
   fi
   ranks=$2
   shift 2

@@ -3,22 +3,30 @@
 The page itself is written by ``docs/make.py``, which ``./run.sh docs`` runs.
 """
 
+import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 
+#: What stands for a figure that ``./run.sh`` makes of the study, and those of another name.
+STUDY = "study"
+CALLED = {"box": "fig4"}
+#: Drawn for other pages: figures of the study, and the pictures' names.
+ELSEWHERE = {"fig1": "problem", "fig3": "procedure", "laws": "laws_on_stresses"}
+
 #: Scene, the figure of its archive that is shown, and what to see there.
 SHOWN = {
-    "fig2": ("friction", "Friction rises from 0, turns on the way back, and closes its loop."),
-    "fig6": ("friction", "μ_C sets the height, σ₀l/N how soon it comes, δ how round the corner is."),
-    "fig5": ("surface", "Pressure and tension lead at the trailing edge, X = -a in forward motion."),
-    "fig7": ("surface", "The same at 0.6 of the shear wave speed: tension beside the punch is larger."),
+    "fig2": (STUDY, "Friction rises from 0, turns on the way back, and closes its loop."),
+    "fig6": (STUDY, "Speed does nothing; μ_C sets the height, σ₀l/N how soon, δ how round."),
+    "sinusoidal": (STUDY, "The same loop by a sinusoidal motion, and what becomes of it over time."),
+    "fig5": (STUDY, "Pressure and tension lead at the trailing edge, X = -a in forward motion."),
+    "fig7": (STUDY, "Slow lines, fast markers: the pressure hardly changes, the in-plane stress does."),
     "study_in_time": ("stresses", "The same stroke in time: over before much has changed."),
     "study_in_time_slow": ("stresses", "The slow stroke in time, compressed: steady all the same."),
     "high_speed": ("surface", "From rest to c = 0.9: what σ_XX does where the pressure hardly changes."),
-    "fig8": ("surface", "A larger μ_C leans the pressure to one end and raises the tension there."),
-    "fig9": ("surface", "A stiffer contact comes nearer to full slip at the same place of the stroke."),
-    "fig10": ("surface", "Dahl's exponent acts through f alone."),
+    "fig8": (STUDY, "A larger μ_C leans the pressure to one end and raises the tension there."),
+    "fig9": (STUDY, "A stiffer contact comes nearer to full slip at the same place of the stroke."),
+    "fig10": (STUDY, "Dahl's exponent acts through f alone, and little."),
     "parameter_study": ("parameters", "What K_I and the exponents make of μ_C, at three speeds."),
     "inside": ("inside", "Stresses below the punch, slow and fast, and how far both methods are apart."),
     "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
@@ -30,7 +38,7 @@ SHOWN = {
     "slider": ("slider", "Stick-slip: the mass waits for the spring, and goes three times as fast."),
     "tables4_5": ("degrees", "Ten times more accurate with every degree: how the error is known."),
     "graded": ("mesh", "A mesh of straight cells, graded towards the edges."),
-    "box": ("mesh", "The study's block; its walls are far outside this picture."),
+    "box": (STUDY, "The study's block, whole and near the punch."),
     "own_material": ("surface", "Acrylic glass at 1 mm/s, 100 m/s and 800 m/s."),
 }  # fmt: skip
 
@@ -38,7 +46,8 @@ _HEAD = """\
 # Gallery
 
 Written by `docs/make.py` from the scenes in `scenes/`; every picture is one of the figures that `plot`
-makes of the scene's archive. To have one of your own, copy its scene and change it:
+makes of the scene's archive, or one of the study's that `./run.sh` writes into `results/`. To have one of
+your own, copy its scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml
@@ -58,25 +67,38 @@ def page() -> str:
         parts.append(
             f"## {name}\n\n{known[name].about}\n\n"
             f"[![{figure} of {name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
-            f"*{seen}* Scene: `scenes/{name}.toml`; figure: `{name}_{figure}`.\n"
+            f"*{seen}* Scene: `scenes/{name}.toml`; figure: `{_called(name, figure)}`.\n"
         )
     others = "\n".join(f"- `{name}`: {known[name].about}" for name in known if name not in SHOWN)
     parts.append(f"## Other scenes\n\n{others}\n")
     return "\n".join(parts)
 
 
-def main() -> None:
-    """Compute the scenes and draw what is shown."""
+def _called(name: str, figure: str) -> str:
+    """A figure's file, without its ending."""
+    return f"results/{CALLED.get(name, name)}" if figure == STUDY else f"{name}_{figure}"
+
+
+def main(*names: str) -> None:
+    """Compute the scenes and draw what is shown, of some scenes alone where they are named."""
     from galinx import compute, template
+    from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import content
 
     folder = DOCS / "figures" / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
+    study = compute(template("study"))
+    drawn = {drawing.name: drawing.figure for drawing in of_study(study.data, study.scene)}
+    pictures = {f"../{called}": drawn[name] for name, called in ELSEWHERE.items()}
     for name, (wanted, _) in SHOWN.items():
-        figure = compute(template(name)).figure(wanted)
+        if wanted == STUDY:
+            pictures[name] = drawn[CALLED.get(name, name)]
+        elif not names or name in names:
+            pictures[name] = compute(template(name)).figure(wanted)
+    for name, figure in pictures.items():
         (folder / f"{name}.png").write_bytes(content(figure, "png", 110))
         print(f"written: docs/figures/gallery/{name}.png", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

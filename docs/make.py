@@ -45,6 +45,7 @@ Words that `run.sh` knows besides the commands:
 |---|---|
 | `./run.sh test` | run all tests, those on two ranks included |
 | `./run.sh bench` | measure run time against error, see [Benchmarks](benchmarks.md) |
+| `./run.sh bench accuracy` | compute the tables of [Verification](verification.md) again |
 | `./run.sh docs` | write these reference pages and build all pages as HTML into `site/` |
 | `./run.sh -n RANKS COMMAND …` | run a command on MPI ranks of this machine, up to 16 a core |
 
@@ -83,6 +84,20 @@ c = 0.3                          # over the shear wave speed
 - `c` or `speed`, and the parameters of the friction law, may be lists or ranges. All their combinations
   are computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
   from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.
+- Tables `[[friction.vary]]` stand for a sum of such products: the lists of each are combined with each
+  other and with what [friction] says of the other parameters, and not with those of the next. Here μ_C is
+  varied, then σ₀l/N, in 4 laws, since that of 0.5 and 25 000 /m is in both:
+
+```toml
+[friction]
+mu_c = 0.5
+sigma0_over_load = "25000 1/m"
+[[friction.vary]]
+mu_c = [0.1, 0.5, 0.7]
+[[friction.vary]]
+sigma0_over_load = ["12500 1/m", "25000 1/m"]
+```
+
 - A range stands where a list may: `c = {from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9. Both ends
   belong to it and may carry units. `spacing = "log"` makes ratios equal instead of differences: `mu_c =
   {from = 0.01, to = 1, number = 3, spacing = "log"}` is 0.01, 0.1, 1.
@@ -277,10 +292,11 @@ def _section(section: Any) -> list[str]:
         if isinstance(getattr(known.kind, "options", None), Registry)
     )
     own = {model: parameters(models[model]).keys() for model in alternatives}
-    common = {key: known for key, known in keys.items() if key not in own[next(iter(own))]}
+    first = own[next(iter(own))]
+    common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
     parts = [_table(heads, rows(common))]
     for model, keys in alternatives.items():
-        of_model = {key: known for key, known in keys.items() if key in own[model]}
+        of_model = {k: known for k, known in keys.items() if k in own[model] or known.stands_for}
         about = models[model].about
         what = f", {about}" * (about != model)
         parts += [f'With `{chosen} = "{model}"`{what}:\n', _table(heads, rows(of_model))]

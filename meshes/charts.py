@@ -19,7 +19,7 @@ class Physical:
     contracts: bool = False
     similar: bool = True
 
-    def rotation(self, x: NDArray) -> tuple[Any, Any]:
+    def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
         return 1.0, 0.0
 
     def stretch(self, x: NDArray) -> NDArray:
@@ -43,8 +43,11 @@ class Physical:
     def surface_stretch(self, s: NDArray) -> NDArray:
         return np.ones_like(s)
 
-    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        return from_left, from_right, np.ones_like(from_left)
+    def from_edges(self, x: Any) -> tuple[Any, Any]:
+        return x[0] + 1.0, 1.0 - x[0]
+
+    def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
+        return from_left, from_right, 1.0 + 0.0 * from_left
 
 
 @dataclass(frozen=True)
@@ -59,10 +62,10 @@ class Confocal:
     contracts: bool = True
     similar: bool = False
 
-    def rotation(self, x: NDArray) -> tuple[Any, Any]:
-        A = np.tanh(x[0]) * np.cos(x[1])
-        B = np.sin(x[1])
-        length = np.sqrt(A * A + B * B)
+    def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
+        A = of.tanh(x[0]) * of.cos(x[1])
+        B = of.sin(x[1])
+        length = of.sqrt(A * A + B * B)
         return A / length, B / length
 
     def stretch(self, x: NDArray) -> NDArray:
@@ -98,6 +101,10 @@ class Confocal:
         beyond = np.abs(s) - np.pi / 2.0
         return np.where(beyond < 0.0, np.cos(s), np.sinh(np.maximum(beyond, 0.0)))
 
-    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        stretch = np.sin(np.minimum(from_left, from_right))
-        return 2.0 * np.sin(from_left / 2.0) ** 2, 2.0 * np.sin(from_right / 2.0) ** 2, stretch
+    def from_edges(self, x: Any) -> tuple[Any, Any]:
+        return x[1] + np.pi, -x[1]
+
+    def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
+        # Both distances make π together: sin of either, with all digits next to both edges.
+        left, right = of.sin(from_left / 2.0), of.sin(from_right / 2.0)
+        return 2.0 * left**2, 2.0 * right**2, 2.0 * left * right

@@ -323,4 +323,4 @@ class MeshKind:
 
 
 #: Meshes by the name that scenes use; every mesh adds itself.
-MESHES: Registry[MeshKind] = Registry("mesh")
+MESHES: Registry[MeshKind] = Registry("mesh", kind=MeshKind)

@@ -71,6 +71,13 @@ def _list(value: Any) -> bool:
     return isinstance(found, list) and all(map(is_text, found))
 
 
+def _constant(value: Any, depth: int = 2) -> bool:
+    """A text or a number, a list of them, or a table: what parameters of a solid may be."""
+    if isinstance(value, list) and depth:
+        return all(_constant(entry, depth - 1) for entry in value)
+    return is_text(value) or _number(value)
+
+
 def _object(fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
     def entries_fit(value: Any) -> bool:
         found = _from_json(value)
@@ -100,8 +107,8 @@ ATTRIBUTES = {
     "material": Attribute("name of the solid in the library, or nothing", "a text", is_text, since=3),
     "solid": Attribute(
         "its kind, its parameters and, where the scene gives it, yield_strength, in SI; layers in words",
-        "a JSON object of numbers and texts",
-        _object(lambda value: is_text(value) or _number(value)),
+        "a JSON object of numbers, texts and lists of them",
+        _object(_constant),
         since=3,
     ),
     "half_width": Attribute(

@@ -250,4 +250,5 @@ RULES: Registry[Rule] = Registry(
             (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",
         ),
     },
+    Rule,
 )  # fmt: skip

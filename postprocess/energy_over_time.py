@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.compare import RULES, Rule
 from galinx.postprocess.quantities import energy_over_time as rows
-from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.postprocess.quantities.quantity import FEM, SIE, Quantity
 from galinx.postprocess.quantities.work_over_time import OF_FRICTION, OF_LOAD
 
 #: Rules by name.
@@ -28,11 +28,26 @@ def _balance(data: Mapping[str, Any], _: Any) -> float:
     return float(np.abs(left_over(data)).max())
 
 
-def _works(data: Mapping[str, Any], _: Any) -> float:
-    fem, sie = (
-        np.array([data[row[method].path] for row in (OF_LOAD, OF_FRICTION)]) for method in (FEM, SIE)
-    )
-    return float((np.abs(fem - sie).max(axis=(0, 2)) / np.abs(sie).max(axis=(0, 2))).max())
+def _works(data: Mapping[str, Any], _: Any) -> float | None:
+    return off_until_turn(data, (OF_LOAD, OF_FRICTION))
+
+
+def off_until_turn(data: Mapping[str, Any], rows: tuple[dict[str, Quantity], ...]) -> float | None:
+    """How far both methods' histories are apart up to the first turn, over the largest of a motion.
+
+    Args:
+        data: datasets by path.
+        rows: histories by method, (motions, times) each.
+
+    Returns:
+        None where the integral equation knows none of them.
+    """
+    fem, sie = (np.array([data[row[method].path] for row in rows]) for method in (FEM, SIE))
+    known = np.isfinite(sie).all(axis=(0, 1))
+    if not known.any():
+        return None
+    off, size = (np.abs(of[..., known]).max(axis=(0, 2)) for of in (fem - sie, sie))
+    return float((off / size).max())
 
 
 RULES.register(

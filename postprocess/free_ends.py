@@ -35,10 +35,34 @@ _FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
 _STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11
 
 
-def heights_of_shapes(s: NDArray) -> NDArray[np.float64]:
-    """Shapes whose slopes are T_0, T_1, …, at s, (``SHAPES``, n)."""
+def heights_of_shapes(s: NDArray, count: int = SHAPES) -> NDArray[np.float64]:
+    """Shapes whose slopes are T_0, T_1, …, and which are 0 at s = 0, at s, (count, n)."""
     T = np.polynomial.chebyshev
-    return np.array([T.chebval(s, T.chebint([0.0] * k + [1.0])) for k in range(SHAPES)])
+    return np.array([T.chebval(s, T.chebint([0.0] * k + [1.0])) for k in range(count)])
+
+
+def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int) -> NDArray[np.float64]:
+    """How much of each of so many shapes a profile is: dP/ds [m] at centre + half_width·s, (count,)."""
+    s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
+    T = np.cos(np.outer(np.arange(count), np.arccos(s)))
+    found = 2.0 / count * (T @ slope)
+    found[0] /= 2.0
+    return found
+
+
+def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[FreeEnds]":
+    """The conditions of some frictions.
+
+    Args:
+        local: exponents α and β of a flat punch, (states,) each.
+        K: intensities at both ends, of the flat punch at v = -1 and of ``SHAPES`` shapes,
+            (states, 2, parts).
+        N: loads of these, (states, parts).
+    """
+    share = K[..., :1] / N[:, None, :1]
+    moments, wanted = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
+    return [FreeEnds(*one) for one in zip(local.α.tolist(), local.β.tolist(), moments, wanted)]
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ from galinx.postprocess.disk import refused
 from galinx.postprocess.errors import ArchiveInUse, LeftOver
 
 _SUFFIX = ".part"
+#: Name of the file that tells which archive a run was about to publish.
+_MARK = "published"
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,7 @@ class Journal:
 
     def __enter__(self) -> "Journal":
         try:
+            _sweep(self.target.parent)
             self.folder.mkdir(exist_ok=True)
             self._lock = open(files.open_file(self.folder / "lock", os.O_RDWR | os.O_CREAT), "r+b")
             try:
@@ -108,6 +111,8 @@ class Journal:
     def leave(self) -> None:
         """Tidy up for a process that ends, in order or at once: what is finished stays."""
         if self._complete or not any(self._files()):
+            for path in self._files():  # before the mark: it says that they are not needed
+                path.unlink(missing_ok=True)
             shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
@@ -138,6 +143,17 @@ class Journal:
             raise refused(self.target, error) from error
         self._rows.add((part.rows.start, part.rows.stop))
 
+    def about_to_publish(self, archive: Path) -> None:
+        """Let whoever finds this folder know the archive that is to make it useless, should this end.
+
+        Args:
+            archive: the finished file, before it gets its name.
+
+        Raises:
+            OSError: the file system refused.
+        """
+        (self.folder / _MARK).write_text(_identity(archive), encoding="utf-8")
+
     def complete(self) -> None:
         """The archive holds everything; the parts are no longer needed."""
         self._complete = True
@@ -166,8 +182,23 @@ class Journal:
         else:
             for path in there:
                 path.unlink()
-        for path in self.folder.glob(".*.partial"):
-            path.unlink()
+        for path in (*self.folder.glob(".*.partial"), self.folder / _MARK):
+            path.unlink(missing_ok=True)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what runs left beside archives that they had published when they were killed."""
+    for mark in folder.glob(f".*.work/{_MARK}"):
+        with suppress(OSError):
+            archive = folder / mark.parent.name.removeprefix(".").removesuffix(".work")
+            if mark.read_text(encoding="utf-8") == _identity(archive):
+                shutil.rmtree(mark.parent, ignore_errors=True)
+
+
+def _identity(archive: Path) -> str:
+    """What tells a file from all others, whatever its name is."""
+    about = archive.stat()
+    return f"{about.st_dev} {about.st_ino} {about.st_size} {about.st_mtime_ns}"
 
 
 def _name(rows: slice) -> str:

@@ -6,18 +6,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity, validity, yielding
+from galinx.postprocess.quantities import Quantity, states, validity, yielding
 
 
 class Scaled(NamedTuple):
-    """What a quantity is called where it is told, its unit, and what its numbers are multiplied by.
+    """What a quantity is called where it is told, its unit, and how its numbers are told.
 
-    The factor is one number, or one of each state, (states,), where these differ in their load.
+    They are multiplied by the factor, then the offset is added: one number, or one of each state,
+    (states,), where contacts of states differ.
     """
 
     name: str
     unit: str
     factor: Any
+    offset: Any = 0.0
 
     @property
     def head(self) -> str:
@@ -32,8 +34,11 @@ class Scaled(NamedTuple):
             states: numbers of their states, where these are not all.
         """
         if np.ndim(self.factor):
-            factor = self.factor[states]
-            return values * factor.reshape(-1, *(1,) * (values.ndim - 1))
+            factor, offset = (
+                np.broadcast_to(one, self.factor.shape)[states].reshape(-1, *(1,) * (values.ndim - 1))
+                for one in (self.factor, self.offset)
+            )
+            return values * factor + offset
         return values if self.factor == 1.0 else self.factor * values
 
 
@@ -49,6 +54,7 @@ def as_archived(row: Quantity, name: str) -> Scaled:
 #: Numbers of states that are lengths over the half-width.
 LENGTHS = (
     *validity.STRAINED,
+    *states.LARGEST_X.values(),
     *(where for _, where in validity.TENSION.values()),
     *(row for rows in yielding.OVER_HALF_WIDTH for row in rows.values()),
 )

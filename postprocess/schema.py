@@ -25,7 +25,7 @@ from galinx.postprocess.quantities.quantity import ALONG, INSIDE, POINT
 from galinx.solvers.parameters import Range
 
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
-VERSION, SEALED = 3, 2
+VERSION, SEALED = 4, 2
 
 #: What every run writes.
 _ALWAYS = (

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.compare import RULES, Rule
+from galinx.postprocess.energy_over_time import off_until_turn
 from galinx.postprocess.quantities import surface_over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.quantities.work_over_time import LEFT, RIGHT
@@ -49,18 +50,21 @@ def where(t: NDArray) -> dict[str, NDArray]:
     return {rows.TIMES.path: t, rows.PLACES.path: ON_SURFACE}
 
 
-def _both(data: Mapping[str, Any], _: Any) -> float:
-    return largest_change(*([data[row[method].path] for row in TOLD] for method in (FEM, SIE)))
+def _both(data: Mapping[str, Any], _: Any) -> float | None:
+    """Up to the first turn; None where the surface is not looked at before it."""
+    known = np.isfinite(data[TOLD[0][SIE].path]).all(axis=(0, 2))
+    if not known.any():
+        return None
+    return largest_change(*([data[row[method].path][:, known] for row in TOLD] for method in (FEM, SIE)))
 
 
 def _estimate(data: Mapping[str, Any], _: Any) -> float:
     return float(data[rows.ESTIMATE.path].max())
 
 
-def _beside(data: Mapping[str, Any], _: Any) -> float:
+def _beside(data: Mapping[str, Any], _: Any) -> float | None:
     """Over the largest at either end."""
-    fem, sie = (np.array([data[row[method].path] for row in ENDS]) for method in (FEM, SIE))
-    return float((np.abs(fem - sie).max(axis=(0, 2)) / np.abs(sie).max(axis=(0, 2))).max())
+    return off_until_turn(data, ENDS)
 
 
 #: Rules by name: of the surface by both methods, and by finite elements; of what is beside both ends.

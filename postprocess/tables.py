@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -27,12 +28,14 @@ class Sheet:
         columns: their heads, with units.
         rows: cells as text.
         notes: lines below.
+        words: are all cells words, which may take several lines?
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     notes: Sequence[str] = ()
+    words: bool = False
 
 
 #: Columns of the states' table after what tells states apart: (head, quantity, form).
@@ -142,6 +145,8 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("yield within, right", yielding.REACH_RIGHT),
     ("depth of yield", yielding.DEPTH),
     ("waves in a stroke", {"": validity.CROSSINGS}),
+    ("flutter from, g > 0", {"": validity.FLUTTER["positive"]}),
+    ("flutter from, g < 0", {"": validity.FLUTTER["negative"]}),
     ("slip turned, left", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
     ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
     ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),
@@ -231,9 +236,13 @@ _OF_SLIDERS = (
 def sliders_sheet(data: dict[str, Any]) -> Sheet:
     """Stick-slip of the first sliders, one for each law."""
     columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
-    rows = [[str(n), *(f"{value:.6g}" for value in values)] for n, values in enumerate(zip(*columns))]
-    heads = ["law", *(head for head, _ in _OF_SLIDERS)]
-    return Sheet("Stick-slip of the slider", heads, rows, ["peak, least: of the velocity; nan: no cycle"])
+    outcomes = map(str, data[slider.OUTCOME.path]) if columns else []
+    rows = [
+        [str(n), outcome, *("" if isnan(value) else f"{value:.6g}" for value in values)]
+        for n, (outcome, values) in enumerate(zip(outcomes, zip(*columns)))
+    ]
+    heads = ["law", "motion", *(head for head, _ in _OF_SLIDERS)]
+    return Sheet("Motion of the slider", heads, rows, ["peak, least: of the velocity in the last cycle"])
 
 
 def starts_sheet(data: dict[str, Any]) -> Sheet:

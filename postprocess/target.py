@@ -62,7 +62,7 @@ GIF = _kind("a film of galinx", rb"GIF8.*galinx")
 MP4 = _kind("a film of galinx", rb".{4}ftyp.*galinx")
 TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),", ".csv", ".txt")
 SECTION = _kind("a section fitted by galinx", rb"# Fitted by galinx", ".toml")
-TABLES = _kind("tables of galinx", rb"\s*Table 1\. Dahl")
+TABLES = _kind("tables of galinx", rb"\s*(Table 1\. Dahl|Statements of the study)")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
 
 

@@ -17,9 +17,6 @@ FEW = 30.0
 #: Share of the half-width from which on a zone at an edge is told of.
 WIDE = 0.01
 
-#: σ_XY/σ_YY from which on an interface with Coulomb friction may flutter.
-STEEP = 1.0
-
 
 @dataclass(frozen=True)
 class Steady:
@@ -66,6 +63,8 @@ class Validity:
         self._states: dict[str, int] = {}
         self._worst: dict[str, float] = {}
         self._where = 0.0
+        #: Thresholds of |σ_XY/σ_YY| that are passed.
+        self._steep: set[float] = set()
 
     def see(self, data: Mapping[str, Any]) -> None:
         """Take datasets of some states into account, by path."""
@@ -74,9 +73,12 @@ class Validity:
             self._count("crossings", often < FEW, -often)
             if self._steady and SPEED.path in data and RATIO.path in data:
                 self._see_strokes(*(data[row.path] for row in (SPEED, RATIO, of.CROSSINGS)))
-        if RATIO.path in data:
-            ratio = np.abs(data[RATIO.path])
-            self._count("ratio", ratio >= STEEP, ratio)
+        if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
+            g = data[RATIO.path]
+            threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
+            steep = np.abs(g) >= threshold
+            self._count("ratio", steep, np.abs(g))
+            self._steep |= {*threshold[steep].tolist()}
         for name, ends in (("slip", of.SLIP_REVERSED), ("strain", of.STRAIN)):
             if ends[0].path in data:
                 width = np.max([data[end.path] for end in ends], axis=0)
@@ -127,9 +129,10 @@ class Validity:
         ):
             yield f"the steady state is told, but {text}"
         if "ratio" in told:
+            least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
             yield (
-                f"|σ_XY/σ_YY| is up to {told['ratio']}, and at least {STEEP:g} in {some['ratio']}: such "
-                "an interface may flutter at short waves"
+                f"|σ_XY/σ_YY| is up to {told['ratio']}, and at least {least} in {some['ratio']}: from "
+                "there on such an interface may flutter at short waves"
             )
         if "slip" in told:
             yield (

@@ -6,7 +6,6 @@ integrals are Gauss's rule in panels of the coordinate x = log((1 + t)/(1 - t)),
 places that integrands feel.
 """
 
-
 import mpmath as mp
 import numpy as np
 from scipy.optimize import fsolve

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-#: Laws whose states and work have formulas, and those that are integrated.
+#: Laws whose states and work have formulas.
 EXACT = (
     "bouc_wen",
     "coulomb",
     "dahl",
+    "elasto_plastic",
     "gms",
     "lugre",
     "maxwell_slip",
@@ -14,7 +15,6 @@ EXACT = (
     "stribeck",
     "table",
 )
-INTEGRATED = ("elasto_plastic",)
 #: Laws that know no time and no speed.
 RATE_INDEPENDENT = ("coulomb", "dahl", "bouc_wen", "maxwell_slip", "table")
 

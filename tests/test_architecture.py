@@ -41,8 +41,6 @@ PURE = {
 }  # fmt: skip
 #: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics.
 OTHERS = {"postprocess": {"solvers"}}
-#: Lines of a file, and of a function from its name to its end, that can be read in one go.
-LONGEST_FILE, LONGEST_FUNCTION = 330, 50
 
 
 def faults_of_imports(name, found):
@@ -63,30 +61,10 @@ def faults_of_imports(name, found):
         yield from (f"{name} imports {root}, and is no finite element" for root in roots - PURE)
 
 
-def faults_of_length(name, text):
-    """What is too long in a file to be read."""
-    if (lines := len(text.splitlines())) > LONGEST_FILE:
-        yield f"{name} has {lines} lines"
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            lines = node.end_lineno - node.lineno + 1
-            if lines > LONGEST_FUNCTION:
-                yield f"{name}: {node.name} has {lines} lines"
-
-
 def test_rooms_import_what_they_may():
     assert len(FILES) > 80
     faults = [
         fault for name, path in FILES.items() for fault in faults_of_imports(name, set(imports(path)))
-    ]
-    assert not faults, "\n".join(faults)
-
-
-def test_files_and_functions_stay_readable():
-    faults = [
-        fault
-        for name, path in FILES.items()
-        for fault in faults_of_length(name, path.read_text(encoding="utf-8"))
     ]
     assert not faults, "\n".join(faults)
 
@@ -100,8 +78,6 @@ def test_what_is_against_the_rules_is_found():
         "app/x.py imports gmsh, which is met in meshes/gmsh_model.py only"
     ]
     assert list(faults_of_imports("solvers/fem/x.py", {"dolfinx", "solvers.sie.fourier"}))
-    assert list(faults_of_length("x.py", "def f():\n" + 50 * "    pass\n")) == ["x.py: f has 51 lines"]
-    assert list(faults_of_length("x.py", 331 * "\n")) == ["x.py has 331 lines"]
 
 
 def modules():

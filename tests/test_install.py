@@ -1,8 +1,10 @@
 """What pip installs: one package, with all that it needs, which calls itself galinx."""
 
+import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import zipfile
 from importlib.util import find_spec
 from pathlib import Path
@@ -110,6 +112,44 @@ def test_the_command_is_declared(names_and_site):
     _, site = names_and_site
     told = next(Path(site).glob("*.dist-info/entry_points.txt")).read_text(encoding="utf-8")
     assert "galinx = galinx.__main__:main" in told
+
+
+#: What conda-forge calls otherwise than PyPI.
+CONDA = {"matplotlib": "matplotlib-base", "dolfinx-solver-real": "fenics-dolfinx", "gmsh": "python-gmsh"}
+
+
+def test_the_conda_environment_has_what_the_package_needs():
+    """Each dependency with its least version; of dolfinx those that are supported, in real numbers."""
+    yaml = pytest.importorskip("yaml")
+    environment = yaml.safe_load((HOME / "environment.yml").read_text(encoding="utf-8"))
+    assert environment["name"] == "galinx" and environment["channels"] == ["conda-forge"]
+    listed = dict(re.fullmatch(r"([\w-]+)(.*)", line).groups() for line in environment["dependencies"])
+    assert len(listed) == len(environment["dependencies"])
+    project = tomllib.loads((HOME / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    needed = [*project["dependencies"], *project["optional-dependencies"]["fem"]]
+    needed = dict(re.fullmatch(r"([\w-]+)(.*)", line).groups() for line in needed)
+    assert needed.pop("dolfinx-solver-real") and listed["fenics-dolfinx"] == ">=0.9"
+    assert listed["petsc"] == "=*=real*" and listed["python"] == project["requires-python"]
+    assert {CONDA.get(name, name): least for name, least in needed.items()}.items() <= listed.items()
+
+
+def test_the_study_is_cited_everywhere():
+    yaml = pytest.importorskip("yaml")
+    (study,) = yaml.safe_load((HOME / "CITATION.cff").read_text(encoding="utf-8"))["references"]
+    assert study["doi"] == "10.1007/s42452-020-03989-0" and study["year"] == 2021
+    for page in ("README.md", "docs/index.md", "docs/theory.md", "docs/equations.md", "pyproject.toml"):
+        assert study["doi"] in (HOME / page).read_text(encoding="utf-8"), page
+    for page in ("README.md", "docs/index.md", "docs/theory.md", "docs/equations.md"):
+        assert study["title"] in " ".join((HOME / page).read_text(encoding="utf-8").split()), page
+
+
+def test_the_metadata_of_the_package_name_its_licence_and_its_links(names_and_site):
+    _, site = names_and_site
+    metadata = next(Path(site).glob("*.dist-info/METADATA")).read_text(encoding="utf-8")
+    assert "License: MIT" in metadata and "License :: OSI Approved :: MIT License" in metadata
+    assert "Keywords: contact mechanics,tribology" in metadata.replace(", ", ",")
+    assert "https://doi.org/10.1007/s42452-020-03989-0" in metadata
+    assert any(path.name == "LICENSE" for path in Path(site).rglob("LICENSE"))
 
 
 def test_a_container_gets_what_the_command_needs(tmp_path):

@@ -1,9 +1,11 @@
 """Texts that act instead of being seen are refused where they come in."""
 
+import re
 import unicodedata
 
 import pytest
 
+import galinx
 from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
 from galinx.postprocess.quantities import QUANTITIES, Quantity
@@ -47,6 +49,28 @@ def test_names_of_ones_own_models_have_none():
         with pytest.raises(ValueError, match=r"control character U\+0000"):
             QUANTITIES.add(quantity)
     assert "states/x" not in QUANTITIES
+
+
+@pytest.mark.parametrize(
+    "registry, model, fault",
+    [
+        ("LAWS", 3, "found 3, expected a class with the members of FrictionLaw"),
+        ("SOLIDS", str, "str lacks about, c_s, "),
+        ("PROFILES", object(), "expected a class with the members of Profile"),
+        ("PROFILES", dict, "dict lacks about, height, slope, words of Profile"),
+        ("MESHES", str, "expected an instance of MeshKind"),
+        ("QUANTITIES", None, "found None, expected an instance of Quantity"),
+        ("METHODS", 1, "expected an instance of MethodKind"),
+        ("RULES", "rule", "expected an instance of Rule"),
+    ],
+)
+def test_what_is_no_model_is_refused_where_it_is_registered(registry, model, fault):
+    models = getattr(galinx, registry)
+    with pytest.raises(TypeError, match=re.escape(fault)):
+        models.register("mine", model)
+    with pytest.raises(TypeError, match="expected a text for its name"):
+        models.register(7, next(iter(models.values())))
+    assert "mine" not in models and 7 not in models
 
 
 def test_one_thing_is_no_several():

@@ -88,7 +88,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
                 stop.too_late()
             progress.say("checking the archive")
             with clock("archive"):
-                writer.finish(attributes)
+                writer.finish(attributes, journal.about_to_publish)
             journal.complete()
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except UnwritableArchive as error:
@@ -139,7 +139,7 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 @options.overwrite
 @options.talk
 def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int:
-    """Reproduce the study: Tables 1, 3, 4, 5, Figs 2 and 5-10, a report, into a folder.
+    """Reproduce the study: tables, statements, figures, a report, into a folder.
 
     Example: ./run.sh paper -o results
     """

@@ -102,7 +102,13 @@ def dispersion(
     if ranks.is_root():
         print("kH (1)     wavelength (m)  speed (m/s)")
         for kH, length, speed in zip(known.kH, known.length, known.speed):
-            print(f"{kH:<10.4g} {length:<15.6g} {speed:.6g}")
+            print(f"{kH:<10.4g} {length:<15.6g} {'none' if speed != speed else f'{speed:.6g}'}")
+        say("k is the wavenumber, H the thickness of all layers")
+        if known.leaks:
+            say(
+                "none: no wave of that length is slower than the waves inside the solids; one that is "
+                "faster radiates into them, and is no limit of the punch"
+            )
         print(f"highest speed of a punch: {known.limit:.8g} m/s")
         for one in files.write(iter([waves.drawing(known)]), None):
             print(f"{one.noun}: {one.path}")

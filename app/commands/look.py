@@ -34,7 +34,7 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
     if ranks.is_root():
-        scaled = scaling(result.scene if si else None)
+        scaled = scaling(result.scene if si else None, data)
         if as_json:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:

@@ -23,7 +23,7 @@ _SEVERAL = 10_000
 _OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".vtkhdf", ".vtu", ".toml"}
 
 
-class _File(click.Path):
+class _Path(click.Path):
     """A path; one that no file can have is bad input, and no failure of the machine."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
@@ -33,7 +33,16 @@ class _File(click.Path):
         return super().convert(value, param, ctx)
 
 
-class _Folder(_File):
+class _File(_Path):
+    """A file's path; a name that ends with a slash is a folder's, and would lose the slash."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        if str(value).endswith(os.sep):
+            self.fail(f"found {value!r}, the name of a folder; expected a file's, as in {value}NAME")
+        return super().convert(value, param, ctx)
+
+
+class _Folder(_Path):
     """A folder's path; a name that says a file is one of somebody who expects a single file."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
@@ -66,7 +75,7 @@ si = click.option("--si", is_flag=True, help="Stresses in Pa, lengths in m, spee
 figures_to = click.option(
     "-o",
     "to",
-    type=FILE,
+    type=_Path(path_type=Path),
     default=Path("."),
     show_default=True,
     help="Folder, which is made, or a file: its ending is the format.",

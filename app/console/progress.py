@@ -74,11 +74,11 @@ class Progress:
             print(told, file=sys.stderr, flush=True)
         self.note(told)
 
-    def done(self, count: int, of: int, what: str = "states") -> None:
-        """So many of them are finished."""
+    def done(self, count: float, of: int, what: str = "states") -> None:
+        """So many of them are finished; a share of one moves the bar, and a line tells its tenths."""
         if self._bar:
             self._bar.update(self._task, completed=count, total=of)
-        self.note(f"{count} of {of} {what}")
+        self.note(f"{int(10.0 * count + 1e-9) / 10.0:g} of {of} {what}")
 
     def _add(self, handler: logging.Handler, form: str) -> None:
         handler.setFormatter(logging.Formatter(form))

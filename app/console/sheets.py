@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from galinx.app.console.streams import bare, plain
+from galinx.app.console.streams import bare, plain, width
 from galinx.postprocess.tables import Sheet
 
 
@@ -25,7 +25,7 @@ class _PlainConsole(Console):
 def new_console(file: Any = None, colours: bool = False) -> Console:
     """A console that guesses nothing about what numbers are, and wraps no line."""
     return _PlainConsole(
-        file=bare(file or sys.stdout), highlight=False, markup=False, soft_wrap=True,
+        file=bare(file or sys.stdout), highlight=False, markup=False, soft_wrap=True, width=width(),
         color_system="auto" if colours else None,
     )  # fmt: skip
 
@@ -38,7 +38,8 @@ def print_sheet(console: Console, sheet: Sheet) -> None:
             title_style="", header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
         )  # fmt: skip
         for i in columns:
-            table.add_column(sheet.columns[i], justify="right" if i else "left", no_wrap=i > 0)
+            words = sheet.words or not i
+            table.add_column(sheet.columns[i], justify="left" if words else "right", no_wrap=not words)
         for row in sheet.rows:
             table.add_row(*(row[i] for i in columns))
         console.print(table)
@@ -49,6 +50,8 @@ def print_sheet(console: Console, sheet: Sheet) -> None:
 
 def _parts(sheet: Sheet, width: int) -> list[list[int]]:
     """Columns that stand side by side, the first of all in every part."""
+    if sheet.words:
+        return [list(range(len(sheet.columns)))]
     wide = [max(map(cell_len, column)) + 2 for column in zip(sheet.columns, *sheet.rows)]
     wide[0] = min(wide[0], max(width // 2, 12))  # labels may take several lines
     parts = [[0]]

@@ -2,6 +2,7 @@
 
 import io
 import re
+import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
@@ -12,6 +13,14 @@ from typing import Any
 _COMMANDS = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
+
+#: Columns in which a table can be read.
+_NARROWEST = 40
+
+
+def width() -> int:
+    """Columns of the terminal, 80 where it is none; never so few that nothing could be read."""
+    return max(shutil.get_terminal_size().columns, _NARROWEST)
 
 
 def plain(text: str) -> str:

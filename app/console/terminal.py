@@ -2,22 +2,20 @@
 
 import json
 import os
-import shutil
 import sys
 import textwrap
 from collections.abc import Iterable
 from typing import Any
 
 from galinx.app import ranks
-from galinx.app.console.streams import plain
+from galinx.app.console.streams import plain, width
 from galinx.app.process import link
 from galinx.clock import Clock
 
 
 def say(text: str, hang: int = 2) -> None:
     """Print a line, folded at the terminal's width (80 columns where it is none)."""
-    width = shutil.get_terminal_size().columns
-    print(textwrap.fill(plain(text), width, subsequent_indent=" " * hang, break_on_hyphens=False))
+    print(textwrap.fill(plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False))
 
 
 def colours() -> bool:

@@ -37,6 +37,11 @@ class Curve:
     limit: float
     ends: tuple[float, float]
 
+    @property
+    def leaks(self) -> bool:
+        """Is there a length of which no wave is slower than those inside?"""
+        return bool(np.isnan(self.speed).any())
+
 
 def curve(scene: Scene) -> Curve:
     """Of a scene's layers.

@@ -1,6 +1,7 @@
 """Friction loops of an archive."""
 
 from collections.abc import Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from galinx.app.pictures.told import C, Told, not_shown, spread
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
 from galinx.postprocess.quantities import runs
+from galinx.solvers.friction.motion import names
 
 #: Loops that can be told apart in a panel.
 _LOOPS = 6
@@ -26,6 +28,10 @@ class Loops:
     def __init__(self, data: dict[str, Any], scene: Scene) -> None:
         self._data, self.told = data, Told(data, scene)
         self._strokes = [leg.name for leg in scene.legs]
+        if scene.motion.path is not None:  # its pieces are strokes together up to the next turn
+            together = [list(run) for _, run in groupby(scene.legs, lambda leg: leg.s)]
+            called = names([run[0].s for run in together])
+            self._strokes = [name for name, run in zip(called, together) for _ in run]
         _, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
         #: A state on each loop.
         self.first = np.array([state for state in first if data[runs.LOOP_OF_STATE.path][state] >= 0])

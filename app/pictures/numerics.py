@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from galinx.app.pictures.choice import Choice
 from galinx.app.pictures.drawing import Drawing, there
 from galinx.app.pictures.told import C, Told, spread
+from galinx.app.plan.fem import FOLLOWED
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.scene import Scene
 from galinx.meshes.cells import edges, nodes
@@ -28,13 +29,20 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """The mesh that finite elements used, and its nodes; it is laid out again, nothing is solved."""
     fem = make_plan(scene).fem
     assert fem
-    cells, degree = fem.kind.build(fem.refinement, fem.cuts), int(data[runs.RECORD["degree"].path].max())
+    cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
+    if cells is None:
+        cells = fem.kind.build(fem.refinement, fem.cuts)
     figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), choice.size)
     caption = (
         f"The {fem.mesh} mesh under the punch (orange) and, nearer and nearer, its edge X = a: lines are "
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
         f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
     )
+    if fem.mode == FOLLOWED:
+        most = int(data[runs.RECORD["cells"].path].max())
+        caption += (
+            f" Here that of the contact at rest; meshes that follow contacts have up to {most} cells."
+        )
     return Drawing("mesh", caption, figure, pixels=True)
 
 

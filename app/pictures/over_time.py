@@ -6,7 +6,7 @@ import numpy as np
 
 from galinx.app.pictures.choice import Choice
 from galinx.app.pictures.drawing import Drawing, there
-from galinx.app.pictures.told import spread
+from galinx.app.pictures.told import drive_label, spread
 from galinx.app.scene.scene import Scene, Time
 from galinx.postprocess.figures.over_time import Start, time_figure
 from galinx.postprocess.quantities import over_time as rows
@@ -26,13 +26,14 @@ def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     method = next(name for name in (FEM, SIE) if rows.V0[name].path in data)
     other = SIE if method == FEM and rows.V0[SIE].path in data else ""
     c, g, steady = (data[row.path] for row in (rows.SPEED, rows.RATIO, rows.CENTRES))
+    way = data[rows.DIRECTION.path][:, -1]
     shown = spread(list(range(len(c))), _STARTS)
     by_method = rows.CENTRE, rows.V0, rows.K_I_LEFT, rows.K_I_RIGHT
     starts = []
     for i in shown:
         curves = [data[row[method].path][i] for row in by_method]
         beside = [data[row[other].path][i] for row in by_method] if other else []
-        label = f"$c = {c[i]:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g[i]:.4g}$"
+        label = drive_label(c[i], g[i], way[i])
         starts.append(Start(label, curves, beside, steady[i]))
     asked = scene.time
     assert asked

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from galinx.app.errors import BadInput
 from galinx.app.pictures.drawing import Drawing
-from galinx.app.pictures.told import spread
+from galinx.app.pictures.told import drive_label, spread
+from galinx.app.plan.driving import headings
 from galinx.app.plan.states import enumerate_states
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.response import Curve, response_figure
@@ -28,19 +29,22 @@ class Answer:
     Attributes:
         c: speed over c_s.
         g: σ_XY/σ_YY under the punch.
+        way: ±1, in which it goes along X, 0 at rest.
         found: what is answered.
         plane_waves: what the stiffness over iω comes to at high frequencies, over 2μ a/c_s.
     """
 
     c: float
     g: float
+    way: int
     found: Oscillation
     plane_waves: float
 
     @property
     def words(self) -> str:
         """What tells it from others."""
-        return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}"
+        towards = {1: ", towards +X", -1: ", towards -X", 0: ""}[self.way]
+        return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}{towards}"
 
 
 def answers(scene: Scene, first: float, last: float | None, count: int) -> list[Answer]:
@@ -62,10 +66,11 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     if not isinstance(scene.punch.profile, Flat):
         raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a flat punch")
     states = enumerate_states(scene)
-    pairs = np.unique(np.column_stack([states.columns["c"], states.g]), axis=0)
-    limit, c = solid.limit(), np.unique(pairs[:, 0]).tolist()
-    if len(pairs) > MOST:
-        raise BadInput(f"response: found {len(pairs)} speeds with frictions, expected at most {MOST}")
+    ways = headings(scene, states.directions) * (states.columns["c"] > 0.0)
+    different = np.unique(np.column_stack([states.columns["c"], ways, states.g]), axis=0)
+    limit, c = solid.limit(), np.unique(different[:, 0]).tolist()
+    if len(different) > MOST:
+        raise BadInput(f"response: found {len(different)} speeds with frictions, expected at most {MOST}")
     if max(c) >= limit:
         raise BadInput(f"response: c = {max(c):g} is not below the Rayleigh speed {limit:.6g} (over c_s)")
     if last is None:
@@ -75,13 +80,13 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
             f"response: found frequencies from {first:g} to {last:g} c_s/a, expected them to grow"
         )
     ω, found = np.geomspace(first, last, count), []
-    for one in c:
+    for one, way in np.unique(different[:, :2], axis=0).tolist():
         try:
-            punch = OscillatingPunch(solid.response(one), limit, ω)
+            punch = OscillatingPunch(solid.response(one), limit, ω, int(way) or 1)
         except ValueError as error:
             raise BadInput(f"response: {error}") from error
-        of_speed = pairs[pairs[:, 0] == one, 1].tolist()
-        found += [Answer(one, g, punch.oscillation(g), punch.plane_waves(g)) for g in of_speed]
+        frictions = different[(different[:, :2] == (one, way)).all(axis=1), 2].tolist()
+        found += [Answer(one, g, int(way), punch.oscillation(g), punch.plane_waves(g)) for g in frictions]
     return found
 
 
@@ -117,5 +122,5 @@ def drawing(known: list[Answer]) -> Drawing:
 def _curve(answer: Answer) -> Curve:
     K, ω = answer.found.stiffness, answer.found.ω
     parts: NDArray[np.float64] = np.array([K.real, K.imag / ω])
-    label = f"$c = {answer.c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {answer.g:.4g}$"
+    label = drive_label(answer.c, answer.g, answer.way)
     return Curve(label, ω, parts, answer.plane_waves)

@@ -21,7 +21,7 @@ from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.3
 
 #: Names of the stresses that are shown unasked, and what axes call them.
-_SHOWN = {
+SHOWN = {
     next(iter(rows.values())).path.rpartition("/")[2]: label
     for rows, label in (
         (PRESSURE, ("contact stress", r"\sigma_{YY}")),
@@ -38,11 +38,11 @@ def quantities(data: dict[str, Any], method: str = "") -> list[str]:
 def stresses(data: dict[str, Any], choice: Choice) -> list[Stress]:
     """What is drawn, by method."""
     known = by_method(data, (STATE, POINT), choice.method)
-    wanted = choice.quantities or [name for name in _SHOWN if name in known]
+    wanted = choice.quantities or [name for name in SHOWN if name in known]
     return [
         Stress(
-            choice.label(*_SHOWN[name])
-            if name in _SHOWN
+            choice.label(*SHOWN[name])
+            if name in SHOWN
             else choice.called(next(iter(known[name].values()))),
             {method: choice.scale(row) * data[row.path] for method, row in known[name].items()},
         )

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,14 @@ from galinx.app.errors import BadInput
 from galinx.app.pictures.choice import Choice, noun, one_of
 from galinx.app.pictures.drawing import Drawing, by_method
 from galinx.app.pictures.told import PLACE, C, N, Told, not_shown, spread
+from galinx.app.results.si import contacts_of_states, in_si
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
 from galinx.postprocess.figures.typeset import plain, unit
 from galinx.postprocess.quantities import Quantity, column, validity
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
+from galinx.postprocess.scaling import as_archived
 
 #: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
 _VALUES, _CURVES, _PANELS = 3, 6, 12
@@ -33,6 +35,9 @@ _LIMITS = {
         *(row for rows in validity.TENSION.values() for row in rows),
     )
 }  # fmt: skip
+
+#: What axes have instead of SI's units: by what numbers are multiplied, and the unit.
+_LARGER = {"Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
@@ -101,8 +106,8 @@ def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
     """Is something swept that changes something, or wanted?"""
     told = Told(data, scene)
     if choice.x or choice.y or choice.by:
-        return bool(_columns(data, choice.method))
-    return bool(_swept(told, _some(told, choice))) and bool(_sweep(data, told, choice).drawn)
+        return bool(_columns(data, scene, choice))
+    return bool(_swept(told, _some(told, choice))) and bool(_sweep(data, scene, told, choice).drawn)
 
 
 def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
@@ -111,8 +116,8 @@ def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     Raises:
         BadInput: the states differ in no number, or nothing varies with it.
     """
-    told, known = Told(data, scene), _columns(data, choice.method)
-    sweep = _sweep(data, told, choice)
+    told, known = Told(data, scene), _columns(data, scene, choice)
+    sweep = _sweep(data, scene, told, choice)
     if not sweep.drawn:
         raise BadInput(f"--x: no number of the states varies with it; --y takes {', '.join(known)}")
     panels = [
@@ -140,9 +145,9 @@ def _some(told: Told, choice: Choice) -> NDArray[np.int64]:
     return np.array(choice.states) if choice.states else told.all
 
 
-def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
-    known, some = _columns(data, choice.method), _some(told, choice)
-    name, over, x = _over(told, _columns(data, ""), choice.x, some)
+def _sweep(data: dict[str, Any], scene: Scene, told: Told, choice: Choice) -> Sweep:
+    known, some = _columns(data, scene, choice), _some(told, choice)
+    name, over, x = _over(told, _columns(data, scene, replace(choice, method="")), choice.x, some)
     by = _by(told, choice.by, name, some)
     free = [name, by] if name in told.parameters else [by, *told.varied()]
     fixed = told.fixed([one for one in told.varied(some) if one not in free], some)
@@ -163,16 +168,27 @@ def _sweep(data: dict[str, Any], told: Told, choice: Choice) -> Sweep:
     return Sweep(over, x, by, groups, fixed, drawn[:most], same, drawn[most:])
 
 
-def _columns(data: dict[str, Any], method: str) -> dict[str, Column]:
-    """What an archive has one number a state of, but how good these are."""
+def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Column]:
+    """What an archive has one number a state of, but how good these are.
+
+    In units where they are asked for, and where every state has a half-width of its own: over that,
+    numbers of states could not be compared.
+    """
     found = {}
-    for name, rows in by_method(data, (STATE,), method).items():
+    in_units = choice.in_si or contacts_of_states(data) is not None
+    for name, rows in by_method(data, (STATE,), choice.method).items():
         first = next(iter(rows.values()))
         if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
         by = next((of for of in rows if of != FEM), "")
-        exact, fem = (data[rows[of].path] if of in rows else None for of in (by, FEM))
-        found[name] = Column(_label(first), unit(first.unit).removeprefix(r"\,"), exact, fem, by)
+        told = in_si(first, name, scene, data) if in_units else None
+        if told is None or told.unit not in _LARGER:
+            told = as_archived(first, name)
+        other = told.unit != first.unit
+        factor, shown = _LARGER[told.unit] if other else (1.0, told.unit)
+        exact, fem = (factor * told.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
+        label = _label(first).removesuffix(" over $a$" if other else "")
+        found[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
     return found
 
 

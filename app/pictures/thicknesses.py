@@ -62,7 +62,11 @@ def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         with suppress(SolveError):
             if c < body.solid.limit():
                 row[:] = _at(body, c, steepest)
-    panels = [Panel(title, [Line("", H / a, values)]) for title, values in zip(_SHOWN, found.T)]
+    titles = _SHOWN
+    if choice.in_si:
+        found[:, 2:] *= 1e-6 * scene.body.stress
+        titles = tuple(title.replace("/(N/2a)$", "$ [MPa]") for title in _SHOWN)
+    panels = [Panel(title, [Line("", H / a, values)]) for title, values in zip(titles, found.T)]
     over = Parameter("thickness of the uppermost layer over $a$", ("thickness [mm]", 1e3 * a), top / a)
     caption = (
         "The uppermost layer thinner and thicker, by the integral equation at "

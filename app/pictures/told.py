@@ -68,11 +68,12 @@ class Told:
 
     def ordered(self, some: NDArray) -> NDArray[np.int64]:
         """Some states in the order of what tells them apart, the first parameter slowest."""
-        keys = [
-            [self.distinct(name, some).index(value) for value in self.values(name)[some].tolist()]
-            for name in self.parameters
-        ]
-        return some[np.lexsort(keys[::-1])]
+        return some[np.lexsort([self._places(name, some) for name in self.parameters][::-1])]
+
+    def _places(self, name: str, some: NDArray) -> NDArray[np.int64]:
+        """Where a parameter of some states stands among its distinct values."""
+        place = {value: n for n, value in enumerate(self.distinct(name, some))}
+        return np.array([place[value] for value in self.values(name)[some].tolist()])
 
     def text(self, state: int, names: Sequence[str]) -> str:
         """The same without formulas."""
@@ -98,13 +99,21 @@ class Told:
         return f"${number(c * self.c_s)}{unit('m/s')}$"
 
     def fixed(self, names: Sequence[str], some: NDArray) -> dict[str, Any]:
-        """A value for each of some parameters, at which others are varied: the first stroke, its last
-        place, and of other lists the middle."""
+        """A value for each of some parameters, at which others are varied.
+
+        Of the combinations that most states have: the first stroke, its last place, and of other lists
+        the middle, or what is nearest to these.
+        """
+        if not len(names):
+            return {}
+        values = {name: self.distinct(name, some) for name in names}
         chosen = {STROKE: 0, PLACE: -1}
-        return {
-            name: (values := self.distinct(name, some))[chosen.get(name, (len(values) - 1) // 2)]
-            for name in names
-        }
+        middle = [chosen.get(name, (len(values[name]) - 1) // 2) % len(values[name]) for name in names]
+        places = np.stack([self._places(name, some) for name in names])
+        combinations, counts = np.unique(places, axis=1, return_counts=True)
+        most = combinations[:, counts == counts.max()]
+        best = most[:, np.abs(most - np.array(middle)[:, None]).sum(axis=0).argmin()]
+        return {name: values[name][n] for name, n in zip(names, best)}
 
     def looks(self, states: Sequence[int], names: Sequence[str]) -> list[Look]:
         """Of the curves of some states that differ in the named parameters.
@@ -123,6 +132,12 @@ class Told:
             Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * len(first)) % len(MARKERS)])
             for n, m in found
         ]
+
+
+def drive_label(c: float, g: float, way: float) -> str:
+    """How a legend names a motion: its speed over c_s, σ_XY/σ_YY, and the way ±1 it goes along X."""
+    towards = f", towards ${'-+'[way > 0]}X$" * (c > 0.0 and way != 0)
+    return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
 
 
 def spread(values: Sequence[Any], most: int) -> list[Any]:

@@ -25,6 +25,8 @@ _GRADIENTS_OF_PIECE, _POTENTIAL_OF_PIECE = 4e-6, 9e-7
 _TILTED, _KINKED, _TILTED_ON_GRADED, _KINKED_ON_GRADED = 0.15, 1.4, 8.0, 25.0
 #: Bytes of a number of the states that are treated together, and of one in an archive.
 _HELD, _ARCHIVED = 18, 8
+#: Bytes of an archive without results, and of a dataset without numbers.
+_EMPTY, _DATASET = 7e4, 1.5e3
 #: Bytes of a program without finite elements, and of a state's friction.
 _PROGRAM, _FRICTION = 130e6, 300.0
 #: Bytes of the libraries, and numbers of element matrices that are treated at once.
@@ -81,9 +83,9 @@ def bytes_of_chunk(numbers: int) -> float:
     return _HELD * numbers
 
 
-def bytes_archived(numbers: int) -> float:
-    """Size of an archive of so many numbers."""
-    return _ARCHIVED * numbers
+def bytes_archived(numbers: int, datasets: int) -> float:
+    """Size of an archive of so many numbers, in so many datasets beside those of every archive."""
+    return _EMPTY + _DATASET * datasets + _ARCHIVED * numbers
 
 
 def bytes_of_states(states: int) -> float:

@@ -53,7 +53,7 @@ class Way:
     """Strokes in one direction, or what there is time for of them.
 
     Attributes:
-        direction: ±1.
+        direction: 1 as the first of all strokes, -1 the other way.
         duration: over a/c_s.
         steps: of the finite elements, an even number.
         part_of: duration of the whole where this is a part of it, else 0.
@@ -85,19 +85,21 @@ class Way:
 
 
 @dataclass(frozen=True)
-class Friction:
-    """σ_XY/σ_YY under the punch over time.
+class Drive:
+    """Which way a punch goes, and σ_XY/σ_YY under it over time.
 
     Attributes:
+        way: ±1, in which the first stroke goes along X.
         starts: times at which strokes begin over a/c_s.
-        along: of each, by the time since then.
+        along: σ_XY/σ_YY of each stroke, by the time since then.
     """
 
+    way: int
     starts: tuple[float, ...]
     along: tuple[Callable[[float], float], ...]
 
     def __call__(self, t: float) -> float:
-        """At a time over a/c_s; where a stroke ends, that at its end."""
+        """σ_XY/σ_YY at a time over a/c_s; where a stroke ends, that at its end."""
         at = max(int(np.searchsorted(self.starts, t - 1e-9 * (1.0 + t), side="left")) - 1, 0)
         return float(self.along[at](t - self.starts[at]))
 
@@ -125,9 +127,21 @@ class _Constant:
         return self.value
 
 
-def constant(g: float) -> Friction:
-    """Friction that does not change."""
-    return Friction((0.0,), (_Constant(g),))
+def constant(way: int, g: float) -> Drive:
+    """One way under friction that does not change."""
+    return Drive(way, (0.0,), (_Constant(g),))
+
+
+def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
+    """Ways ±1 along X in which strokes go.
+
+    By the study's Eq 25 friction under a forward stroke is that of a punch that goes towards -X.
+
+    Args:
+        scene: says which sign friction has.
+        directions: of the strokes, 1 forward, -1 backward.
+    """
+    return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
 
 
 def load_of(scene: Scene) -> Load:
@@ -148,13 +162,16 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     end = scene.time.end
     if not scene.time.by_law:
         return (_way(1, end, _dividing(scene, largest)),)
+    first = scene.legs[0].s
     ways: list[Way] = []
     t = 0.0
     for direction, legs in groupby(scene.legs, lambda leg: leg.s):
         durations = [leg.length * _whole(scene) / c for leg in legs]
         # A step less than a millionth of a stroke is rounding.
         if (left := min(sum(durations), end - t)) > 1e-6 * durations[0]:
-            way = _way(direction, left, _dividing(scene, min(largest, min(durations) / _OF_STROKE)))
+            way = _way(
+                direction * first, left, _dividing(scene, min(largest, min(durations) / _OF_STROKE))
+            )
             ways += way.begun_finely if ways else (way,)
             t += left
     if end - t > 1e-6 * end:
@@ -182,8 +199,8 @@ def _whole(scene: Scene) -> float:
     return scene.friction.pre_sliding / scene.body.half_width
 
 
-def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
-    """Friction by each law of a scene along its strokes at a speed, from rest at X = 0.
+def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
+    """Drives under each law of a scene along its strokes at a speed, from rest at X = 0.
 
     Raises:
         BadInput: the law refuses its parameters.
@@ -195,6 +212,7 @@ def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
     places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]
     durations = np.array([leg.length * _whole(scene) / c for leg in scene.legs])
     starts = (0.0, *np.cumsum(durations)[:-1].tolist())
+    (way,) = headings(scene, [scene.legs[0].s]).tolist()
     found = []
     try:
         for law in friction.laws():
@@ -203,19 +221,19 @@ def frictions_at(scene: Scene, c: float) -> tuple[Friction, ...]:
                 PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
                 for stroke, duration in zip(strokes, durations)
             ]
-            found.append(Friction(starts, tuple(along)))
+            found.append(Drive(way, starts, tuple(along)))
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(found)
 
 
-def taken(ways: tuple[Way, ...], load: Load, f: Callable[[float], float]) -> NDArray[np.float64]:
-    """∫ f ±N dt after each step over N a/c_s, where friction f is positive if it is against +X.
+def taken(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray[np.float64]:
+    """∫ -σ_XY/σ_YY ±N dt after each step over N a/c_s, + towards +X: what friction takes at unit speed.
 
     Args:
         ways: of the punch.
         load: share of N.
-        f: friction coefficient at times.
+        drive: of the punch.
     """
     x, w = leggauss(_RULE)
     found, t0 = [], 0.0
@@ -223,6 +241,7 @@ def taken(ways: tuple[Way, ...], load: Load, f: Callable[[float], float]) -> NDA
         h = way.duration / way.steps
         for n in range(way.steps):
             t = t0 + h * (n + (1.0 + x) / 2.0)
-            found.append(way.direction * h / 2.0 * float(w @ (np.array(list(map(f, t))) * load(t))))
+            power = drive.way * way.direction * -np.array(list(map(drive, t))) * load(t)
+            found.append(h / 2.0 * float(w @ power))
         t0 += way.duration
     return np.cumsum(found)

@@ -14,12 +14,14 @@ from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement
-from galinx.postprocess.quantities.quantity import FOUND
+from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
+from galinx.postprocess.quantities.quantity import FEM, FOUND
+from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.found import contacts
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Places
 
@@ -29,9 +31,11 @@ _NEAREST = 1e-12
 #: Distance over a from a free end within which cells need not be finer: stresses vary like its root.
 _NEAR_FREE_END = 1e-2
 
-#: Profiles that are combinations of few shapes whatever the contact is; and what plans call the mode in
-#: which every state of another has a mesh of its own.
-LINEAR, OWN_MESHES = (Flat, Parabolic), "own meshes"
+#: What plans call the mode in which every state has a mesh of its own, graded towards kinks of the punch.
+OWN_MESHES = "own meshes"
+#: Polynomials at most whose sum a smooth punch is under its contacts, and share of its slope that is
+#: rounding.
+_MOST_SHAPES, _LEFT = 48, 1e-13
 
 #: What plans call the mode in which meshes over layers follow the contact, whose ends are found.
 FOLLOWED = "meshes that follow the contact"
@@ -39,6 +43,9 @@ FOLLOWED = "meshes that follow the contact"
 LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
+
+#: Names of the assemblers: element matrices by tensor products, condensed, and dolfinx's own.
+TENSOR, DOLFINX = "tensor", "dolfinx"
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8
@@ -56,6 +63,7 @@ class FemPlan:
         refinement: of the one mesh all speeds share, before it is cut.
         cuts: of every cell's sides.
         form: name of the weak form.
+        assembler: ``TENSOR`` or ``DOLFINX``.
         solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: the scene fixes the degree.
@@ -68,6 +76,7 @@ class FemPlan:
         drawn: the mesh where it follows interfaces.
         tests: by which the pressure is read off over layers.
         sweep: the speeds where some of them are to tell the others; None where each is solved.
+        shapes: polynomials whose sum the punch is under every contact, where ends are found.
     """
 
     mesh: str
@@ -75,6 +84,7 @@ class FemPlan:
     refinement: Refinement
     cuts: int
     form: str
+    assembler: str
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
@@ -85,6 +95,7 @@ class FemPlan:
     drawn: QuadMesh | None = None
     tests: layers.Tests | None = None
     sweep: Sweep | None = None
+    shapes: int = 0
 
     @property
     def tolerance(self) -> float:
@@ -127,6 +138,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         BadInput: a degree or solver is asked for that the weak form does not allow.
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
+    mode = _mode(scene)
     if isinstance(scene.solid, Layered):
         depths = scene.solid.depths / scene.body.half_width
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
@@ -136,7 +148,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
     planes = [response.contraction for response in responses]
-    wanted = _wanted(scene, wanted_for(solve.tolerance, places, exponent, spread, planes))
+    wanted = _wanted(scene, mode, wanted_for(solve.tolerance, places, exponent, spread, planes))
     refinement = kind.refinement(wanted)
     degrees = tuple(
         solve.degree or max(kind.degree(wanted, response.margin), 4 + mixed) for response in responses
@@ -151,14 +163,15 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solver = "direct" if mixed or needed < 0.8 * cost.free_memory() else "multigrid"
     return FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        solver=solver, degrees=degrees, fixed=solve.degree is not None, wanted=wanted,
-        mode=_mode(scene), shared_speeds=shared, sharp=exponent, drawn=drawn,
+        assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
+        wanted=wanted, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=layers.tests_of(scene.solid, kind, wanted),
-        sweep=swept(solve.sweep, responses, g) if _mode(scene) in FITTED else None,
+        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
+        shapes=_shapes(scene, responses, g) if mode == FOUND else 0,
     )  # fmt: skip
 
 
-def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
+def _wanted(scene: Scene, mode: str, wanted: Wanted) -> Wanted:
     """What a mesh has to be good for, by what is pressed on."""
     solve = scene.solve
     if scene.layers:
@@ -168,10 +181,33 @@ def _wanted(scene: Scene, wanted: Wanted) -> Wanted:
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.
-        wanted = replace(wanted, bends=_mode(scene) == FOUND)
+        wanted = replace(wanted, bends=mode == FOUND)
     if solve.own_pressure:
         wanted = wanted_of_pieces(wanted, np.array(solve.pressure)[:, 0])
     return wanted
+
+
+def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
+    """Polynomials whose sum the punch is under every contact.
+
+    How wide contacts are is what the mesh has to be good for: the integral equation tells that of the
+    slowest and the fastest, of the least and the most load and friction.
+    """
+    profile, most = scene.punch.profile, 0
+    if not scene.body.free or exponent(profile) == 2.0:
+        return 2 if scene.body.free else 1  # a parabola, or a tilted base
+    ends = [max(responses, key=lambda one: one.margin), min(responses, key=lambda one: one.margin)]
+    loads = np.repeat([min(scene.punch.loads), max(scene.punch.loads)], 3)
+    frictions = np.tile([g.min(), 0.0, g.max()], 2)
+    for response in ends:
+        try:
+            known = contacts(response, frictions, profile, loads / scene.solid.μ)
+        except SolveError:
+            return SHAPES  # finite elements say so where they look for the contact
+        for m, h in zip(known.of("centre").tolist(), known.of("half_width").tolist()):
+            size = np.abs(slopes_of_shapes(profile, m, h, 2 * _MOST_SHAPES))
+            most = max(most, int(np.flatnonzero(size > _LEFT * size.max())[-1]) + 1)
+    return int(np.clip(most, SHAPES, _MOST_SHAPES))
 
 
 def _mode(scene: Scene) -> str:
@@ -179,7 +215,7 @@ def _mode(scene: Scene) -> str:
         return LOADS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
     if scene.layers:
         return FOLLOWED
-    return FOUND if isinstance(scene.punch.profile, LINEAR) else OWN_MESHES
+    return FOUND if smooth(scene.punch.profile) else OWN_MESHES
 
 
 def wanted_for(
@@ -225,6 +261,26 @@ def _check_degree_and_solver(scene: Scene) -> None:
         raise BadInput(
             f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
             "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def check_assembler(scene: Scene) -> None:
+    """Does dolfinx's assembler serve what the scene asks of finite elements?
+
+    Raises:
+        BadInput: it does not.
+    """
+    if scene.solve.assembler != DOLFINX or FEM not in scene.solve.methods:
+        return
+    if scene.solve.own_pressure:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": its '
+            "pieces are put together from the deformation of condensed cells"
+        )
+    if scene.time is not None:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
+            "matrices of their own"
         )
 
 

@@ -158,7 +158,9 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
         faults.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
         )
-    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
+    if "fem" in scene.solve.methods:
+        faults += _of_meshes(scene)
+    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS and not faults:
         about = f" with a {body.profile.words()}" * body.found
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
     if faults:
@@ -167,6 +169,14 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
             'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones '
             'by ["fem"] too, with the quantities friction, sif, surface, interior and interfaces'
         )
+
+
+def _of_meshes(scene: Scene) -> Iterator[str]:
+    """Keys that say how a half-plane's mesh is, of which layers have their own."""
+    keys = {"mesh": (scene.solve.mesh, "confocal"), "degree": (scene.solve.degree, None)}
+    for key, (value, default) in keys.items():
+        if value != default:
+            yield f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
 
 
 def check_pressure(scene: Scene, body: Body) -> None:

@@ -6,7 +6,7 @@ from math import ceil, log10, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.driving import Friction, Load, Way, taken
+from galinx.app.plan.driving import Drive, Load, Way, taken
 from galinx.app.plan.judged_over_time import rules
 from galinx.meshes.reached import Reached
 from galinx.postprocess.quantities.quantity import FEM, SIE
@@ -71,25 +71,23 @@ class Starts:
     """All starts of a scene.
 
     Attributes:
-        frictions: by speed over c_s.
+        drives: of the punch by speed over c_s.
         methods: that follow them.
         ways: from one turn to the next; the integral equation follows the first.
         load: over time.
         steady: do they begin in steady motion?
         tolerance: wanted, relative to the largest.
         every: time between those at which the surface is told over a/c_s, None for none.
-        stress_ratio: σ_XY/σ_YY over the friction coefficient.
         a: half-width of the punch [m].
     """
 
-    frictions: dict[float, tuple[Friction, ...]]
+    drives: dict[float, tuple[Drive, ...]]
     methods: tuple[str, ...]
     ways: tuple[Way, ...]
     load: Load
     steady: bool
     tolerance: float
     every: float | None = None
-    stress_ratio: float = -1.0
     a: float = 1.0
 
     @property
@@ -113,21 +111,27 @@ class Starts:
         wanted = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
         return np.unique(2 * np.abs(np.subtract.outer(wanted, self.times(2))).argmin(axis=1) + 2)
 
-    def dissipated(self, c: float, g: Friction) -> NDArray[np.float64]:
+    def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
         """∫ f V N dt after each step over N a: what friction takes, but for its second order."""
-        return taken(self.ways, self.load, lambda t: g(t) / self.stress_ratio) * c
+        return taken(self.ways, self.load, drive) * c
+
+    def directions(self, drive: Drive) -> NDArray[np.float64]:
+        """Ways ±1 along X in which the punch goes in each step, (steps,)."""
+        return drive.way * np.repeat(
+            [float(way.direction) for way in self.ways], [way.steps for way in self.ways]
+        )
 
     @property
     def shortest(self) -> float:
         """Shortest time within which something changes over a/c_s."""
         ways = [way.stroke for way in self.ways if self.changing]
-        frictions = [max(one.shortest, _QUICK) for many in self.frictions.values() for one in many]
+        frictions = [max(one.shortest, _QUICK) for many in self.drives.values() for one in many]
         return min(self.load.shortest, *ways, *frictions)
 
     @property
     def changing(self) -> bool:
         """Does friction change?"""
-        return any(one.constant is None for many in self.frictions.values() for one in many)
+        return any(one.constant is None for many in self.drives.values() for one in many)
 
     @property
     def turns(self) -> bool:
@@ -150,7 +154,7 @@ class Starts:
     @property
     def count(self) -> int:
         """How many."""
-        return sum(map(len, self.frictions.values()))
+        return sum(map(len, self.drives.values()))
 
     @property
     def rules(self) -> frozenset[str]:
@@ -171,7 +175,7 @@ class Starts:
             not self.tells_K_I
         )
         if FEM in self.methods:
-            for c in self.frictions:
+            for c in self.drives:
                 _, level = self.levels(solid, c)
                 lines.append(
                     f"finite elements in time at c = {c:g} (over c_s): {what}, {self.steps} steps, "
@@ -183,7 +187,7 @@ class Starts:
     def seconds(self, solid: Solid) -> float:
         """About how long all of it takes."""
         total = 0.0
-        for c, of_speed in self.frictions.items():
+        for c, of_speed in self.drives.items():
             if FEM in self.methods:
                 for level in self.levels(solid, c):
                     n = level.unknowns

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from galinx.app.plan.fem import FemPlan, plan_fem
+from galinx.app.plan.fem import FemPlan, check_assembler, plan_fem
 from galinx.app.plan.limits import (
     check_found,
     check_layers,
@@ -62,6 +62,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
         check_size(body.loaded(load), methods)
     check_layers(scene, body, methods)
     check_found(scene, body, methods)
+    check_assembler(scene)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from galinx.app.errors import BadInput
-from galinx.app.plan.driving import Friction, constant, frictions_at, load_of, ways_at
+from galinx.app.plan.driving import Drive, constant, drives_at, headings, load_of, ways_at
 from galinx.app.plan.known_in_time import check_in_time
 from galinx.app.plan.over_time import Starts
 from galinx.app.plan.states import States
@@ -32,32 +32,31 @@ def starts(scene: Scene, states: States) -> Starts | None:
     load = load_of(scene)
     largest = min(_STEP, load.shortest / _OF_RAMP) / (_OF_LAYERS if scene.layers else 1.0)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
-    frictions = _frictions(scene, states)
-    ways = ways_at(scene, next(iter(frictions)), step)
+    drives = _drives(scene, states)
+    ways = ways_at(scene, next(iter(drives)), step)
     if methods == (SIE,) and len(ways) > 1:
         raise BadInput(
             f"solve.methods: found sie only, which knows no way back, and the punch turns round at "
             f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
         )
     found = Starts(
-        frictions, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
-        scene.friction.stress_ratio, scene.body.half_width,
+        drives, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
+        scene.body.half_width,
     )  # fmt: skip
     if FEM in methods:
         _check_size(found, scene)
     return found
 
 
-def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]]:
-    """Friction of all starts by speed.
+def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
+    """Drives of all starts by speed.
 
     Raises:
         BadInput: there are too many, or their speed has no answer.
     """
     assert scene.time
     c = states.columns["c"]
-    pairs = np.unique(np.column_stack([c, states.g]), axis=0)
-    found: dict[float, tuple[Friction, ...]] = {}
+    found: dict[float, tuple[Drive, ...]] = {}
     if scene.time.by_law:
         speeds = np.unique(c).tolist()
         if len(speeds) > 1 or speeds[0] == 0.0:
@@ -65,10 +64,11 @@ def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]
                 f'time.friction = "law": found {len(speeds)} speeds, the first {speeds[0]:g} over c_s; '
                 "expected one that is not 0, for strokes of another take another time"
             )
-        found[speeds[0]] = frictions_at(scene, speeds[0])
+        found[speeds[0]] = drives_at(scene, speeds[0])
     else:
-        for speed, ratio in pairs.tolist():
-            found[speed] = (*found.get(speed, ()), constant(ratio))
+        different = np.unique(np.column_stack([c, states.g, headings(scene, states.directions)]), axis=0)
+        for speed, ratio, way in different.tolist():
+            found[speed] = (*found.get(speed, ()), constant(round(way), ratio))
     if (many := sum(map(len, found.values()))) > MOST:
         raise BadInput(
             f"time: the scene has {many} states of different speed or friction, expected at most "
@@ -83,7 +83,7 @@ def _frictions(scene: Scene, states: States) -> dict[float, tuple[Friction, ...]
 
 
 def _check_size(found: Starts, scene: Scene) -> None:
-    for c in found.frictions:
+    for c in found.drives:
         _, level = found.levels(scene.solid, c)
         if level.unknowns > LARGEST:
             raise BadInput(

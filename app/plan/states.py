@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,12 @@ from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import oddities
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
+from galinx.postprocess.quantities.validity import SIGNS
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, Integrator, closely
 from galinx.solvers.friction.motion import last_cycle
 from galinx.solvers.friction.strokes import Stroke, Work, follow, works
+from galinx.solvers.solids.solid import Solid
 
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
@@ -35,9 +38,10 @@ class States:
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
             speed), the load in N/m where there are several, the law's parameters, the speed and that of
-            a wave along the surface in m/s, how often a wave crosses the contact in a stroke, f = F/N
-            signed, and g = σ_XY/σ_YY under the punch.
+            a wave along the surface in m/s, flutter thresholds of both signs of g, how often a wave
+            crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
         inner: inner state of the law at each state, (states, n).
+        directions: of the strokes, 1 forward, -1 backward, (states,).
         loop: row of ``loops`` of each state, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
         loops: friction coefficient there, (loops, steps).
@@ -46,6 +50,7 @@ class States:
 
     columns: dict[str, NDArray]
     inner: NDArray[np.float64]
+    directions: NDArray[np.int64]
     loop: NDArray[np.int64]
     travel: NDArray[np.float64]
     loops: NDArray[np.float64]
@@ -166,9 +171,11 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     loop[len(found.f) :] = -1
     columns = _columns(scene, known, _of_all(known, f))
     travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
+    along = np.repeat([leg.s for leg in scene.legs], [len(X) for X in scene.places])
     return States(
-        columns, _of_all(known, inner), _of_all(known, np.tile(loop[:, None], f.shape[1])), travel,
-        np.array(found.f), found.archived(scene),
+        columns, _of_all(known, inner), _of_all(known, np.tile(along, (count, 1))),
+        _of_all(known, np.tile(loop[:, None], f.shape[1])), travel, np.array(found.f),
+        found.archived(scene),
     )  # fmt: skip
 
 
@@ -205,11 +212,17 @@ def _columns(scene: Scene, known: Order, f: NDArray) -> dict[str, NDArray]:
         **({"load": of_load} if loads > 1 else {}),
         **values,
         "speed": np.where(np.isnan(speed), given, speed),
+        **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": _crossings(scene, lengths, _half_widths(scene, known), c),
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }
+
+
+def _flutter(solid: Solid) -> list[float]:
+    """Thresholds of both signs of σ_XY/σ_YY; NaN for none, and of a user's own solid that tells none."""
+    return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
 
 
 def _half_widths(scene: Scene, known: Order) -> Any:

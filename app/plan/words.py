@@ -2,7 +2,7 @@
 
 from galinx.app import ranks
 from galinx.app.plan import cost
-from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan, levels, unknowns
+from galinx.app.plan.fem import DOLFINX, FOLLOWED, OWN_MESHES, FemPlan, levels, unknowns
 from galinx.app.plan.sweep import BESIDES, LADDERS
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
 from galinx.app.run.methods import METHODS
@@ -59,6 +59,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     result = [f"mesh: {fem.mesh}, {cells} quadrilaterals, shared by all speeds"]
     pressure = " and those of a pressure" * scene.solid.nearly_incompressible
     others = "one of a higher degree measures" if fem.fixed else "two of lower degree measure"
+    by = ", assembled by dolfinx" * (fem.assembler == DOLFINX)
     solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"
     speeds: dict[int, list[str]] = {}
     for task, degree in zip(plan.tasks, fem.degrees):
@@ -67,15 +68,15 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
         c, degree = [task.response.c for task in plan.tasks], max(fem.degrees)
         result.append(
             f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
-            f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; so many are solved as "
-            f"a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these {solver} "
-            f"serves all states, at {LADDERS} {others} its error"
+            f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; so many are "
+            f"solved as a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these "
+            f"{solver} serves all states, at {LADDERS} {others} its error"
         )
         speeds = {}
     result += [
         f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
-        f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}; at each speed {solver} serves all "
-        f"states, {others} its error"
+        f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; at each speed {solver} serves "
+        f"all states, {others} its error"
         for degree, some in speeds.items()
     ]
     if ranks.size() > 1:
@@ -88,7 +89,8 @@ def expense(plan: Plan) -> str:
     """Estimated time and memory of a plan, and the size of its archive."""
     together = plan.chunk * plan.numbers
     positions = sum(len(values) for values in plan.positions.values())
-    archived = f"an archive of {_size(cost.bytes_archived(plan.states * plan.numbers + positions))}"
+    numbers = plan.states * (plan.numbers + len(plan.quantities)) + positions
+    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(plan.quantities)))}"
     if not plan.fem:
         seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
@@ -168,4 +170,7 @@ def _seconds_of_levels(fem: FemPlan, states: int) -> float:
 
 def _size(count: float) -> str:
     """Bytes for a reader."""
-    return f"{count / 1e9:.2g} GB" if count >= 1e8 else f"{count / 1e6:.2g} MB"
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= 0.1 * size:
+            return f"{count / size:.2g} {unit}"
+    return f"{count / 1e3:.2g} kB"

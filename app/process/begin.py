@@ -1,10 +1,13 @@
 """What a process does first, before any library is imported that could fail."""
 
+import fcntl
 import io
 import os
 import resource
+import secrets
 import sys
 import warnings
+from contextlib import suppress
 from typing import Any, NoReturn
 
 from galinx.app import errors
@@ -33,13 +36,22 @@ def refuse(message: str) -> NoReturn:
 
 
 def _open_streams() -> None:
-    """What is closed becomes the null device: the next file would get its number, and all output."""
+    """What is closed becomes the null device: the next file would get its number, and all output.
+
+    So does an output that is open for reading only: where the error stream is closed, bash hands on its
+    script under that number.
+    """
     for number in range(3):
         try:
-            os.fstat(number)
+            flags = fcntl.fcntl(number, fcntl.F_GETFL)
         except OSError:
             # The lowest number that is free is this one.
             os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+            continue
+        if number > 0 and flags & os.O_ACCMODE == os.O_RDONLY:
+            null = os.open(os.devnull, os.O_RDWR)
+            os.dup2(null, number)
+            os.close(null)
 
 
 def _prepare_streams() -> None:
@@ -63,8 +75,26 @@ def _check_machine() -> None:
             f"the address space is limited to {limit / 1e6:.0f} MB, expected at least "
             f"{_ADDRESS_SPACE / 1e6:.0f} MB; raise the limit (ulimit -v, in kB)"
         )
+    _find_temporary_folder()
     if os.path.expanduser("~") == "~":
         refuse(
             f"no home folder is known: HOME is not set, and user {os.getuid()} has no entry in passwd; "
             "set HOME to a folder that can be written"
         )
+
+
+def _find_temporary_folder() -> None:
+    """Let TMPDIR name a folder that files can be made in: MPI ends the process without one."""
+    named = [os.environ[name] for name in ("TMPDIR", "TEMP", "TMP") if os.environ.get(name)]
+    for folder in (*named, "/tmp", "/var/tmp", os.curdir):
+        probe = os.path.join(folder, f".galinx-{os.getpid()}-{secrets.token_hex(4)}")
+        with suppress(OSError):
+            os.mkdir(probe)
+            os.rmdir(probe)
+            if named and folder != named[0]:
+                os.environ["TMPDIR"] = os.path.abspath(folder)
+            return
+    refuse(
+        f"no folder for temporary files: none can be made in {', '.join((*named, '/tmp', '/var/tmp'))} "
+        "or the current folder; set TMPDIR to one that can be written"
+    )

@@ -149,7 +149,7 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
 def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     for name, rows in _LIMITS:
         for row in _either(data, rows):
-            told = in_si(row, "", scene)
+            told = in_si(row, "", scene, data)
             if told and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
                 form = "{:.4g}" if told.unit == "1" else ""
                 yield Answer(name, *_span(told.of(data[row.path]), told.unit, form))

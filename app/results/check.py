@@ -11,6 +11,8 @@ from galinx import __version__
 from galinx.app.plan.judged_over_time import IN_TIME
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
+from galinx.app.plan.task import Plan
+from galinx.app.results import recomputed
 from galinx.app.run.judge import Judge
 from galinx.app.run.told import of_scene
 from galinx.app.scene import read as scenes
@@ -41,7 +43,10 @@ def faults(path: Path) -> list[str]:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         found = [*_of_states(archive, scene)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
-            found += _of_plan(archive, scene)
+            plan = make_plan(scene)
+            found += _of_plan(archive, scene, plan)
+            if not found:
+                found += recomputed.faults(archive, scene, plan)
         return [*found, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
@@ -70,9 +75,9 @@ def _same(found: Any, expected: Any) -> bool:
     return np.allclose(found, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
-def _of_plan(archive: reader.Archive, scene: Scene) -> Iterator[str]:
+def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]:
     """What the same program would archive of the scene."""
-    plan, attributes, data = make_plan(scene), archive.attributes, archive.data
+    attributes, data = archive.attributes, archive.data
     given = of_scene(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer

@@ -15,7 +15,7 @@ from galinx.postprocess.apart import parameters
 from galinx.postprocess.hdf5 import reader
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
-from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.postprocess.scaling import Scaled
 
@@ -40,7 +40,7 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
     """
     where, word = TABLES[which]
     with reader.opened(path) as archive:
-        rows = _rows(archive, where)
+        rows = _rows(archive, where, si)
         if where and not any(where in row.over for row in rows):
             raise BadInput(
                 f"{path} holds no stresses for --{which}; a scene asks for them by "
@@ -53,9 +53,11 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
             yield _text(zip(numbers, *cells))
 
 
-def _rows(archive: reader.Archive, where: str) -> list[Quantity]:
-    """What tells states apart, then positions, then all that has one value at each of them."""
+def _rows(archive: reader.Archive, where: str, load: bool) -> list[Quantity]:
+    """What tells states apart, the load too if asked for, positions, all with one value at each."""
     first = parameters(archive.data)
+    if load:
+        first[LOAD.path] = LOAD
     there = [row for path, row in table().items() if path in archive.names and of_states(path)]
     shapes = [(where,), (STATE, where)] if where else [(STATE,)]
     others = (row for shape in shapes for row in there if row.over == shape and row.path not in first)
@@ -67,7 +69,7 @@ def _columns(
 ) -> tuple[list[Quantity], list[Scaled]]:
     """Those rows that are told, and how."""
     scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive") if si else None
-    scaled = scaling(scene)
+    scaled = scaling(scene, archive.data)
     found = ((row, scaled(row, row.path.partition("/")[2].replace("/", "_"))) for row in rows)
     told = [(row, column) for row, column in found if column]
     return [row for row, _ in told], [column for _, column in told]
@@ -82,7 +84,8 @@ def _blocks(
     together = max(1, _TOGETHER // max(1, points))
     for start in range(0, states, together):
         some = slice(start, min(start + together, states))
-        data = archive.rows(some, [row.path for row in rows])
+        data = archive.rows(some, [row.path for row in rows if row.path in archive.names])
+        data.setdefault(LOAD.path, np.full(some.stop - some.start, archive.attributes["load"]))
         for first in range(0, points, _TOGETHER):
             at = slice(first, min(first + _TOGETHER, points))
             shape = some.stop - some.start, at.stop - at.start

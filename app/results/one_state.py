@@ -5,6 +5,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app import ranks
@@ -15,9 +16,10 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states, order
 from galinx.app.plan.task import Plan, Task
 from galinx.app.scene.scene import Output, Scene
+from galinx.app.scene.sense import FRICTIONS
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE, INTENSITIES
+from galinx.postprocess.quantities.quantity import INTENSITIES
 
 
 @dataclass(frozen=True)
@@ -164,12 +166,48 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
         )
 
 
+def under_punch(
+    scene: Scene, numbers: Sequence[int], degree: int | None = None
+) -> tuple[NDArray, NDArray]:
+    """Displacements of states under the punch; not collective, of one rank only.
+
+    Args:
+        scene: the scene.
+        numbers: of the states, as in :func:`chosen`.
+        degree: polynomial degree; None for that which the scene's tolerance suggests.
+
+    Returns:
+        Positions over a, (n,), and u and v [m] relative to the surface 100 a away, (states, 2, n).
+
+    Raises:
+        BadInput: no such state, or finite elements have no answer there.
+        SolveError: the equations could not be solved.
+    """
+    X, fields = np.empty(0), []
+    for one in solved([_alone(state) for state in chosen(scene, numbers, [degree] * len(numbers))]):
+        nodes = one.space.contact
+        X = one.space.chart.surface_position(nodes.s)
+        at_nodes = np.empty((2, len(nodes.s)))
+        for i in (0, 1):
+            values = [field.getValues(nodes.dofs(i)) for field in one.fields]
+            at_nodes[i, nodes.owned] = scene.body.displacement * (one.weights @ np.array(values))
+        fields.append(at_nodes)
+    return X, np.array(fields)
+
+
+def _alone(state: OneState) -> OneState:
+    """The same with a mesh that no other rank shares."""
+    assert state.plan.fem
+    return replace(state, plan=replace(state.plan, fem=replace(state.plan.fem, shared_speeds=True)))
+
+
 def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
     """The scene with finite elements, at all its speeds that these can do, and those that are wanted.
 
-    All speeds share one mesh; with the same speeds and places it is that of a run.
+    All speeds share one mesh; with the same speeds and places it is that of a run. States are steady
+    ones, whatever else the scene asks for.
     """
-    mechanics = bool(set(scene.output.quantities) - {FRICTION_ALONE})
+    steady = tuple(name for name in scene.output.quantities if name not in FRICTIONS)
     every = order(scene).speeds
     possible = tuple(v for v in every if v in wanted or scene.solid.response(v).margin > 0.0)
     strokes = tuple(
@@ -180,7 +218,9 @@ def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
         scene,
         motion=replace(scene.motion, c=possible, speed=None, strokes=strokes),
         solve=replace(scene.solve, methods=("fem",)),
-        output=scene.output if mechanics else Output(quantities=(INTENSITIES,)),
+        output=replace(scene.output, quantities=steady) if steady else Output(quantities=(INTENSITIES,)),
+        slider=None,
+        time=None,
     )
 
 

@@ -15,8 +15,9 @@ from galinx.app.study.published import (
     intensities,
     intensity_rows,
     like_the_studys,
+    limit_of_steady_motion,
 )
-from galinx.postprocess.figures.canvas import in_a_page
+from galinx.postprocess.figures.canvas import embedded, in_a_page
 from galinx.postprocess.page import render
 from galinx.postprocess.quantities import runs
 from galinx.postprocess.tables import Sheet, starts_sheet
@@ -63,13 +64,23 @@ class Report:
     ) -> None:
         self._data, self._attributes, self._scene = data, attributes, scene
         self._sheets = _published(data, scene) if sheets is None else sheets
-        self._scaling = scaling(scene if si else None)
+        self._scaling = scaling(scene if si else None, data)
         self._pictures: list[dict[str, Any]] = []
 
-    def add(self, drawing: Drawing) -> None:
-        """Take a figure in; it can be saved elsewhere afterwards."""
-        source = in_a_page(drawing.figure, drawing.pixels)
-        self._pictures.append({"source": source, "caption": drawing.told, "pixels": drawing.pixels})
+    def add(self, drawing: Drawing, png: bytes | None = None) -> None:
+        """Take a figure in; it can be saved elsewhere afterwards.
+
+        Args:
+            drawing: which.
+            png: lines as a file's bytes, where there is one already; else they are drawn for the page, as
+                maps always are, whose files are large.
+        """
+        picture = {"caption": drawing.told, "pixels": drawing.pixels, "width": None}
+        if png is None or drawing.pixels:
+            picture["source"] = in_a_page(drawing.figure, drawing.pixels)
+        else:  # as wide as it would be if it were drawn for the page
+            picture |= {"source": embedded(png), "width": round(96.0 * drawing.figure.get_figwidth())}
+        self._pictures.append(picture)
 
     def text(self) -> str:
         """The page."""
@@ -107,8 +118,12 @@ def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
     """The study's tables that the archive has all states of, for the study's solid."""
     if not like_the_studys(scene.solid):
         return []
-    found = {name: intensity_rows(name, data) for name in INTENSITIES}
-    return [intensities(name, rows) for name, rows in found.items() if rows]
+    a, found = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
+    return [
+        intensities(name, rows, limit_of_steady_motion(name, data, a))
+        for name, rows in found.items()
+        if rows
+    ]
 
 
 def _versions(attributes: dict[str, Any]) -> str:

@@ -14,13 +14,20 @@ from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
+#: Ends of names of places along X: where ends are found they are told from the punch's axis.
+_ALONG_X = ("X_over_a", "pressure_position")
 
 
-def scaling(scene: Scene | None) -> Scaling:
-    """How quantities are told: in SI of a scene, or as archived where none is given."""
+def scaling(scene: Scene | None, data: Mapping[str, Any]) -> Scaling:
+    """How quantities are told: in SI of a scene, or as archived where none is given.
+
+    Args:
+        scene: that the archive is of.
+        data: of the archive, by path: contacts of states, where these differ.
+    """
     if scene is None:
         return as_archived
-    return lambda row, name: in_si(row, name, scene)
+    return lambda row, name: in_si(row, name, scene, data)
 
 
 def unit_of_stress(scene: Scene) -> Any:
@@ -33,44 +40,54 @@ def unit_of_stress(scene: Scene) -> Any:
 
 def stress_of_states(data: Mapping[str, Any], scene: Scene) -> NDArray[np.float64]:
     """N/(2a) [Pa] of every state of an archive, (states, 1)."""
-    of_states = [data[row.path] for row in HALF_WIDTH.values() if row.path in data]
     load = data.get(LOAD.path, np.full(len(data[FRICTION.path]), scene.punch.load))
-    return (load / (2.0 * (of_states[0] if of_states else scene.body.half_width)))[:, None]
+    ends = contacts_of_states(data)
+    return (load / (2.0 * (ends[0] if ends else scene.body.half_width)))[:, None]
+
+
+def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | None:
+    """Half-width and middle [m] of every state's contact, where they are archived."""
+    for h, m in zip(HALF_WIDTH.values(), CENTRE.values()):
+        if h.path in data and m.path in data:
+            return data[h.path], data[m.path]
+    return None
 
 
 def drawn_in_si(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
     """What :class:`galinx.app.pictures.choice.Choice` is to know of units: ``unit``, and ``ends`` where
     every state has its own."""
-    ends = [
-        (1e3 * data[h.path], 1e3 * data[m.path])
-        for h, m in zip(HALF_WIDTH.values(), CENTRE.values())
-        if h.path in data
-    ]
+    ends = contacts_of_states(data)
     if not ends and len(scene.punch.loads) == 1:
         return {"unit": 1e-6 * unit_of_stress(scene)}
     return {
-        "unit": 1e-6 * stress_of_states(data, scene)[:, 0], "ends": ends[0] if ends else None,
-    }  # fmt: skip
+        "unit": 1e-6 * stress_of_states(data, scene)[:, 0],
+        "ends": (1e3 * ends[0], 1e3 * ends[1]) if ends else None,
+    }
 
 
-def in_si(row: Quantity, name: str, scene: Scene) -> Scaled | None:
+def in_si(row: Quantity, name: str, scene: Scene, data: Mapping[str, Any]) -> Scaled | None:
     """A quantity in SI; dimensionless ones that are over no length, stress or speed stay.
 
     Args:
         row: in the table of quantities.
         name: what it is called as archived.
         scene: that the archive is of.
+        data: of the archive, by path.
 
     Returns:
         None for what another quantity becomes.
     """
     body = scene.body
-    if body.found and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
-        return as_archived(row, name)  # over the state's own half-width, which stands beside it
+    ends = contacts_of_states(data) if body.found else None
+    if body.found and ends is None and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
+        return as_archived(row, name)  # no contact has been found
     if row.unit == "N/(2a)":
-        return Scaled(name, "Pa", unit_of_stress(scene))
+        return Scaled(name, "Pa", stress_of_states(data, scene)[:, 0] if ends else unit_of_stress(scene))
     if row.path in _OVER_HALF_WIDTH:
-        return Scaled(name.removesuffix("_over_a"), "m", body.half_width)
+        told = name.removesuffix("_over_a")
+        if ends is None:
+            return Scaled(told, "m", body.half_width)
+        return Scaled(told, "m", ends[0], ends[1] if row.path.endswith(_ALONG_X) else 0.0)
     if row is SPEED:
         return Scaled("speed", "m/s", body.solid.c_s)
     return None if row is VELOCITY else as_archived(row, name)

@@ -16,6 +16,13 @@ from galinx.solvers.transient.approach import approach
 _FAILURES = 10
 
 
+def limits(scene: Scene, names: Iterable[str]) -> dict[str, float]:
+    """Largest values of a PASS by the names of rules; what is only told is not among them."""
+    rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
+    allowed = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
+    return {name: limit for name, limit in allowed.items() if limit is not None}
+
+
 class Judge:
     """Watches parts of results and says PASS or FAIL; keeps the worst of every comparison.
 
@@ -33,13 +40,7 @@ class Judge:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
         self.validity = Validity(_steady(scene))
-        rules = {name: RULES[name] for name in names}
-        limits = {
-            name: rule.allowed(scene.solve.tolerance)
-            for name, rule in rules.items()
-            if rule.mode in scene.modes
-        }
-        self._limits = {name: limit for name, limit in limits.items() if limit is not None}
+        self._limits = limits(scene, names)
         self._judged: dict[str, float] = {}
 
     def see(self, comparisons: list[Comparison]) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.driving import Friction
+from galinx.app.plan.driving import Drive
 from galinx.app.plan.over_time import Level, Starts
 from galinx.app.run.at_once import AtOnce
 from galinx.clock import Clock
@@ -50,7 +50,7 @@ def follow(
         _import(clock)
     # Finite elements are the dearer ones, and the fastest of them.
     jobs = [
-        (name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.frictions)[::-1]
+        (name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.drives)[::-1]
     ]
     found: dict[_Job, list[_Found]] = {}
     of = len(starts.methods) * starts.count
@@ -80,9 +80,9 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
     """Each start a row."""
     t = starts.times()
     every = []
-    for c, of_speed in starts.frictions.items():
-        for i, friction in enumerate(of_speed):
-            g = np.array([friction(at) for at in t])
+    for c, of_speed in starts.drives.items():
+        for i, drive in enumerate(of_speed):
+            g = np.array([drive(at) for at in t])
             at_once = AtOnce(starts, solid, c)
             centres = at_once.centres(g)
             one = {
@@ -91,14 +91,14 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
                 rows.STEADY_K_I.path: np.array(at_once.K_I(g[-1])),
                 rows.CENTRES.path: centres,
                 APPROACH.path: np.array(_within(solid, c, g[-1])),
-                energy_over_time.DISSIPATED.path: starts.dissipated(c, friction),
+                energy_over_time.DISSIPATED.path: starts.dissipated(c, drive),
+                rows.DIRECTION.path: starts.directions(drive),
             }  # fmt: skip
             for method in (SIE, FEM):
                 one |= found[method, c][i] if method in starts.methods else {}
             every.append(one)
     joined = {path: np.array([one[path] for one in every]) for path in every[0]}
-    directions = np.concatenate([np.full(way.steps, float(way.direction)) for way in starts.ways])
-    whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t), rows.DIRECTION.path: directions} | joined
+    whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)} | joined
     if starts.every:
         whole |= surface_over_time.where(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
@@ -115,21 +115,25 @@ def _within(solid: Solid, c: float, g: float) -> float:
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
     first, response = starts.ways[0], starts.response(solid, c)
-    shortest = min(starts.shortest, *(friction.shortest for friction in starts.frictions[c]))
+    shortest = min(starts.shortest, *(drive.shortest for drive in starts.drives[c]))
     largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
     terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
     with clock("integral equation in time"):
         steps, whole = first.steps * finer, bool(starts.every)
-        punch = StartingPunch(response, solid.limit(), first.duration, steps, terms, whole)
+        punches = {
+            way: StartingPunch(response, solid.limit(), first.duration, steps, terms, whole, way)
+            for way in {drive.way for drive in starts.drives[c]}
+        }
         found = []
-        for friction in starts.frictions[c]:
-            if friction.constant is None:
-                g = np.vectorize(friction, otypes=[float])
+        for drive in starts.drives[c]:
+            punch = punches[drive.way]
+            if drive.constant is None:
+                g = np.vectorize(drive, otypes=[float])
                 course = punch.course_along(g, starts.load, starts.steady)
                 values: tuple[NDArray, ...] = course.v0, course.centre, course.K_left, course.K_right
             else:
-                course, values = _of_constant(friction.constant, starts, punch, response)
+                course, values = _of_constant(drive.constant, starts, punch, response)
             if not starts.tells_K_I:
                 values = (*values[:2], *np.full((2, len(course.t)), np.nan))
             one = _named(SIE, values)
@@ -142,18 +146,18 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
             one = {path: _until_the_end(value[finer - 1 :: finer], starts) for path, value in one.items()}
             if starts.every:
                 one |= surface_over_time.named(
-                    SIE, _along_surface(course, finer, response, friction, starts)
+                    SIE, _along_surface(course, finer, response, drive, starts)
                 )
             found.append(one)
     return found
 
 
 def _along_surface(
-    course: Course, finer: int, response: Response, friction: Friction, starts: Starts
+    course: Course, finer: int, response: Response, drive: Drive, starts: Starts
 ) -> NDArray[np.float64]:
     """σ_XX, σ_YY and σ_XY when the surface is told, (3, times, places); NaN after a turn."""
     assert course.surface is not None
-    steady, first = FlatPunch(response, friction(0.0)), float(starts.load(0.0))
+    steady, first = FlatPunch(response, drive(0.0)), float(starts.load(0.0))
     σ_YY = steady.σ_YY(ON_SURFACE)
     before = np.array([steady.σ_XX(ON_SURFACE), σ_YY, steady.g * σ_YY])
     added = np.moveaxis(course.surface[:, finer - 1 :: finer], 0, 1)
@@ -192,12 +196,12 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
     coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = starts.load(starts.times(2))
     found = []
-    for friction, (before, seen_before), (values, seen) in zip(starts.frictions[c], coarse, fine):
+    for drive, (before, seen_before), (values, seen) in zip(starts.drives[c], coarse, fine):
         every_other = [value[1::2] for value in values]
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = np.zeros(1)
         if starts.changing:
-            lean = AtOnce(starts, solid, c).centres(np.array([friction(at) for at in starts.times()]))
+            lean = AtOnce(starts, solid, c).centres(np.array([drive(at) for at in starts.times()]))
         found.append(
             _named(FEM, values)
             | {
@@ -231,10 +235,13 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)
     motion = Motion(space, response, starts.sharp)
     solver, seen = SlidingInTime(motion, clock), Seen(starts, level, motion)
-    phases = [Phase(way.direction, way.duration, way.steps // level.every) for way in starts.ways]
     found = []
     with clock("steps in time"):
-        for g in starts.frictions[c]:
+        for g in starts.drives[c]:
+            phases = [
+                Phase(g.way * way.direction, way.duration, way.steps // level.every)
+                for way in starts.ways
+            ]
             run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady, seen.watching)
             values = _read(run, g, motion, level.degree, starts.tells_K_I)
             found.append((values, seen.told(run, g)))
@@ -242,7 +249,7 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     return found
 
 
-def _read(run: Any, g: Friction, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
+def _read(run: Any, g: Drive, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
     """v₀, centre, and K_I at both ends, by the exponents of the friction at each time, NaN for untold."""
     ratios = np.array([g(t) for t in run.t])
     read = np.empty((3, len(ratios)))

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.driving import Friction
+from galinx.app.plan.driving import Drive
 from galinx.app.plan.over_time import Level, Starts
 from galinx.postprocess.quantities import energy_over_time as energy
 from galinx.postprocess.quantities import over_time as rows
@@ -43,7 +43,7 @@ class Seen:
             found.append(lambda u, w, way: along.strain(u))
         return (*found, *filter(None, [self._energies]))
 
-    def told(self, run: Steps, g: Friction) -> _Found:
+    def told(self, run: Steps, g: Drive) -> _Found:
         """Datasets of a motion by path."""
         ends, *rest = run.watched
         σ = self._motion.response.σ_XX(ends[1:], np.zeros_like(ends[1:]), np.zeros_like(ends[1:]))
@@ -56,10 +56,10 @@ class Seen:
         if self._along is not None:
             found |= self._on_surface(rest[0], run, g)
         if self._energies is not None:
-            found |= self._of_energies(rest[1], run)
+            found |= self._of_energies(rest[1], run, g)
         return found
 
-    def _on_surface(self, strains: NDArray, run: Steps, g: Friction) -> _Found:
+    def _on_surface(self, strains: NDArray, run: Steps, g: Drive) -> _Found:
         assert self._along is not None
         σ_YY, ratios = [], []
         for n in (at := self._starts.outputs // self._level.every):
@@ -71,11 +71,9 @@ class Seen:
         σ_XX = self._motion.response.σ_XX(strains[at], pressure, shear)
         return named(FEM, np.array([σ_XX, pressure, shear]))
 
-    def _of_energies(self, watched: NDArray, run: Steps) -> _Found:
+    def _of_energies(self, watched: NDArray, run: Steps, g: Drive) -> _Found:
         """By changes since t = 0; what is carried along while the punch goes one way."""
-        ways = np.repeat(
-            [way.direction for way in self._starts.ways], [way.steps for way in self._starts.ways]
-        )
+        ways = self._starts.directions(g)
         strain, kinetic, all_strain, all_kinetic, momentum = (watched - watched[0])[1:].T
         steps = np.diff(momentum, prepend=0.0)
         return {

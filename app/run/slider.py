@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from galinx.app.errors import BadInput
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import slider as rows
-from galinx.solvers.friction.slider import Ride, cycle, pull
+from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
 
 #: Sliders of a scene, times at which each is archived, and steps of the last cycle.
 MOST, TIMES, STEPS = 200, 4001, 1001
@@ -29,40 +29,42 @@ def check_sliders(scene: Scene) -> None:
         )
 
 
-def slide(scene: Scene, done: Callable[[int, int], None] = lambda n, of: None) -> dict[str, NDArray]:
+def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None) -> dict[str, NDArray]:
     """How the slider of a scene moves under each of its loads and laws: datasets by path.
+
+    Args:
+        scene: the scene.
+        done: is told how many motions are done, that under way by its share, and of how many.
 
     Raises:
         BadInput: a motion could not be followed.
     """
     slider, found = scene.slider, list[dict[str, Any]]()
     assert slider is not None
-    times = np.linspace(0.0, slider.duration, TIMES)
-    both = product(scene.punch.loads, scene.friction.laws())
-    for n, (load, law) in enumerate(both):
+    times, of = np.linspace(0.0, slider.duration, TIMES), len(scene.punch.loads) * scene.friction.count
+    for n, (load, law) in enumerate(product(scene.punch.loads, scene.friction.laws())):
         try:
-            ride = pull(slider, law, load)
+            ride = pull(slider, law, load, lambda share, n=n: done(n + share, of))  # type: ignore[misc]
         except ValueError as error:
             raise BadInput(f"slider: {error}") from None
-        last = cycle(ride, slider.drive_speed)
-        whole = np.isfinite(last.period)
+        last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
+        cycle_v, cycle_f = np.full((2, STEPS), np.nan)
+        if np.isfinite(last.period):
+            _, cycle_v, cycle_f = ride.at(_close(ride))
         found.append({
-            rows.POSITION.path: np.interp(times, ride.t, ride.x),
-            rows.VELOCITY.path: np.interp(times, ride.t, ride.v),
-            rows.FRICTION.path: np.interp(times, ride.t, ride.f),
-            rows.CYCLE_VELOCITY.path: _steps(ride, ride.v) if whole else np.full(STEPS, np.nan),
-            rows.CYCLE_FRICTION.path: _steps(ride, ride.f) if whole else np.full(STEPS, np.nan),
+            rows.POSITION.path: x, rows.VELOCITY.path: v, rows.FRICTION.path: f,
+            rows.CYCLE_VELOCITY.path: cycle_v, rows.CYCLE_FRICTION.path: cycle_f,
+            rows.OUTCOME.path: outcome(ride, slider.drive_speed),
             rows.PERIOD.path: last.period, rows.SLIP.path: last.slip,
             rows.PEAK.path: last.peak, rows.LEAST.path: last.least,
         })  # fmt: skip
-        done(n + 1, len(scene.punch.loads) * scene.friction.count)
     return {rows.TIMES.path: times} | {
         path: np.array([one[path] for one in found]) for path in found[0]
     }  # fmt: skip
 
 
-def _steps(ride: Ride, values: NDArray) -> NDArray[np.float64]:
-    """Values in the last cycle, close where the integration went by small steps."""
+def _close(ride: Ride) -> NDArray[np.float64]:
+    """Times in the last cycle, close where the integration went by small steps."""
     assert ride.cycle is not None
-    some = values[ride.cycle]
-    return np.interp(np.linspace(0.0, len(some) - 1.0, STEPS), np.arange(len(some)), some)
+    t = ride.t[ride.cycle]
+    return np.interp(np.linspace(0.0, len(t) - 1.0, STEPS), np.arange(len(t)), t)

@@ -81,6 +81,25 @@ class Work:
             assert last
             yield replace(last, record=_record(task, solvers, failures))
 
+    def of_states(self, task: Task, rows: NDArray[np.int64]) -> dict[str, NDArray]:
+        """Quantities of some states of a speed by path, none compared.
+
+        Raises:
+            SolveError: they could not be solved.
+        """
+        g, load = self.g[rows], None
+        if len(task.loads) > 1:
+            load = np.concatenate([self.plan.load(slice(row, row + 1)) for row in rows.tolist()])
+        body = task.body.loaded(load)
+        data = self._of(LOCAL, Edges(_local(task, g, body)), body)
+        for name, method in self.methods.items():
+            with ExitStack() as stack:
+                solver = None
+                if self._together(name, task):
+                    solver = stack.enter_context(method.at(task, np.unique(g)))
+                data |= self._read(name, solver, task, g, load)
+        return data
+
     def _all(self, task: Task, solvers: Mapping[str, Solver], failures: "_Failures") -> Iterator[Part]:
         """Parts of all that is to be computed; takes down what could not be."""
         for some in self._batches(task):

@@ -107,7 +107,17 @@ def _of_old_model(
         return []
     own = parameters(models[model])
     every = {key for known in models.values() for key in parameters(known)}
-    return [f"{section}.{key}" for key in keys if key in every and key not in own]
+    stale = [
+        f"{section}.{key}" for key in keys if _parameter(key) in every and _parameter(key) not in own
+    ]
+    tables = keys.get("vary", ())
+    varied = {key for table in tables for key in table} if isinstance(tables, list) else set()
+    return stale + [f"{section}.vary"] * bool(varied & every - own.keys())
+
+
+def _parameter(key: str) -> str:
+    """The parameter that follows from a key."""
+    return "sigma0_over_load" if key == "sigma0" else key
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 from galinx.app.console.program import program
 from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.tables import OneOrMore, Rows, Wrapped
+from galinx.app.scene.tables import OneOrMore, Rows, Variations, Wrapped
 from galinx.app.scene.values import Choice, Kind, Number, NumberList
 from galinx.registry import Registry
 from galinx.solvers.parameters import Parameter, fields, parameters
@@ -27,6 +27,7 @@ class Key:
         default: value of a key that is not given.
         note: what documentation says beyond ``about``.
         without: what documentation says instead of a default of None.
+        stands_for: a model's parameter that follows from this key; models without it do not have the key.
     """
 
     kind: Kind
@@ -34,6 +35,7 @@ class Key:
     default: Any = REQUIRED
     note: str = ""
     without: str = "none"
+    stands_for: str = ""
 
 
 class Section:
@@ -147,7 +149,23 @@ class ModelSection(Section):
         kind = self._models[model]
         own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
-        return {**own, self._chosen: chosen, **self._keys}
+        besides = {key: known for key, known in self._keys.items() if known.stands_for in ("", *own)}
+        keys = {**own, self._chosen: chosen, **besides}
+        return keys | {"vary": self._variations(model)} if self._several else keys
+
+    def _variations(self, model: str) -> Key:
+        """Tables of parameters; rows of numbers, which all laws share, are not among these."""
+        single = {
+            name: [known for known in parameters(kind).values() if known.single]
+            for name, kind in self._models.items()
+        }
+        own = {known.key: self._key(known, self._models[model]).kind for known in single[model]}
+        every = tuple(dict.fromkeys(known.key for some in single.values() for known in some))
+        return Key(
+            Variations(own, every), "parameters of the laws, table by table", (),
+            "instead of the product of the lists above: the product of each table, with what it leaves "
+            "out as the section has it; laws that are in several tables are computed once",
+        )  # fmt: skip
 
     def _key(self, known: Parameter, model: Any) -> Key:
         value: Kind

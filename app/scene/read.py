@@ -79,6 +79,7 @@ def parse(text: str, name: str = "scene") -> Scene:
         raise BadInput(f"{name} cannot be read: a whole number has thousands of digits") from None
     faults = list(control_characters(tree))
     _fill_in_material(tree)
+    faults += _fill_in_stiffness(tree)
     title = tree.pop("title", "")
     if not isinstance(title, str):
         faults.append(f"title: found {excerpt(title)}, expected a text")
@@ -109,3 +110,29 @@ def _fill_in_material(tree: dict[str, Any]) -> None:
             # Those of a name that there is not are not missing: that is one fault, and found.
             known = LIBRARY.get(name) or next(iter(LIBRARY.values()))
             tree["solid"] = known.constants | solid
+
+
+def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:
+    """σ₀ l/N of a stiffness that is given apart from the load; faults of both together."""
+    friction, punch = tree.get("friction"), tree.get("punch", {})
+    if not isinstance(friction, dict) or not isinstance(punch, dict) or "sigma0" not in friction:
+        return []
+    known, load = (SECTIONS[name].keys(tree.get(name, {})) for name in ("friction", "punch"))
+    if "sigma0" not in known:
+        return []  # the section says that there is no such key
+    if "sigma0_over_load" in friction:
+        return ["friction: sigma0 and sigma0_over_load exclude each other; keep one"]
+    # What cannot be read is a fault of its own section, where the other is not missing then.
+    tree["friction"] = friction | {"sigma0_over_load": 1.0}
+    try:
+        stiffness = known["sigma0"].kind(friction["sigma0"])
+        loads = load["load"].kind(punch["load"]) if "load" in punch else load["load"].default
+    except ValueError:
+        return []
+    if len(loads) > 1:
+        return [
+            f"friction.sigma0: found {len(loads)} loads, expected one punch.load to divide it by; "
+            "sigma0_over_load is the same under all"
+        ]
+    tree["friction"]["sigma0_over_load"] = [value / loads[0] for value in stiffness]
+    return []

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import chain, product
 from math import prod
 from typing import Any
 
@@ -52,6 +52,10 @@ class Punch:
         return self.loads[0]
 
 
+#: The most laws that tables of a friction section may list: each is held by itself.
+_MOST_LISTED = 100_000
+
+
 @dataclass(frozen=True)
 class Friction:
     """[friction]: laws, how they are integrated over strokes of ``pre_sliding`` [m], the sign of σ_XY.
@@ -59,6 +63,11 @@ class Friction:
     Attributes:
         law: the class of the laws.
         parameters: values of each of its parameters by key; their product is computed.
+        vary: [[friction.vary]], values of some of these parameters in place of those above; the laws
+            are then the products of all tables, each law once.
+
+    Raises:
+        ValueError: there are too many laws in ``vary``.
     """
 
     law: type[FrictionLaw]
@@ -66,11 +75,36 @@ class Friction:
     pre_sliding: float
     integrator: str
     sign: str
+    vary: tuple[dict[str, tuple[Any, ...]], ...] = ()
+
+    def __post_init__(self) -> None:
+        count = sum(prod(map(len, one.values())) for one in self._products)
+        if self.vary and count > _MOST_LISTED:
+            raise ValueError(f"vary: found {count} laws, expected at most {_MOST_LISTED} in all tables")
+
+    @property
+    def _products(self) -> list[dict[str, tuple[Any, ...]]]:
+        """Values of each parameter by key, for every product that is computed."""
+        return [self.parameters | one for one in self.vary] or [self.parameters]
+
+    @cached_property
+    def _listed(self) -> list[tuple[Any, ...]]:
+        """Parameters of every law of the tables, each law once."""
+        every = (product(*one.values()) for one in self._products)
+        return list(dict.fromkeys(chain.from_iterable(every)))
+
+    @property
+    def values(self) -> dict[str, tuple[Any, ...]]:
+        """All values that a parameter takes, by key."""
+        return {
+            key: tuple(dict.fromkeys(chain.from_iterable(one[key] for one in self._products)))
+            for key in self.parameters
+        }
 
     @property
     def count(self) -> int:
         """Number of laws."""
-        return prod(map(len, self.parameters.values()))
+        return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
 
     def laws(self) -> Iterator[FrictionLaw]:
         """Every law by itself; the last parameter changes fastest.
@@ -78,18 +112,21 @@ class Friction:
         Raises:
             ValueError: a law refuses its parameters.
         """
-        for values in product(*self.parameters.values()):
+        for values in self._listed if self.vary else product(*self.parameters.values()):
             yield made(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
         """Parameters of every law by key, each (count,), without tables, which all laws share."""
-        inner, found = self.count, {}
-        known = parameters(self.law)
+        single = [key for key, known in parameters(self.law).items() if known.single]
+        if self.vary:
+            columns = dict(zip(self.parameters, zip(*self._listed)))
+            return {key: np.array(columns[key]) for key in self.parameters if key in single}
+        inner, columns_ = self.count, {}
         for key, values in self.parameters.items():
             inner //= len(values)
-            if known[key].single:
-                found[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
-        return found
+            if key in single:
+                columns_[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
+        return columns_
 
     def together(self, columns: dict[str, NDArray], some: slice) -> FrictionLaw:
         """Some laws as one that stands for all of them.
@@ -140,6 +177,7 @@ class Solve:
     cuts: int
     sweep: str
     solver: str
+    assembler: str
     pressure: Any
 
     @property

@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Any
 
-from galinx.app.run.methods import METHODS, MODES
+from galinx.app.run.methods import ASSEMBLERS, METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.layers import LayerSections
 from galinx.app.scene.materials import LIBRARY
@@ -22,7 +22,7 @@ from galinx.app.scene.values import (
 )
 from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
-from galinx.solvers.friction import LAWS
+from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.parameters import Range, made
@@ -42,6 +42,13 @@ def _solid(
 
 def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
     return Punch(made(kind, values), tuple(dict.fromkeys(load)))
+
+
+def _friction(
+    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, **rest: Any
+) -> Friction:
+    """``sigma0`` is among the values already: the reader has divided it by the load."""
+    return Friction(law, values, **rest)
 
 
 def _slider(damping: float, **given: float | None) -> Slider | None:
@@ -99,6 +106,12 @@ _PUNCH_KEYS = {
 }  # fmt: skip
 
 _FRICTION_KEYS = {
+    "sigma0": Key(
+        Numbers("N/m^2", _POSITIVE), "stiffness σ₀ per depth, instead of σ₀ l/N", None,
+        "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
+        'both read per mm of depth, are `"1.5922 N/µm/mm"` and `"55.3 N/mm"`: 28 792 1/m for any depth',
+        stands_for="sigma0_over_load",
+    ),
     "pre_sliding": Key(
         Number("m", _POSITIVE), "pre-sliding displacement L", 1e-4, "the length of a stroke",
     ),
@@ -171,6 +184,11 @@ _SOLVE_KEYS = {
     ),
     "solver": Key(
         Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
+    ),
+    "assembler": Key(
+        Choice(ASSEMBLERS), "assembler of matrices", "tensor",
+        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
+        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
     ),
     "pressure": Key(
         Pressure(), "σ_YY of the traction mode", "closed_form",
@@ -247,7 +265,7 @@ SECTIONS: dict[str, Any] = {
     "punch": ModelSection(
         "profile", "flat", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}
     ),
-    "friction": ModelSection("model", "dahl", LAWS, Friction, _FRICTION_KEYS, several=True),
+    "friction": ModelSection("model", "dahl", LAWS, _friction, _FRICTION_KEYS, several=True),
     "motion": Section(Motion, _MOTION_KEYS),
     "slider": Section(_slider, _SLIDER_KEYS),
     "time": Section(_time, _TIME_KEYS),

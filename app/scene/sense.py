@@ -134,7 +134,7 @@ def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, f
     one = {"solid": scene.solid, "punch": scene.punch.profile}
     given = [
         *((name, parameters(model), values(model)) for name, model in one.items()),
-        ("friction", parameters(scene.friction.law), scene.friction.parameters),
+        ("friction", parameters(scene.friction.law), scene.friction.values),
     ]
     for section, known, found in given:
         for key, parameter in known.items():

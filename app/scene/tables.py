@@ -1,5 +1,6 @@
 """Tables of a scene: rows of numbers, one of several texts, strokes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -66,6 +67,43 @@ class Wrapped:
 
     def schema(self) -> dict[str, Any]:
         return self.kind.schema()
+
+
+@dataclass(frozen=True)
+class Variations:
+    """Tables, each with values, lists or ranges of parameters of the law.
+
+    Attributes:
+        kinds: of the parameters that the law has, by key.
+        every: keys of the parameters that some law has.
+    """
+
+    kinds: Mapping[str, Kind]
+    every: tuple[str, ...]
+
+    def __call__(self, value: Any) -> tuple[dict[str, tuple[Any, ...]], ...]:
+        if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+            raise ValueError(
+                f"found {excerpt(value)}, expected tables [[friction.vary]] of parameters of the law"
+            )
+        return tuple(self._one(f"table {number}", table) for number, table in enumerate(value, 1))
+
+    def _one(self, name: str, table: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
+        given = {}
+        for key, value in table.items():
+            if key not in self.kinds:
+                hint = nearest(key, [*self.kinds])
+                raise ValueError(f"found the key {excerpt(key)} in {name}{hint}")
+            try:
+                given[key] = self.kinds[key](value)
+            except ValueError as error:
+                raise ValueError(f"{key} of {name}: {error}") from None
+        return given
+
+    def schema(self) -> dict[str, Any]:
+        properties = {key: {"$ref": f"#/properties/friction/properties/{key}"} for key in self.every}
+        table = {"type": "object", "properties": properties, "additionalProperties": False}
+        return {"type": "array", "items": table}
 
 
 _FORM = '{to = …}, with speed = "…" and rest = "…" where it has its own'

@@ -1,91 +1,309 @@
-"""The study's figures."""
+"""The study's figures: which states they show, and how they are drawn."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app.pictures.choice import Choice
 from galinx.app.pictures.drawing import Drawing
 from galinx.app.pictures.friction import Loops
-from galinx.app.pictures.surface import column, stresses
-from galinx.app.pictures.told import C
+from galinx.app.pictures.surface import SHOWN, stresses
+from galinx.app.pictures.told import PLACE, STROKE, C, Told
+from galinx.app.plan.plan import make_plan
+from galinx.app.plan.states import enumerate_states
+from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
+from galinx.app.scene.templates import SCENES
 from galinx.app.study.published import REFERENCE
-from galinx.postprocess.figures.loops import loops_figure
-from galinx.postprocess.figures.surface import Column, surface_figure
-from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.quantities.states import POSITION
+from galinx.meshes.cells import edges
+from galinx.postprocess.figures.loops import Panel, loops_figure, motion_figure
+from galinx.postprocess.figures.mesh import mesh_figure
+from galinx.postprocess.figures.rows import Curve, Row, laws_figure, rows_figure
+from galinx.postprocess.figures.sketches import problem_figure, procedure_figure
+from galinx.postprocess.figures.style import COLOURS, LINES, Look, looks
+from galinx.postprocess.figures.surface import Stress
+from galinx.postprocess.figures.typeset import number, plain
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.stresses import SURFACE_X
+from galinx.solvers.contact import under_punch
+from galinx.solvers.friction import LAWS
+from galinx.solvers.parameters import fields
+from galinx.solvers.sie.closed_form import FlatPunch
 
-#: The study's two speeds, and its strokes.
-SLOW, FAST = 4.786e-7, 0.6
-STROKES = ("FM1", "BM1", "FM2")
+#: The study's two speeds over the shear wave speed, slow and high, and its strokes.
+SS, HS = 4.786e-7, 0.6
+FM1, BM1, FM2 = "FM1", "BM1", "FM2"
 
+#: Parameters of Dahl's law, one varied after the other, and what the other two are then.
+_MU, _SIGMA, _DELTA = "mu_c", "sigma0_over_load", "delta"
+VARIED = {
+    _MU: (0.1, 0.3, 0.5, 0.7),
+    _SIGMA: (12500.0, 25000.0, 50000.0),
+    _DELTA: (0.8, 1.0, 1.2, 1.5),
+}
+MIDDLE = REFERENCE | {_MU: 0.5}
+#: Speeds of Fig 6 (a).
+SPEEDS = (SS, 0.2, 0.4, HS)
+
+_PROBLEM = (
+    "Fig 1. The problem: a rigid flat punch under the loads N and F per depth slides at the speed V "
+    "over an elastic half-plane; the axes move with it. Friction drags the surface along. In forward "
+    "motion X = -a trails and X = a leads."
+)
+_PROCEDURE = (
+    "Fig 3. From friction to stresses. Numbers are those of the study's equations. Finite elements are "
+    "given the friction coefficient alone, and compared with the integral equation."
+)
+_BLOCK = (
+    "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a high, "
+    "so that the punch is 2a/W = 0.01 and 2a/H = 0.02 of it, as the study has it, and the finer zone "
+    "under the punch (orange), whose cells are graded towards its edges. The study has 145 106 "
+    "quadrilaterals with mid-side nodes; these are {cells} of a high degree."
+)
+_SINE = (
+    "Friction in sinusoidal motion (scene sinusoidal), of which the study's section 2 speaks: Dahl's "
+    "law knows the way alone, so that over position the loop is that of Fig 2, nearly closed from the "
+    "second cycle on; over time friction jumps in slope where the motion turns."
+)
+_LAWS = (
+    "Friction laws by their contact stresses, which the study names as future work: {laws} with the "
+    "same μ_C = 0.5 and, but for Coulomb's law, the same slope of 25 000/m at f = 0, in FM2 at X/L = "
+    "{at:g}. Stresses follow f alone; laws that agree at full slip differ most behind a turn. Of these "
+    "LuGre's law alone knows the speed: it falls from μ_S = 0.6 at rest to μ_C in fast sliding."
+)
 _LOOP = (
     "Fig 2. The friction loop: friction builds up from rest over the first stroke (FM1), and is built up "
     "once more, the other way, after each turn (BM1, FM2)."
 )
 _PARAMETERS = (
-    "Fig 6. What the parameters do to the loop: (a) μ_C sets how high friction comes, (b) σ₀ l/N how "
-    "soon, and (c) δ_D how sharply it turns."
+    "Fig 6. What speed and parameters do to the loop: (a) the speed nothing, the four loops are one, "
+    "drawn one in the other; (b) μ_C sets how high friction comes, (c) σ₀ l/N how soon, and (d) δ_D "
+    "how sharply it turns."
 )
-_STRESSES = (
-    "sliding, at two places of three strokes. The pressure leans to the trailing edge; the surface is "
-    "pulled behind the punch and pressed ahead of it. Where insets show the same friction, curves lie on "
-    "each other."
+_ENDS = (
+    " X = -a is the trailing end in forward motion (FM1, FM2) and the leading one in backward motion "
+    "(BM1); the study calls X = +a the leading end in all of them."
 )
+
+
+@dataclass(frozen=True)
+class Stresses:
+    """A figure of stresses: rows of panels, each with the same curves at a value of its own.
+
+    Attributes:
+        caption: what to see in it.
+        at: parameters that all states share.
+        row, rows: parameter that tells the rows apart, and its values.
+        curve, curves: that of the curves.
+        speeds: whose stresses are lines, then markers; of one both are drawn, by the closed form as
+            lines, by finite elements as markers.
+    """
+
+    caption: str
+    at: dict[str, Any]
+    row: str
+    rows: tuple[Any, ...]
+    curve: str
+    curves: tuple[Any, ...]
+    speeds: tuple[float, ...] = (SS, HS)
+
+
+#: By name.
+STRESSES = {
+    "fig5": Stresses(
+        "Fig 5. Slow sliding (SS), at two places of three strokes: closed form as lines, finite "
+        "elements as markers. The pressure leans to the end that trails, where the surface is pulled; "
+        "it is pressed at the other. BM1 at X/L = 0.2 has gone 0.8 L from its turn, at 0.8 only 0.2 L.",
+        REFERENCE, STROKE, (FM1, BM1, FM2), PLACE, (0.2, 0.8), (SS,),
+    ),
+    "fig7": Stresses(
+        "Fig 7. Slow (SS) and high speed (HS) at three places of three strokes. X/L is measured on one "
+        "axis, as in Tables 4 and 5: at X/L = 1 BM1 has not left its turn and is FM1 still. Dotted is "
+        "BM1 (SS) where it has travelled X/L since its turn, that is at 1 - X/L on the axis; what the "
+        "study says of BM1 (slight differences at 0.2, notable ones at 0.5 and 1.0) fits this reading "
+        "alone.",
+        REFERENCE, PLACE, (0.2, 0.5, 1.0), STROKE, (FM1, BM1, FM2),
+    ),
+    "fig8": Stresses(
+        "Fig 8. What μ_C does in FM1, slow (SS) and at high speed (HS): little at the beginning of the "
+        "stroke, where σ₀ l/N alone sets the friction, and the more, the further the punch has come.",
+        REFERENCE | {STROKE: FM1}, PLACE, (0.2, 0.8), _MU, VARIED[_MU],
+    ),
+    "fig9": Stresses(
+        "Fig 9. What σ₀ l/N does at X/L = 0.2, slow (SS) and at high speed (HS), with μ_C = 0.5: in "
+        "FM1 friction is nearer to its full value, in FM2 it still points backward at 12 500/m and "
+        "forward above. In FM1 the more of it, the larger the pressure at X = -a, and the nearer the top "
+        "of the curve, the least pressure, to X = +a: the study says that it slants to the leading end.",
+        MIDDLE | {PLACE: 0.2}, STROKE, (FM1, FM2), _SIGMA, VARIED[_SIGMA],
+    ),
+    "fig10": Stresses(
+        "Fig 10. What δ_D does at X/L = 0.4 of FM1, slow (SS) and at high speed (HS), with μ_C = 0.5: "
+        "a little less friction, hence less pressure and tension at X = -a, and less compression ahead "
+        "at X = +a.",
+        MIDDLE | {STROKE: FM1}, PLACE, (0.4,), _DELTA, VARIED[_DELTA],
+    ),
+}  # fmt: skip
+
+
+#: Laws that are set beside each other on contact stresses: what they are called, and their
+#: parameters; and where on FM2.
+_ELEMENTS = ((13000.0, 0.15), (8000.0, 0.2), (4000.0, 0.15))
+_AT = 0.3
+_CURVE = {"mu_c": (0.5,), "mu_s": (0.6,), "stribeck_velocity": (3e-3,), "sigma0_over_load": (25000.0,)}
+LAWS_SHOWN: dict[str, tuple[str, dict[str, tuple[Any, ...]]]] = {
+    "coulomb": ("Coulomb", {"mu_c": (0.5,)}),
+    "dahl": ("Dahl", {key: (value,) for key, value in MIDDLE.items()}),
+    "bouc_wen": (
+        "Bouc-Wen, $n = 4$",
+        {"mu_c": (0.5,), "yield_displacement": (2e-5,), "exponent": (4.0,)},
+    ),
+    "maxwell_slip": ("Maxwell slip", {"elements": (_ELEMENTS,)}),
+    "lugre": ("LuGre", _CURVE),
+}
 
 
 def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
-    """Figs 2 and 5-10 of the study from an archive of scenes/study.toml."""
-    loops = Loops(data, scene)
-    told = loops.told
-    reference = _state(loops, **REFERENCE)
+    """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
+    loops, fig6 = Loops(data, scene), scenes.read(SCENES / "fig6.toml")
+    reference = _state(loops.told, REFERENCE)
+    yield Drawing("fig1", _PROBLEM, problem_figure())
     yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])]))
-    yield _slow_or_fast("fig5", f"Fig 5. Slow {_STRESSES}", data, loops, SLOW)
+    yield Drawing("fig3", _PROCEDURE, procedure_figure())
+    yield _block(scenes.read(SCENES / "box.toml"))
+    yield stresses_drawing("fig5", data, loops.told)
+    yield Drawing("fig6", _PARAMETERS, _loops(Loops(enumerate_states(fig6).datasets, fig6)))
+    for name in ("fig7", "fig8", "fig9", "fig10"):
+        yield stresses_drawing(name, data, loops.told)
+    yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
+    yield _laws(scene, data[SURFACE_X.path])
+
+
+def _block(scene: Scene) -> Drawing:
+    """The mesh of the study's block; nothing is solved on it."""
+    fem = make_plan(scene).fem
+    assert fem
+    cells = fem.kind.build(fem.refinement, fem.cuts)
+    figure = mesh_figure(
+        edges(fem.kind, cells), np.empty((0, 2)), zooms=(100.0, 4.0, 0.05), first="the whole block"
+    )
+    return Drawing("fig4", _BLOCK.format(cells=len(cells.cells)), figure, pixels=True)
+
+
+def _sinusoidal(scene: Scene) -> Drawing:
+    """Friction over time and position of a motion that is given point by point."""
+    loops = Loops(enumerate_states(scene).datasets, scene)
+    loop = loops.of(0, [])
+    assert loop and scene.motion.path
+    times = np.array([t for t, _ in scene.motion.path])
+    points = len(loop.f) // len(scene.legs)
+    t = np.concatenate([np.linspace(start, end, points) for start, end in pairwise(times)])
+    cycle = times[np.flatnonzero(np.array(scene.motion.path)[:, 1] == 0.0)[1]]
+    return Drawing("sinusoidal", _SINE, motion_figure(t / cycle, Panel("", [loop])))
+
+
+def _laws(scene: Scene, X: NDArray) -> Drawing:
+    """Contact stresses of several friction laws, by the closed form."""
+    under, shown, places, curves = under_punch(X), [], [], []
+    motion = replace(scene.motion, c=(SS, HS), X_over_L=(_AT,))
+    for (name, (called, values)), look in zip(LAWS_SHOWN.items(), looks(len(LAWS_SHOWN))):
+        given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
+        friction = replace(scene.friction, law=LAWS[name], parameters=given, vary=())
+        own = replace(scene, friction=friction, motion=motion)
+        states = enumerate_states(own)
+        loops = Loops(states.datasets, own)
+        of = [_state(loops.told, {STROKE: FM2, C: c}) for c in (SS, HS)]
+        punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
+        both = [np.array([np.where(under, one.σ_YY(X), np.nan), one.σ_XX(X)]) for one in punches]
+        curves.append(Curve(called, look, both[0], both[1]))
+        shown += [loop for loop in (loops.of(of[0], []),) if loop]
+        places.append((_AT, states.columns["f"][of[0]]))
+    says = _slow_and_fast(loops.told, of)
+    labels = [Choice().label(*words) for words in SHOWN.values()]
+    figure = laws_figure(
+        Panel("", shown), X, labels, Row(f"FM2, $X/L = {_AT:g}$", curves), says, np.array(places)
+    )
+    names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
+    return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
+
+
+def _loops(loops: Loops) -> Any:
+    """Loops over speed, then over each parameter of the law."""
+    told = loops.told
+    over = {C: (REFERENCE, SPEEDS)} | {name: (MIDDLE, values) for name, values in VARIED.items()}
     panels = []
-    for name in told.law:
-        at = [_state(loops, **(REFERENCE | {name: value})) for value in told.distinct(name)]
-        panels.append(loops.panel(at, [name]))
-    yield Drawing("fig6", _PARAMETERS, loops_figure(panels))
-    yield _slow_or_fast("fig7", f"Fig 7. Fast {_STRESSES}", data, loops, FAST)
-    for figure, name in zip(("fig8", "fig9", "fig10"), told.law):
-        columns = []
-        for c in (SLOW, FAST):
-            states = [
-                _state(loops, c=c, motion=STROKES[0], X_over_L=0.8, **(REFERENCE | {name: value}))
-                for value in told.distinct(name)
-            ]
-            columns.append(_column(data, loops, told.label(states[0], [C]), states, [name]))
-        caption = (
-            f"Fig {figure[3:]}. What {plain(f'${told.parameters[name].symbol}$')} does, slow and fast, "
-            f"at X/L = 0.8 of {STROKES[0]}: it acts through friction, which the inset shows; more of it "
-            "leans the pressure back and pulls the surface more behind the punch. Speed raises the "
-            "in-plane stress."
-        )
-        yield Drawing(figure, caption, _figure(data, columns))
+    for name, (at, values) in over.items():
+        states = [_state(told, at | {name: value}) for value in values]
+        others = [other for other in REFERENCE if other != name]
+        # A panel of the archive's has every loop once; that of the speeds shows that there is but one.
+        shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
+        if name == C:
+            shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
+        panels.append(Panel(told.label(states[0], others), shown, True))
+    return loops_figure(panels)
 
 
-def _figure(data: dict[str, Any], columns: list[Column]) -> Any:
-    return surface_figure(data[SURFACE_X.path], stresses(data, Choice()), columns)
+def stresses_drawing(name: str, data: dict[str, Any], told: Told) -> Drawing:
+    """A figure of stresses, by its name."""
+    figure = STRESSES[name]
+    shown = stresses(data, Choice())
+    rows, states = [], []
+    for value in figure.rows:
+        at = figure.at | {figure.row: value}
+        found = [
+            [_state(told, at | {figure.curve: one, C: c}) for c in figure.speeds] for one in figure.curves
+        ]
+        states += found
+        styles = told.looks([some[0] for some in found], [figure.curve])
+        curves = [
+            _curve(told.label(some[0], [figure.curve]), look, shown, some)
+            for some, look in zip(found, styles)
+        ]
+        if name == "fig7":
+            travelled = _state(told, at | {STROKE: BM1, C: SS, PLACE: 1.0 - value})
+            dots = Look(COLOURS[6], LINES[3], "")
+            label = "BM1 (SS), $X/L$ travelled since its turn"
+            curves.append(Curve(label, dots, _values(shown, CLOSED_FORM, travelled), width=0.8))
+        rows.append(Row(told.label(found[0][0], [figure.row]), curves))
+    if len(figure.speeds) == 1:
+        says = ("lines: closed form", "markers: finite elements")
+        differ: dict[str, NDArray] = {}
+    else:
+        says = _slow_and_fast(told, states[0])
+        differ = {} if FEM not in shown[0].values else {
+            word: _differences(shown, [some[n] for some in states]) for n, word in enumerate(("SS", "HS"))
+        }  # fmt: skip
+    drawn = rows_figure(data[SURFACE_X.path], [stress.label for stress in shown], rows, says, differ)
+    return Drawing(name, figure.caption + _ENDS, drawn)
 
 
-def _column(
-    data: dict[str, Any], loops: Loops, title: str, states: list[int], names: list[str]
-) -> Column:
-    return column(data, loops, title, states, names, loops.told.looks(states, names))
+def _slow_and_fast(told: Told, states: Sequence[int]) -> tuple[str, str]:
+    """What lines and markers stand for, of two states at the study's speeds."""
+    slow, fast = (told.label(state, [C]) for state in states)
+    return f"lines: SS, {slow}", f"markers: HS, {fast}"
 
 
-def _slow_or_fast(name: str, caption: str, data: dict[str, Any], loops: Loops, c: float) -> Drawing:
-    columns = []
-    for X in np.unique(data[POSITION.path]).tolist():
-        states = [_state(loops, c=c, X_over_L=X, motion=motion, **REFERENCE) for motion in STROKES]
-        title = loops.told.label(states[0], [C, "X_over_L"])
-        columns.append(_column(data, loops, title, states, ["motion"]))
-    return Drawing(name, caption, _figure(data, columns))
+def _curve(label: str, look: Look, shown: list[Stress], states: Sequence[int]) -> Curve:
+    """Slow as a line and fast as markers, or one speed's closed form and finite elements."""
+    method = CLOSED_FORM if len(states) > 1 else FEM
+    has = method in shown[0].values
+    markers = _values(shown, method, states[-1]) if has else None
+    return Curve(label, look, _values(shown, CLOSED_FORM, states[0]), markers)
 
 
-def _state(loops: Loops, **values: Any) -> int:
+def _values(shown: list[Stress], method: str, state: int) -> NDArray[np.float64]:
+    return np.array([stress.values[method][state] for stress in shown])
+
+
+def _differences(shown: list[Stress], states: list[int]) -> NDArray[np.float64]:
+    """Largest differences between closed form and finite elements of some states, (stresses, points)."""
+    apart = [stress.values[FEM][states] - stress.values[CLOSED_FORM][states] for stress in shown]
+    return np.abs(np.array(apart)).max(axis=1)
+
+
+def _state(told: Told, values: dict[str, Any]) -> int:
     """The first state whose named parameters have the given values."""
-    return int(loops.told.where(loops.told.all, **values)[0])
+    return int(told.where(told.all, **values)[0])

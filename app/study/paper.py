@@ -1,23 +1,132 @@
-"""The study as a program: its tables and figures, computed and set beside what it printed."""
+"""The study as a program: its tables, statements and figures, computed and set beside what it printed."""
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from io import StringIO
+from itertools import product
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import colours, say
 from galinx.app.run.flow import compute
+from galinx.app.run.judge import limits
+from galinx.app.run.methods import ASSEMBLERS
+from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.templates import SCENES
-from galinx.app.study.published import INTENSITIES, intensities, intensity_rows, table1, table3
+from galinx.app.study.published import (
+    FAST,
+    INTENSITIES,
+    REFERENCE,
+    SLOW,
+    dimensions_sheet,
+    frame_sheet,
+    friction_sheet,
+    intensities,
+    intensity_rows,
+    limit_of_steady_motion,
+    not_as_printed,
+    state_of,
+    table1,
+    table2,
+    table3,
+)
+from galinx.app.study.statements import statements, statements_sheet
+from galinx.postprocess.compare import RULES
+from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import ARCHIVE, PAGE, TABLES, Folder, Target
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.strokes import friction_along
+from galinx.solvers.sie import collocation
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
 
 #: What is written besides figures.
-_FILES = {"study.h5": ARCHIVE, "inside.h5": ARCHIVE, "tables.txt": TABLES, "report.html": PAGE}
+_FILES = {
+    "study.h5": ARCHIVE, "inside.h5": ARCHIVE, "tables.txt": TABLES, "statements.txt": TABLES,
+    "report.html": PAGE,
+}  # fmt: skip
+
+#: The state at which methods are set beside each other: the most friction of Tables 4 and 5.
+_STROKE, _PLACE = "FM1", 0.8
+
+#: Polynomials of the expansion; one would do for a flat punch.
+_TERMS = 8
+
+#: Degree of the displacements that are printed with four digits, and of what both assemblers compute.
+_DEGREE, _ASSEMBLED = 7, 6
+
+#: What that degree is asked for: only how far both assemblers are apart is read off.
+_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class Check:
+    """A line of the verdict.
+
+    Attributes:
+        text: what is compared.
+        value: what came of it, dimensionless, or a number of entries.
+        limit: the largest that passes.
+    """
+
+    text: str
+    value: float
+    limit: float
+
+    @property
+    def good(self) -> bool:
+        """Is it within its limit? NaN is not."""
+        return bool(self.value <= self.limit)
+
+    @property
+    def cells(self) -> tuple[str, str, str]:
+        """As a row of a table."""
+        shown = f"{self.value}" if isinstance(self.value, int) else f"{self.value:.1e}"
+        return self.text, shown, f"{self.limit:g}"
+
+    @property
+    def words(self) -> str:
+        """As a line."""
+        text, value, limit = self.cells
+        return f"{text}: {value}, at most {limit}"
+
+
+@dataclass(frozen=True)
+class Computed:
+    """A scene with its results, which rank 0 has."""
+
+    scene: Scene
+    data: dict[str, Any]
+    attributes: dict[str, Any]
+
+    @property
+    def solid(self) -> Isotropic:
+        """The scene's solid, which is the study's."""
+        assert isinstance(self.scene.solid, Isotropic)
+        return self.scene.solid
+
+    def worst(self, rule: str) -> float:
+        """The largest value of a comparison; NaN where nothing was compared."""
+        return json.loads(self.attributes["comparisons"]).get(RULES[rule].text, np.nan)
+
+    @property
+    def checks(self) -> list[Check]:
+        """The archive's own verdict, line by line."""
+        rules, worst = (json.loads(self.attributes[name]) for name in ("rules", "comparisons"))
+        compared = [name for name in RULES if name in rules and RULES[name].text in worst]
+        allowed = limits(self.scene, compared)
+        return [Check(RULES[name].text, self.worst(name), limit) for name, limit in allowed.items()]
 
 
 def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
@@ -27,61 +136,267 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    study, inside = (scenes.read(SCENES / f"{name}.toml") for name in ("study", "inside"))
     targets = {name: folder.target(name, kind) for name, kind in _FILES.items()}
+    study, inside = (_computed(name, targets[f"{name}.h5"], progress) for name in ("study", "inside"))
     if not ranks.is_root():
-        compute(study), compute(inside)
+        for scene in _beside():
+            compute(scene)
         return True  # the verdict is rank 0's
+    results = [study, inside]
+    for scene in _beside():
+        memory = Memory()
+        results.append(Computed(scene, memory, compute(scene, memory, progress)))
+    methods, checks = _judged(*results)
+    failed = sum(one.attributes["verdict"] != "PASS" for one in results)
+    checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
+    good = all(check.good for check in checks)
+    decided = statements_sheet(statements(study.data, study.solid))
+    tables = [*_tables(study), methods]
+    details = [*_details(study), _displacements(study)]
+    verdict = {
+        "verdict": "PASS" if good else "FAIL",
+        "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
+    }
+    judged = replace(study, attributes=study.attributes | verdict)
+    page = _draw(judged, inside, [decided, *tables, *details], folder, progress)
+    targets["report.html"].write(page.encode())
+    _write(targets["tables.txt"], [*tables, *details])
+    _write(targets["statements.txt"], [decided])
+    if not quiet:
+        lines = Sheet("Verdict", ("", "largest", "at most"), [check.cells for check in checks])
+        _print([*tables, decided, lines])
+        say(f"more in tables.txt: {', '.join(sheet.title.partition(',')[0] for sheet in details)}")
+        drawn = "Figs 1-10, sinusoidal, laws, inside and mesh as PDF and PNG"
+        say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
+        print(f"verdict: {verdict['verdict']}")
+        print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
+    return good
+
+
+def _computed(name: str, target: Target, progress: Progress) -> Computed:
+    """A scene, archived; collective, under MPI rank 0 alone has its data."""
+    scene = scenes.read(SCENES / f"{name}.toml")
+    if not ranks.is_root():
+        return Computed(scene, {}, compute(scene))
+    from galinx.postprocess.hdf5 import archive, reader
+
+    with archive.Writer(target) as writer:
+        writer.finish(compute(scene, writer, progress))
+    return Computed(scene, *reader.read(target.path, just_sealed=True))
+
+
+def _draw(
+    study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, progress: Progress
+) -> str:
+    """Write the figures; the report, with all of them and all tables."""
     from galinx.app.pictures.choice import Choice
     from galinx.app.pictures.inside import inside as draw_inside
     from galinx.app.pictures.numerics import mesh
     from galinx.app.results.report import Report
     from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
-    from galinx.postprocess.hdf5 import archive, reader
 
-    results = []
-    for name, scene in (("study.h5", study), ("inside.h5", inside)):
-        with archive.Writer(targets[name]) as writer:
-            writer.finish(compute(scene, writer, progress))
-        results.append(reader.read(targets[name].path, just_sealed=True))
-    (data, attributes), (below, _) = results
-    good, sheets = _tables(data, attributes, study)
-    report = Report(data, attributes, study, sheets)
-    figures, plain = [], Choice()
-    drawings = (*of_study(data, study), draw_inside(below, inside, plain), mesh(data, study, plain))
-    for drawing in drawings:
+    drawings, plain = [], Choice()
+    for drawing in of_study(study.data, study.scene):
         progress.say(f"figure: {drawing.name}")
-        report.add(drawing)
-        figures.append((drawing.name, drawing.figure))
-    save(figures, folder)
-    targets["report.html"].write(report.text().encode())
-    _print(targets["tables.txt"], sheets, attributes, quiet)
-    if not quiet:
-        drawn = "Figs 2 and 5-10, inside and mesh as PDF and PNG"
-        say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
-        print(f"verdict: {'PASS' if good else 'FAIL'}")
-        print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
-    return good
+        drawings.append(drawing)
+    drawings += [draw_inside(inside.data, inside.scene, plain), mesh(study.data, study.scene, plain)]
+    pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
+    report = Report(study.data, study.attributes, study.scene, list(sheets))
+    for drawing in drawings:
+        report.add(drawing, pixels[drawing.name])
+    return report.text()
 
 
-def _print(target: Target, sheets: list[Sheet], attributes: dict[str, Any], quiet: bool) -> None:
+def _beside() -> list[Scene]:
+    """Scenes at the fast speed alone, whose results stand beside the study's.
+
+    The block, and Dahl's friction with the exact pressure as tractions, in one state each; and K_I of the
+    tables by either assembler on one mesh.
+    """
+    found = []
+    for name, words in (("box", ("sif",)), ("traction", ("sif", "surface"))):
+        scene = scenes.read(SCENES / f"{name}.toml")
+        motion = replace(scene.motion, c=(FAST,), strokes=("forward",), X_over_L=(_PLACE,))
+        found.append(replace(scene, motion=motion, output=replace(scene.output, quantities=words)))
+    tables = scenes.read(SCENES / "tables4_5.toml")
+    motion, output = replace(tables.motion, c=(FAST,)), replace(tables.output, quantities=("sif",))
+    for name in ASSEMBLERS:
+        solve = replace(
+            tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name, tolerance=_TOLERANCE
+        )
+        found.append(replace(tables, motion=motion, solve=solve, output=output))
+    return found
+
+
+def _write(target: Target, sheets: Sequence[Sheet]) -> None:
     from galinx.app.console.sheets import new_console, print_sheet
 
     text = StringIO()
-    for console in [new_console(text)] + [new_console(colours=colours())] * (not quiet):
-        for sheet in sheets:
-            print_sheet(console, sheet)
-            console.print()
-        for reason in json.loads(attributes["verdict_reasons"]):
-            console.print(reason)
+    for sheet in sheets:
+        print_sheet(new_console(text), sheet)
+        text.write("\n")
     target.write(text.getvalue().encode())
 
 
-def _tables(data: dict[str, Any], attributes: dict[str, Any], study: Scene) -> tuple[bool, list[Sheet]]:
-    """Whether all agrees, and the tables that show it."""
-    rows = {name: intensity_rows(name, data) for name in INTENSITIES}
-    sheets = [table1(), table3(study.solid, study.friction.pre_sliding)]
-    sheets += [intensities(name, found) for name, found in rows.items()]
-    agree = all(row.agrees for found in rows.values() for row in found) and all(rows.values())
-    return attributes["verdict"] == "PASS" and agree, sheets
+def _print(sheets: Sequence[Sheet]) -> None:
+    from galinx.app.console.sheets import new_console, print_sheet
+
+    console = new_console(colours=colours())
+    for sheet in sheets:
+        print_sheet(console, sheet)
+        console.print()
+
+
+def _tables(study: Computed) -> list[Sheet]:
+    """The study's tables."""
+    data, solid, L = study.data, study.solid, study.scene.friction.pre_sliding
+    notes = [limit_of_steady_motion(name, data, study.scene.body.half_width) for name in INTENSITIES]
+    rows = [intensity_rows(name, data) for name in INTENSITIES]
+    return [table1(), table2(solid), table3(solid, L), *map(intensities, INTENSITIES, rows, notes)]
+
+
+def _details(study: Computed) -> list[Sheet]:
+    """What the study computes on the way to its tables and figures."""
+    scene = study.scene
+    laws = [law for law in scene.friction.laws() if isinstance(law, Dahl)]
+    return [
+        friction_sheet(laws, scene.friction.pre_sliding),
+        frame_sheet(study.solid),
+        dimensions_sheet(study.data, scene.punch.load, scene.body.half_width),
+    ]
+
+
+def _displacements(study: Computed) -> Sheet:
+    """u and v under the punch at both speeds, by finite elements."""
+    from galinx.app.results.one_state import under_punch
+
+    numbers = [state_of(study.data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
+    X, displacements = under_punch(study.scene, numbers, _DEGREE)
+    places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
+    rows = [
+        (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))
+        for name, of_state in zip(("SS", "HS"), displacements)
+        for i, component in enumerate("uv")
+    ]
+    return Sheet(
+        f"Displacements under the punch (µm), {_STROKE}, X/L = {_PLACE:g}, finite elements",
+        ("", "X = -a", "X = 0", "X = a"),
+        rows,
+        ("Relative to the surface 100 a away; v is the same all over the contact.",),
+    )
+
+
+def _judged(
+    study: Computed, inside: Computed, block: Computed, tractions: Computed, *assembled: Computed
+) -> tuple[Sheet, list[Check]]:
+    """The methods beside each other, and every line of the verdict."""
+    scene, data = study.scene, study.data
+    off = {
+        "rk4": _runge_kutta(scene),
+        "collocation": _collocation(scene, data),
+        "confocal": study.worst("K_I"),
+        "block": block.worst("K_I"),
+    }
+    off_table = not_as_printed(scene.solid, scene.friction.pre_sliding)
+    rows = [row for name in INTENSITIES for row in intensity_rows(name, data)]
+    entries = sum(not row.agrees for row in rows) + 12 - len(rows)
+    below = [check for check in inside.checks if "inside" in check.text]
+    checks = [
+        Check("Tables 1 and 3: entries not as printed, misprints aside", off_table, 0),
+        Check("Tables 4 and 5: rows not as printed, of 12", entries, 0),
+        *study.checks,
+        Check("σ_YY of the raw nodal forces, no exponent assumed, relative", _raw(data), 1e-6),
+        Check("edge exponents fitted to them, absolute", study.worst("exponents"), 1e-4),
+        *below,
+        Check("Runge-Kutta against the exact law, f", off["rk4"], 1e-5),
+        Check("expansion-collocation against the closed form, K_I, relative", off["collocation"], 1e-12),
+        Check("the block of Fig 4: K_I, relative; its walls set it", off["block"], 1e-2),
+        Check(
+            "Dahl's friction and the pressure as tractions: v,X under the punch over that beside it",
+            tractions.worst("slope under the punch"), 1e-5,
+        ),
+        Check(
+            "K_I by dolfinx's own assembler on the same mesh at the same degree, relative",
+            _apart(*assembled), 1e-9,
+        ),
+    ]  # fmt: skip
+    return _methods(study, block, off), checks
+
+
+def _methods(study: Computed, block: Computed, off: dict[str, float]) -> Sheet:
+    """Each method at one state, and how far it is from the exact one at all of Tables 4 and 5."""
+    scene, data = study.scene, study.data
+    numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
+    law = Dahl(*REFERENCE.values())
+    exact, by_steps = (_along(law, scene, how)[0] for how in ("exact", "rk4"))
+    f, stepped = (float(np.interp(_PLACE, _STEPS, values)) for values in (exact, by_steps))
+    sign = scene.friction.stress_ratio
+
+    def formula(f: float) -> list[float]:
+        return [FlatPunch(scene.solid.response(c), sign * f).K_I for c in (SLOW, FAST)]
+
+    def row(name: str, f: str, K_I: Sequence[float], off: str) -> tuple[str, ...]:
+        return name, f, *(f"{value:.8f}" for value in K_I), *[""] * (2 - len(K_I)), off
+
+    expanded = [collocation.solve(scene.solid.response(c), sign * f, _TERMS).K_I[0] for c in (SLOW, FAST)]
+    confocal = [float(data[of.K_I_LEFT[FEM].path][i]) for i in numbers]
+    walls = block.data[of.K_I_LEFT[FEM].path].tolist()
+    rows = [
+        row("exact law, closed form", f"{f:.6f}", formula(f), "-"),
+        row("Runge-Kutta, 20 steps a stroke", f"{stepped:.6f}", formula(stepped), f"{off['rk4']:.1e}"),
+        row(f"expansion-collocation, {_TERMS} terms", "", expanded, f"{off['collocation']:.1e}"),
+        row("finite elements, confocal mesh", "", confocal, f"{off['confocal']:.1e}"),
+        ("finite elements, block of Fig 4", "", "", f"{walls[0]:.8f}", f"{off['block']:.1e}"),
+    ]
+    return Sheet(
+        f"Methods beside each other: {_STROKE}, X/L = {_PLACE:g}, dimensionless",
+        ("", "f", "K_I, SS", "K_I, HS", "off by"),
+        rows,
+        (
+            "off by: the largest difference of all strokes, of f absolute, of K_I relative. The block is "
+            "as large as the study's, 100 punch widths: its walls, not its cells, cost that much.",
+        ),
+    )
+
+
+#: X/L of the steps of the study's Runge-Kutta scheme.
+_STEPS = np.linspace(0.0, 1.0, 21)
+
+
+def _along(law: Dahl, scene: Scene, integrator: str) -> list[NDArray]:
+    """f along the strokes, in the order of travel."""
+    strokes = friction_along(
+        law, scene.motion.strokes, scene.friction.pre_sliding, _STEPS, integrator=integrator
+    )
+    return [stroke.f for stroke in strokes]
+
+
+def _runge_kutta(scene: Scene) -> float:
+    """Largest difference of f of the study's scheme to the exact law, over all strokes."""
+    law = Dahl(*REFERENCE.values())
+    exact, by_steps = (np.array(_along(law, scene, how)) for how in ("exact", "rk4"))
+    return float(np.abs(exact - by_steps).max())
+
+
+def _collocation(scene: Scene, data: dict[str, Any]) -> float:
+    """Largest relative difference of K_I at both ends, over the states of Tables 4 and 5."""
+    worst = []
+    for c, motion, X in product((SLOW, FAST), ("FM1", "BM1", "FM2"), (0.2, 0.8)):
+        i = state_of(data, c, motion, X)
+        expanded = collocation.solve(scene.solid.response(c), float(data[of.RATIO.path][i]), _TERMS)
+        worst.append(np.abs(expanded.K_I / data[of.K_I_BOTH.path][i] - 1.0).max())
+    return float(max(worst))
+
+
+def _apart(one: Computed, other: Computed) -> float:
+    """Largest relative difference of K_I of finite elements, at both edges in all states."""
+    paths = (of.K_I_LEFT[FEM].path, of.K_I_RIGHT[FEM].path)
+    return float(max(np.abs(other.data[path] / one.data[path] - 1.0).max() for path in paths))
+
+
+def _raw(data: dict[str, Any]) -> float:
+    """Largest relative difference to the closed form under the punch."""
+    raw, exact = data[stresses.RAW_PRESSURE.path], data[stresses.PRESSURE[CLOSED_FORM].path]
+    under = np.isfinite(exact)
+    return float(np.abs(raw[under] / exact[under] - 1.0).max())

@@ -1,9 +1,13 @@
 """Sheets of panels in inches, and how they become files or text."""
 
+import os
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from io import BytesIO
 from math import ceil
+from multiprocessing import get_context
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
@@ -25,6 +29,9 @@ FORMATS: dict[str, tuple[str, Kind]] = {
 
 #: Formats where none is asked for: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
+
+#: Figures from which on a process of its own draws a format sooner.
+_WORTH_A_PROCESS = 4
 
 #: Least size of a panel in which something can be seen [in].
 _LEAST = 0.35
@@ -55,7 +62,9 @@ class TooSmall(ValueError):
     """A figure does not fit on the size that is asked for."""
 
 
-def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tuple[Figure, NDArray]:
+def panels(
+    rows: int, columns: int, size: Size, high: float, room: Room, heights: Sequence[float] | None = None
+) -> tuple[Figure, NDArray]:
     """A figure with a grid of axes, (rows, columns).
 
     Args:
@@ -63,6 +72,7 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
         size: of the figure.
         high: height of a panel over its width where ``size`` has no height.
         room: around and between.
+        heights: of the rows over each other, all the same if not given, (rows,).
 
     Raises:
         TooSmall: nothing could be seen; the message says how large the figure has to be.
@@ -79,7 +89,8 @@ def panels(rows: int, columns: int, size: Size, high: float, room: Room) -> tupl
     height = above + rows * tall
     figure = Figure((size.width, height))
     FigureCanvasAgg(figure)
-    place = {
+    place: dict[str, Any] = {
+        "height_ratios": heights,
         "left": room.left / size.width, "right": 1.0 - room.right / size.width,
         "bottom": room.bottom / height, "top": 1.0 - room.top / height,
         "wspace": room.across / wide, "hspace": room.down / tall,
@@ -119,6 +130,16 @@ class Legend:
         self._columns = ceil(len(handles) / max(1, rows))
         #: Room that it needs [in].
         self.height = rows * _LINE + 0.08 if handles else 0.0
+
+    def below(self, axis: Axes, lowered: float) -> None:
+        """Draw it under a panel, so far [in]."""
+        if self._handles:
+            figure = axis.get_figure()
+            place = -lowered / (axis.get_position().height * figure.get_figheight())
+            axis.legend(
+                handles=self._handles, ncols=self._columns, loc="upper center",
+                bbox_to_anchor=(0.5, place), borderaxespad=0.0, columnspacing=1.4, labelspacing=0.2,
+            )  # fmt: skip
 
     def put(self, figure: Figure) -> None:
         """Draw it at the foot of a figure."""
@@ -165,24 +186,69 @@ def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
     data = BytesIO()  # matplotlib leaves half of a figure on a full disk
     # Without a date a figure that is drawn again is the same file.
     metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
-    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata)
+    # Pixels that are nearly all white are packed as well at once as after a search.
+    packed = {"pil_kwargs": {"compress_level": 1}} if ending == "png" else {}
+    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, **packed)
     figure.set_layout_engine("none")  # laid out once
     return data.getvalue()
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> None:
+def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
     """Write figures by name into a folder in the usual formats; none where one may not be written.
+
+    Returns:
+        The pixels of each by name, as PNG, for pages.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    figures = list(figures)
+    made = _in_usual_formats(dict(figures))
     write(
-        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), content(figure, ending))
-        for ending in USUAL  # one after the other: matplotlib keeps typeset formulas, not for both
-        for name, figure in figures
+        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), data)
+        for ending, contents in made.items()
+        for name, data in contents.items()
     )
+    return made["png"]
+
+
+def _in_usual_formats(figures: Mapping[str, Figure]) -> dict[str, dict[str, bytes]]:
+    """Contents of figures by format and name, each format on a core of its own where there is one.
+
+    The other process is a copy of this one, so that no figure has to be handed over. It meets neither
+    files nor MPI.
+    """
+    first, *others = USUAL
+    cores = len(os.sched_getaffinity(0))
+    # So many pages are drawn in the time that a process takes.
+    if cores < len(USUAL) or len(figures) < _WORTH_A_PROCESS:
+        return {ending: _contents(figures, ending) for ending in USUAL}
+    made: dict[str, dict[str, bytes]] = {}
+    with ProcessPoolExecutor(len(others), get_context("fork"), _inherit, (figures,)) as pool:
+        drawn = {ending: pool.submit(_inherited_contents, ending) for ending in others}
+        made[first] = _contents(figures, first)
+        for ending, future in drawn.items():
+            try:
+                made[ending] = future.result()
+            except BrokenProcessPool:  # somebody ended it
+                made[ending] = _contents(figures, ending)
+    return made
+
+
+def _contents(figures: Mapping[str, Figure], ending: str) -> dict[str, bytes]:
+    return {name: content(figure, ending) for name, figure in figures.items()}
+
+
+#: The figures of the process that this one is a copy of.
+_inherited: dict[str, Figure] = {}
+
+
+def _inherit(figures: Mapping[str, Figure]) -> None:
+    _inherited.update(figures)
+
+
+def _inherited_contents(ending: str) -> dict[str, bytes]:
+    return _contents(_inherited, ending)
 
 
 def write(files: Iterable[tuple[Target, bytes]]) -> None:
@@ -213,5 +279,9 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
     else:
         figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
     figure.set_layout_engine("none")
-    kind = "png" if pixels else "svg+xml"
-    return f"data:image/{kind};base64,{b64encode(data.getvalue()).decode()}"
+    return embedded(data.getvalue(), "png" if pixels else "svg+xml")
+
+
+def embedded(data: bytes, kind: str = "png") -> str:
+    """The bytes of a picture's file as a data URI."""
+    return f"data:image/{kind};base64,{b64encode(data).decode()}"

@@ -14,7 +14,11 @@ _DOT = 1.0 / 500.0
 
 @styled
 def mesh_figure(
-    edges: NDArray, nodes: NDArray, size: Size | None = None, zooms: tuple[float, ...] = (4.0, 0.5, 0.01)
+    edges: NDArray,
+    nodes: NDArray,
+    size: Size | None = None,
+    zooms: tuple[float, ...] = (4.0, 0.5, 0.01),
+    first: str = "under the punch",
 ) -> Figure:
     """A mesh below the punch, then nearer and nearer to the edge X = a.
 
@@ -23,6 +27,7 @@ def mesh_figure(
         nodes: where its unknowns are, over a, (n, 2).
         size: of the figure.
         zooms: half-widths of the panels over a; the first is centred on the punch.
+        first: title of that one.
     """
     size = size or Size(PAGE)
     columns = max(1, min(len(zooms), int(size.width / 2.0)))
@@ -48,6 +53,6 @@ def mesh_figure(
         axis.locator_params(nbins=5)
     for axis in axes.flat[len(zooms) :]:
         axis.remove()
-    titles = ["under the punch", *[f"{zooms[0] / half:.0f} times larger" for half in zooms[1:]]]
+    titles = [first, *[f"{zooms[0] / half:.0f} times larger" for half in zooms[1:]]]
     lettered(axes.flat[: len(zooms)], titles)
     return figure

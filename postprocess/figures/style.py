@@ -63,12 +63,17 @@ _STYLE = {
 }
 
 
+def _defaults() -> dict[str, Any]:
+    """Matplotlib's own: what somebody has set for other figures, as text by LaTeX, is not for these."""
+    return {key: value for key, value in matplotlib.rcParamsDefault.items() if "backend" not in key}
+
+
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
     """For what draws or saves: in this style, and none of it is left to whoever draws next."""
 
     @wraps(draw)
     def in_style(*arguments: Any, **options: Any) -> Any:
-        with matplotlib.rc_context(_STYLE):
+        with matplotlib.rc_context({**_defaults(), **_STYLE}):
             return draw(*arguments, **options)
 
     return in_style

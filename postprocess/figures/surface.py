@@ -138,7 +138,13 @@ def _positions(axis: Axes, column: Column, half: float, ends: tuple[NDArray, NDA
         )
         axis.locator_params(axis="x", nbins=6)
         return
-    axis.set(xlim=(-half, half), xlabel="position on the surface $X/a$")
+    over_a(axis, half)
+    axis.set_xlabel("position on the surface $X/a$")
+
+
+def over_a(axis: Axes, half: float) -> None:
+    """Positions over a from -half to half, and the contact in grey where there is something beside it."""
+    axis.set_xlim(-half, half)
     axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
     axis.xaxis.set_minor_locator(MultipleLocator(0.25))
     if half == _BESIDE:
@@ -174,16 +180,10 @@ def _draw(
     for n, curve in enumerate(column.curves):
         h, m = (1.0, 0.0) if ends is None else (values[curve.state] for values in ends)
         places = m + h * X
-        for part in parts(X):
-            axis.plot(
-                places[part], lines[curve.state][part], color=curve.look.colour, linestyle=curve.look.line
-            )
+        x, y = broken(X, lines[curve.state])
+        axis.plot(m + h * x, y, color=curve.look.colour, linestyle=curve.look.line)
         if exact is not None and found is not None:
-            # Those of one curve stand between those of the others.
-            count = max(7, _MARKERS // len(column.curves))
-            step = 2.0 * half / count
-            wanted = -half + step * (np.arange(count) + (n + 0.5) / len(column.curves))
-            pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+            pick = picked(X, half, n, len(column.curves))
             axis.plot(
                 places[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
                 markerfacecolor="none",
@@ -192,8 +192,28 @@ def _draw(
 
 def half_width(X: NDArray, stresses: Sequence[Stress]) -> float:
     """How far stresses are shown: there may be none beside the punch."""
-    values = (one for stress in stresses for one in stress.values.values())
-    return _UNDER if all(np.isnan(one[:, ~under_punch(X)]).all() for one in values) else _BESIDE
+    return max(along(X, one) for stress in stresses for one in stress.values.values())
+
+
+def along(X: NDArray, values: NDArray) -> float:
+    """The same of values, (states, points)."""
+    return _UNDER if np.isnan(values[:, ~under_punch(X)]).all() else _BESIDE
+
+
+def picked(X: NDArray, half: float, n: int, curves: int, most: int = _MARKERS) -> NDArray[np.int64]:
+    """Points with markers of the n-th of some curves; those of one stand between those of the others."""
+    count = max(7, most // curves)
+    step = 2.0 * half / count
+    wanted = -half + step * (np.arange(count) + (n + 0.5) / curves)
+    return np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+
+
+def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
+    """Positions and values of a line that is broken at the edges of the punch, for one call of plot."""
+    gap = [np.nan]
+    pieces = [(X[part], values[part]) for part in parts(X) if not np.isnan(values[part]).all()]
+    xs, ys = ([one for piece in pieces for one in (piece[n], gap)] for n in (0, 1))
+    return np.concatenate([*xs, gap]), np.concatenate([*ys, gap])
 
 
 def parts(X: NDArray) -> tuple[NDArray, NDArray, NDArray]:

@@ -6,7 +6,7 @@ opened again and compared, sealed, synchronised with the disk and renamed.
 
 import json
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -108,8 +108,15 @@ class Writer:
             dataset[rows] = values
             self._written.append((name, rows, _checksum(dataset.dtype, values)))
 
-    def finish(self, attributes: dict[str, Any]) -> None:
-        """Complete the archive and give it its name; ``attributes`` are the root's own."""
+    def finish(
+        self, attributes: dict[str, Any], before: Callable[[Path], None] = lambda path: None
+    ) -> None:
+        """Complete the archive and give it its name.
+
+        Args:
+            attributes: the root's own.
+            before: is called with the finished file before it gets its name.
+        """
         with self._told():
             created = datetime.now(UTC).isoformat(timespec="seconds")
             common = {"program": "galinx", "created": created}
@@ -120,6 +127,7 @@ class Writer:
                 made = beside.submit(seal.made, self._new.temporary)
                 self._compare()
                 seal.put(self._new.temporary, made.result())
+            before(self._new.temporary)
             self._target.publish(self._new, self._bytes)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:

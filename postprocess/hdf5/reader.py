@@ -93,7 +93,9 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
     """
-    if not path.is_file():
+    with _told(path):
+        there = path.is_file()
+    if not there:
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
     with _told(path):
         sealed = just_sealed or seal.is_sealed(path)

@@ -24,21 +24,26 @@
     for (let k = Math.ceil(low / step); k * step <= high; k++) result.push(k * step);
     return result;
   };
-  // Edges are infinite: the scale leaves out what is next to them, and stands far beyond the rest.
+  // Sharp edges are infinite: where the rest would be flat the scale leaves out what is next to them, and says so.
   const heights = (curves) => {
-    const next = 0.015 * (range[1] - range[0]);
-    const inside = curves.flatMap((curve) => curve.filter((y, i) => y !== null && X[i] >= range[0] && X[i] <= range[1] && Math.abs(Math.abs(X[i]) - 1) > next));
-    if (!inside.length) return [-1, 1];
-    inside.sort((a, b) => a - b);
+    const next = 0.015 * (range[1] - range[0]), sorted = (values) => values.sort((a, b) => a - b);
+    const within = (beside) => sorted(curves.flatMap((curve) => curve.filter((y, i) =>
+      y !== null && X[i] >= range[0] && X[i] <= range[1] && Math.abs(Math.abs(X[i]) - 1) > beside)));
+    const all = within(-1), most = within(next), inside = most.length ? most : all;
+    if (!all.length) return [-1, 1, ""];
     const at = (share) => inside[Math.round(share * (inside.length - 1))];
-    let [low, high] = [at(0.04), at(0.96)];
-    const room = 0.25 * (high - low || Math.abs(high) || 1);
-    return [Math.max(low - room, inside[0] - room / 4), Math.min(high + room, inside[inside.length - 1] + room / 4)];
+    const [low, high] = [at(0.04), at(0.96)], room = 0.25 * (high - low || Math.abs(high) || 1), last = all.length - 1;
+    if (all[last] - all[0] <= 4 * (high - low)) return [all[0] - room / 4, all[last] + room / 4, ""];
+    const ends = [Math.max(low - room, inside[0] - room / 4), Math.min(high + room, inside[inside.length - 1] + room / 4)];
+    const cut = all[0] < ends[0] || all[last] > ends[1];
+    return [...ends, cut ? `; cut, reaches from ${short(all[0])} to ${short(all[last])} here` : ""];
   };
+  // Between two places with a sharp edge between them a curve goes from one infinity to the other.
+  const parted = (i, one, other, span) => [-1, 1].some((edge) => (X[i - 1] < edge) !== (X[i] < edge)) && Math.abs(one - other) > span;
 
   let place = null;
   const redraw = () => {
-    const { width, height } = svg.getBoundingClientRect(), curves = shown(), [low, high] = heights(curves);
+    const { width, height } = svg.getBoundingClientRect(), curves = shown(), [low, high, cut] = heights(curves);
     svg.replaceChildren();
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const right = width - RIGHT, bottom = height - BELOW;
@@ -56,13 +61,14 @@
       draw("text", { x: LEFT - 6, y: y(tick) + 4, "text-anchor": "end" }, short(tick));
     }
     draw("text", { x: right, y: height - 6, "text-anchor": "end" }, "X/a (dimensionless)");
-    draw("text", { x: 4, y: 14 }, `${quantities[byId("quantity").value]} ${unit}`);
+    draw("text", { x: 4, y: 14 }, `${quantities[byId("quantity").value]} ${unit}${cut}`);
     const clip = draw("clipPath", { id: "inside" });
     clip.appendChild(draw("rect", { x: LEFT, y: TOP, width: right - LEFT, height: bottom - TOP }));
     curves.forEach((curve, method) => {
       let path = "", pen = false;
       curve.forEach((value, i) => {
         if (value === null) { pen = false; return; }
+        if (pen && parted(i, curve[i - 1], value, high - low)) pen = false;
         path += `${pen ? "L" : "M"}${x(X[i]).toFixed(1)} ${Math.max(-1e4, Math.min(1e4, y(value))).toFixed(1)}`;
         pen = true;
       });
@@ -72,7 +78,7 @@
 
   const nearest = (value) => X.reduce((best, at, i) => Math.abs(at - value) < Math.abs(X[best] - value) ? i : best, 0);
   const pixel = (event) => event.clientX - svg.getBoundingClientRect().left;
-  svg.addEventListener("pointerdown", (event) => { from = pixel(event); });
+  svg.addEventListener("pointerdown", (event) => { from = pixel(event); event.preventDefault(); });
   svg.addEventListener("pointermove", (event) => {
     const i = nearest(place.back(pixel(event)));
     svg.querySelectorAll(".read").forEach((element) => element.remove());
@@ -91,8 +97,8 @@
   const zoom = (next) => () => { range = next(); redraw(); };
   svg.addEventListener("dblclick", zoom(() => HOME));
   byId("all").addEventListener("click", zoom(() => HOME));
-  byId("left").addEventListener("click", zoom([-1.1, -0.9]));
-  byId("right").addEventListener("click", zoom([0.9, 1.1]));
+  byId("left").addEventListener("click", zoom(() => [-1.1, -0.9]));
+  byId("right").addEventListener("click", zoom(() => [0.9, 1.1]));
   for (const list of ["state", "quantity"]) byId(list).addEventListener("change", redraw);
   redraw();
   new ResizeObserver(redraw).observe(svg);

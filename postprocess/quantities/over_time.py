@@ -21,7 +21,7 @@ def _row(
 SPEED = _row("c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE)
 RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
 RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
-DIRECTION = _row("direction", "1", "direction of motion over time, 1 or -1", (INSTANT,))
+DIRECTION = _row("direction", "1", "direction of motion along X over time, 1 or -1", (START, INSTANT))
 TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE)
 STEADY_CENTRE = _row(

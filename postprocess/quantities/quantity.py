@@ -108,8 +108,10 @@ class Table(Registry[Quantity]):
         """Add a quantity, and return it.
 
         Raises:
+            TypeError: it is no quantity.
             ValueError: its path is taken, or a text of it has a control character.
         """
+        self.check(getattr(quantity, "path", ""), quantity)
         for text in (quantity.unit, quantity.about):
             if fault := unseen(text):
                 raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")
@@ -125,4 +127,4 @@ class Table(Registry[Quantity]):
 
 
 #: All quantities but the parameters of friction laws; every module adds its own.
-QUANTITIES = Table("quantity")
+QUANTITIES = Table("quantity", kind=Quantity)

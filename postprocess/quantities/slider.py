@@ -30,6 +30,12 @@ CYCLE_VELOCITY = _row(
 CYCLE_FRICTION = _row(
     "cycle_f", "1", "friction coefficient in the last cycle of stick-slip; NaN for none", (LAW, CYCLE)
 )
+OUTCOME = Quantity(
+    "slider/outcome", "none",
+    "what becomes of the slider: stick-slip, swings about the drive, slides steadily, one slip only, "
+    "does not break away, or no whole cycle yet",
+    (LAW,), asked_by=SLIDER,
+)  # fmt: skip
 PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), _NOT_NEGATIVE)
 SLIP = _row("slip_per_cycle", "m", "slip per cycle of stick-slip; NaN for none", (LAW,))
 PEAK = _row("peak_velocity", "m/s", "peak velocity in a cycle of stick-slip; NaN for none", (LAW,))

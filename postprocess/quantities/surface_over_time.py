@@ -1,7 +1,7 @@
 """Stresses on the surface at chosen times, one row for each motion in time."""
 
 from galinx.postprocess.quantities.over_time import START, TIME
-from galinx.postprocess.quantities.quantity import FEM, QUANTITIES, SIE, Quantity
+from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
 from galinx.solvers.parameters import Range
 
 #: Dimensions: chosen times, and places.
@@ -23,7 +23,7 @@ def _by_method(name: str, about: str) -> dict[str, Quantity]:
     return {
         method: Quantity(
             f"time/surface/{method}/{name}", "N/(2a)", f"{about}, {told}", (START, OUTPUT, PLACE),
-            asked_by=TIME, method=method,
+            asked_by=TIME, method=method, nan_allowed=NEVER if method == FEM else ANYWHERE,
         )
         for method, told in _HOW.items()
     }  # fmt: skip

@@ -30,6 +30,24 @@ CROSSINGS = Quantity(
     (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 
+#: Of σ_XY/σ_YY.
+SIGNS = ("positive", "negative")
+
+
+def _flutter(sign: str, g: str) -> Quantity:
+    return Quantity(
+        f"states/flutter_{sign}", "1",
+        f"flutter threshold for {g}, the |sigma_XY/sigma_YY| from which on waves along an interface with "
+        "Coulomb friction grow, the shorter the faster; NaN for none",
+        (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
+    )  # fmt: skip
+
+
+#: By the sign of σ_XY/σ_YY.
+FLUTTER = {
+    sign: _flutter(sign, g) for sign, g in zip(SIGNS, ("sigma_XY/sigma_YY > 0", "sigma_XY/sigma_YY < 0"))
+}
+
 
 def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
     """At X = -a and X = a."""

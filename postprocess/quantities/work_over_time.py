@@ -32,7 +32,7 @@ PLACES = Quantity(
 )  # fmt: skip
 PRESSURE = Quantity(
     "time/sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE),
-    asked_by=TIME, method=SIE,
+    asked_by=TIME, method=SIE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
 #: In the order in which a course of the integral equation tells them.

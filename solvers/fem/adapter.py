@@ -1,16 +1,19 @@
 """dolfinx as its versions offer it: nothing else in the program knows that there is more than one."""
 
+from collections.abc import Sequence
 from typing import Any
 
+import basix
 import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
+from dolfinx.fem import petsc
 from mpi4py import MPI
 from numpy.typing import NDArray
+from petsc4py import PETSc
 
 try:
-    import basix
     import basix.ufl as elements
 except ImportError:  # elements were UFL's own
     elements = None
@@ -50,6 +53,52 @@ def vector_element(degree: int) -> Any:
     if elements:
         return elements.element("Lagrange", _CELL, degree, shape=(2,))
     return ufl.VectorElement("Lagrange", _CELL, degree)
+
+
+def pressure_element(degree: int) -> Any:
+    """Discontinuous scalar elements on quadrilaterals."""
+    if elements:
+        return elements.element("Lagrange", _CELL, degree, discontinuous=True)
+    return ufl.FiniteElement("DQ" if degree else "DG", _CELL, degree)
+
+
+def quadrature_element(degree: int) -> Any:
+    """Values at the points of quadrature of a degree, see :func:`quadrature_points`."""
+    if elements:
+        return elements.quadrature_element(_CELL, degree=degree)
+    return ufl.FiniteElement("Quadrature", _CELL, degree, quad_scheme="default")
+
+
+def quadrature_points(degree: int) -> NDArray[np.float64]:
+    """Points of quadrature in the unit square, (n, 2)."""
+    return basix.make_quadrature(basix.CellType.quadrilateral, degree)[0]
+
+
+def function_space(mesh: Any, element: Any) -> Any:
+    """The functions on a mesh."""
+    make = getattr(fem, "functionspace", None) or fem.FunctionSpace
+    return make(mesh, element)
+
+
+def form(form: Any, options: dict[str, Any]) -> Any:
+    """A compiled form, or nested lists of them; ``options`` are the compiler's."""
+    name = "jit_options" if elements else "jit_params"
+    return fem.form(form, **{name: options})
+
+
+def matrix(form: Any, conditions: Sequence[Any]) -> Any:
+    """The assembled matrix of a form, or of blocks of forms, with Dirichlet conditions."""
+    blocks = getattr(petsc, "assemble_matrix_block", None) if isinstance(form, list) else None
+    A = (blocks or petsc.assemble_matrix)(form, bcs=list(conditions))
+    A.assemble()
+    return A
+
+
+def vector(form: Any) -> Any:
+    """The assembled vector of a linear form, what ranks share added up."""
+    b = petsc.assemble_vector(form)
+    b.ghostUpdate(addv=PETSc.InsertMode.ADD_VALUES, mode=PETSc.ScatterMode.REVERSE)
+    return b
 
 
 def is_compiled(element: Any) -> bool:

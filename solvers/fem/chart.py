@@ -22,8 +22,13 @@ class Chart(Protocol):
     def similar(self) -> bool:
         """Have cells that are alike in the chart, moved and scaled, the same matrix?"""
 
-    def rotation(self, x: NDArray) -> tuple[Any, Any]:
-        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n)."""
+    def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
+        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n).
+
+        Args:
+            x: points, or UFL's coordinates.
+            of: what has their functions, NumPy or UFL.
+        """
 
     def stretch(self, x: NDArray) -> NDArray:
         """Length of a step in physical coordinates over that in the chart, at points (n, 2)."""
@@ -46,10 +51,17 @@ class Chart(Protocol):
     def surface_stretch(self, s: NDArray) -> NDArray:
         """dX/ds along the surface."""
 
-    def under_punch(self, from_left: NDArray, from_right: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    def from_edges(self, x: Any) -> tuple[Any, Any]:
+        """Distances in s of points of the contact, (2, n) or UFL's coordinates, from both punch edges."""
+
+    def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
         """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
 
         Next to an edge X/a itself no longer tells the distance, so this does.
+
+        Args:
+            from_left, from_right: numbers, or UFL's expressions.
+            of: what has their functions, NumPy or UFL.
         """
 
 

@@ -84,7 +84,7 @@ class CellMatrices:
         K_bb, K_ib, K_ii = self._element.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
         if self._pressures:
             # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
-            unit = 1.0 / _size(corners)[:, None]
+            unit = 1.0 / size_of_cells(corners)[:, None]
             of_b, of_i = (np.where(dofs < 2 * self.nodes, 1.0, unit) for dofs in (b, i))
             K_bb *= of_b[:, :, None] * of_b[:, None, :]
             K_ib *= of_i[:, :, None] * of_b[:, None, :]
@@ -105,7 +105,7 @@ def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:
     return S - outer - outer.transpose(0, 2, 1) + T @ (T.T @ force / nodes) @ T.T
 
 
-def _size(corners: NDArray) -> NDArray[np.float64]:
+def size_of_cells(corners: NDArray) -> NDArray[np.float64]:
     """Roots of the areas of cells with vertices (m, 4, 3), from their diagonals."""
     rising, falling = corners[:, 3, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 1, :2]
     return np.sqrt(np.abs(rising[:, 0] * falling[:, 1] - rising[:, 1] * falling[:, 0]) / 2.0)

@@ -25,7 +25,7 @@ def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
     deformed = _deformed(space, [field])
     for cells in space.pieces(len(numbers)):
         condensed = space.condensed(response, cells)
-        for rows, S, u in zip(numbers[cells], condensed, deformed[cells]):
+        for rows, S, u in zip(numbers[cells] // 2, condensed, deformed[cells]):
             result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
     result.assemble()
     return result

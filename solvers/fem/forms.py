@@ -1,10 +1,11 @@
 """Weak forms of the moving-frame equations (Eqs 15-16) in UFL, the one room that knows it.
 
 Each is ∫ energy(u, w), bilinear in the gradients G along X and Y of a displacement u and a test function
-w, with constants of the solid and its speed.
+w, with constants of the solid and its speed. :func:`weak_form` makes dolfinx's form of it, over ``dx``;
+:func:`traction_form` is what a traction adds, over ``ds``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -95,6 +96,72 @@ def mixed(trial: tuple[Any, Any], test: tuple[Any, Any], constants: Any) -> Any:
     return energy - p * ufl.tr(Gw) - q * ufl.tr(Gu) - compliance * p * q
 
 
+def gradient(u: Any, x: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
+    """∇u along X and Y on a mesh that is drawn in a conformal chart of the plane X + pY.
+
+    Times the chart's stretch and over the root of the plane's, which make ∫ … dX dY an integral over the
+    chart: a conformal chart turns gradients, and leaves no other trace.
+
+    Args:
+        u: displacement.
+        x: coordinates of the mesh.
+        chart: see :class:`.chart.Chart`.
+        plane: Re p and Im p.
+    """
+    cos, sin = chart.rotation(x, ufl)
+    turned = ufl.as_matrix([[cos, sin], [-sin, cos]])
+    contracted = ufl.as_matrix([[1.0, plane[0]], [0.0, plane[1]]])
+    return ufl.grad(u) * turned * contracted / ufl.sqrt(plane[1])
+
+
+def weak_form(
+    form: Form, spaces: Sequence[Any], chart: Any, plane: tuple[Any, Any], constants: Sequence[Any],
+    size: Any, degree: int,
+) -> list[list[Any]]:  # fmt: skip
+    """∫ energy(u, w) dx as bilinear forms of dolfinx, by the spaces of test and trial functions.
+
+    Args:
+        form: whose energy it is.
+        spaces: of the displacement, and of the pressure where the form has one.
+        chart: in which the mesh is drawn.
+        plane: Re p and Im p of the plane X + pY that is drawn.
+        constants: of the form, in its order: numbers or functions of dolfinx.
+        size: of cells, over which pressures are; not used without these.
+        degree: of quadrature.
+    """
+    dx = ufl.dx(metadata={"quadrature_degree": degree})
+    x = ufl.SpatialCoordinate(spaces[0].mesh)
+    trials, tests = ([of(space) for space in spaces] for of in (ufl.TrialFunction, ufl.TestFunction))
+    if not form.pressure:
+        Gu, Gw = (gradient(of[0], x, chart, plane) for of in (trials, tests))
+        return [[form.energy(Gu, Gw, constants) * dx]]
+
+    def parts(functions: Sequence[Any]) -> list[tuple[Any, Any]]:
+        u, p = functions
+        still = ufl.as_matrix([[0.0, 0.0], [0.0, 0.0]])
+        return [(gradient(u, x, chart, plane), 0.0), (still, p / size)]
+
+    return [[form.energy(u, w, constants) * dx for u in parts(trials)] for w in parts(tests)]
+
+
+def traction_form(
+    space: Any, traction: Callable[[Any, Any], Any], chart: Any, facets: Any, tag: int, degree: int
+) -> Any:
+    """∫ σ w_Y dX over the contact, a linear form of dolfinx; σ_XY = g σ_YY has g times the same along X.
+
+    Args:
+        space: of the displacement.
+        traction: σ by the distances over a from the left and the right punch edge.
+        chart: in which the mesh is drawn.
+        facets, tag: tags of facets, and that of the contact.
+        degree: of quadrature.
+    """
+    ds = ufl.Measure("ds", subdomain_data=facets, metadata={"quadrature_degree": degree})
+    w, x = ufl.TestFunction(space), ufl.SpatialCoordinate(space.mesh)
+    left, right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
+    return traction(left, right) * w[1] * stretch * ds(tag)
+
+
 def momentum(u: Any, w: Any) -> Any:
     """u·w: what ∂²/∂t² of the displacement makes, lengths over a and times over a/c_s."""
     return ufl.inner(u, w)
@@ -131,4 +198,5 @@ FORMS: Registry[Form] = Registry(
         "anisotropic": Form(anisotropic, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
         "nearly incompressible": Form(mixed, ("κ", "c"), pressure=True),
     },
+    Form,
 )

@@ -16,9 +16,9 @@ def forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -
 
 def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64]) -> PETSc.Vec:
     """Forces of a far boundary that moves, (2, nodes), which stands where it is held."""
-    held, blocks = A.createVecRight(), space.numbers[space.far_nodes]
+    held, numbers = A.createVecRight(), space.numbers[space.far_nodes]
     for i in (0, 1):
-        held.setValues(2 * blocks + i, displacement[i])
+        held.setValues(numbers + i, displacement[i])
     return _forces(A, space, held)
 
 
@@ -29,16 +29,6 @@ def _forces(A: PETSc.Mat, space: Space, held: PETSc.Vec) -> PETSc.Vec:
     b.scale(-1.0)
     set_zero(b, space.held_dofs)
     b.axpy(1.0, held)
-    held.destroy()
-    return b
-
-
-def hold(A: PETSc.Mat, space: Space) -> PETSc.Vec:
-    """Hold the contact at v = -1 and the far boundary in a matrix; returns the forces of that."""
-    held, b = A.createVecRight(), A.createVecLeft()
-    held.setValues(space.contact.dofs(1), np.full(len(space.contact.blocks), -1.0))
-    held.assemble()
-    A.zeroRowsColumns(space.held_dofs, 1.0, held, b)
     held.destroy()
     return b
 

@@ -21,6 +21,9 @@ from galinx.solvers.fem.dynamic import Motion, of_both
 from galinx.solvers.fem.pressed import Pressed
 from galinx.solvers.fem.scheme import TIMES, A, γ
 
+#: Time over a/c_s after a turn at which friction is that of the way back.
+_AFTER = 1e-7
+
 #: What is told of displacements, velocities seen from the punch, and the way it goes, ±1.
 Watch = Callable[[NDArray, NDArray, int], NDArray]
 
@@ -117,7 +120,7 @@ class SlidingInTime:
 
         Args:
             phases: one after the other; two ways only if the speed is not 0.
-            g: σ_XY/σ_YY under the punch at a time.
+            g: σ_XY/σ_YY under the punch at a time; it may jump at a turn.
             load: share of N at a time; from rest load(0) = 0 with no slope there.
             steady: begin in the steady motion of what there is at t = 0, not at rest.
             watching: each is shown the motion at first and after each step.
@@ -128,7 +131,7 @@ class SlidingInTime:
         seen = [[watch(state.u, state.w, way) for watch in watching]]
         for phase in phases:
             if phase.direction != way:
-                self._turn(state, phase.direction - way, g(t), load(t))
+                self._turn(state, phase.direction - way, g(t + _AFTER), load(t))
                 way = phase.direction
             stages = self._stages(phase.h, way)
             for _ in range(phase.steps):

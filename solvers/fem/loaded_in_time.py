@@ -13,9 +13,8 @@ from scipy.sparse import identity, kron
 
 from galinx.clock import Clock
 from galinx.solvers.fem.dynamic import Motion, of_both
+from galinx.solvers.fem.nodes import Traction, consistent_forces
 from galinx.solvers.fem.scheme import TIMES, A, γ
-from galinx.solvers.fem.surface import surface_facets
-from galinx.solvers.fem.traction import Traction, consistent_forces
 from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
 
 
@@ -107,8 +106,9 @@ class LoadedInTime:
         return a
 
     def _forces(self, σ_YY: Traction, g: float, knots: tuple[float, ...]) -> NDArray[np.float64]:
-        facets = surface_facets(self._motion.space, ("contact",))
-        by_node = consistent_forces(self._motion.space, facets, σ_YY, knots).ravel()
+        space = self._motion.space
+        facets, ends = space.surface_facets(("contact",)), space.contact.s[[0, -1]]
+        by_node = consistent_forces(facets.s, space.chart, ends, σ_YY, knots).ravel()
         f = np.zeros((self._motion.size // 2, 2))
         np.add.at(f, facets.nodes.ravel(), np.column_stack([g * by_node, by_node]))
         return f.ravel()

@@ -21,7 +21,7 @@ from petsc4py import PETSc
 
 from galinx.solvers.fem.direct import Factor
 from galinx.solvers.fem.far import FarBoundary
-from galinx.solvers.fem.held import forces_of_profile, hold, ones, product, set_zero
+from galinx.solvers.fem.held import forces_of_profile, ones, product, set_zero
 from galinx.solvers.fem.krylov import KrylovSpace
 from galinx.solvers.fem.multigrid import Multigrid
 from galinx.solvers.fem.space import Space
@@ -67,11 +67,12 @@ class SlidingPunch(Punch):
         ]
         self._motions = [ones(A, space.node_dofs[i::2]) for i in (0, 1)]
         #: Forces that a motion of the far boundary alone causes.
-        self._far = [product(A, ones(A, space.far_dofs[space.far_dofs % 2 == i])) for i in (0, 1)]
-        shapes = [] if heights is None else list(np.atleast_2d(heights))
+        self._far = [product(A, ones(A, space.numbers[space.far_nodes] + i)) for i in (0, 1)]
+        flat = np.full(len(nodes.s), -1.0)
+        shapes = [flat, *([] if heights is None else np.atleast_2d(heights))]
         shaped = [forces_of_profile(A, space, height) for height in shapes]
         self._boundary = FarBoundary(space, response, A)
-        b = hold(A, space)
+        A = space.held(A, response, ("contact", "far"))
         self.factor: Factor | Multigrid
         if solver == "direct":
             self.factor = Factor(A, space.clock, definite=not space.mixed)
@@ -80,7 +81,7 @@ class SlidingPunch(Punch):
         self._nodal: tuple[NDArray, NDArray] | None = None
         self._take_boundary()
         #: Of the flat punch, and of each shape.
-        self._spaces = self._krylov_spaces([b, *shaped], negligible)
+        self._spaces = self._krylov_spaces(shaped, negligible)
 
     @property
     def fields(self) -> list[PETSc.Vec]:

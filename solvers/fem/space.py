@@ -20,7 +20,7 @@ from galinx.solvers.fem.compiler import compiling
 from galinx.solvers.fem.condensation import CellMatrices
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.fem.matrix import empty_matrix
-from galinx.solvers.fem.nodes import SurfaceNodes
+from galinx.solvers.fem.nodes import NodalForces, SurfaceFacets, SurfaceNodes, Traction, consistent_forces
 from galinx.solvers.panel import interpolation
 from galinx.solvers.solids.solid import ByCells, Response
 
@@ -63,6 +63,7 @@ class Space:
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
         self.V = self._functions(adapter.vector_element(degree))
+        self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
             if not self.comm.allreduce(len(self.facets[name])):
@@ -98,9 +99,8 @@ class Space:
     @cached_property
     def node_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned displacements, node by node, without those inside cells."""
-        first = 2 * self._range[0]
-        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
-        return np.arange(first, first + 2 * owned, dtype=np.int32)
+        first, nodes = self._range[0], self._owned_nodes
+        return np.arange(first, first + 2 * len(nodes), dtype=np.int32)
 
     def contracted(self, response: Response) -> Contracted:
         """The chart at a speed."""
@@ -108,10 +108,9 @@ class Space:
 
     def rigid_motions(self, response: Response) -> NDArray[np.float64]:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
-        owned = len(self.node_dofs) // 2
-        mine = np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
+        mine, owned = self._owned_nodes, len(self._owned_nodes)
         X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
-        modes = np.zeros((2 * (self._range[1] - self._range[0]), 3))
+        modes = np.zeros((self._range[1] - self._range[0], 3))
         modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
         modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
         return modes
@@ -124,8 +123,8 @@ class Space:
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns on the far boundary, both components."""
-        blocks = self.numbers[self.far_nodes]
-        return np.concatenate([2 * blocks, 2 * blocks + 1]).astype(np.int32)
+        numbers = self.numbers[self.far_nodes]
+        return np.concatenate([numbers, numbers + 1])
 
     @cached_property
     def held_dofs(self) -> NDArray[np.int32]:
@@ -140,27 +139,25 @@ class Space:
                 return adapter.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
-        """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed.
-
-        Node i of ``numbers`` has the unknowns 2i and 2i + 1.
-        """
-        numbers = self.outer_numbers
+        """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""
+        blocks = self.outer_numbers // 2
         with self.clock("assembly"):
-            A = empty_matrix(numbers, *self._range, self.comm)
+            first, last = self._range
+            A = empty_matrix(blocks, first // 2, last // 2, self.comm)
             models, members = standing_for(self.vertices, self.chart, response, self.form.constants)
             for some in self.pieces(len(models)):
                 for S, cells in zip(self.condensed(response, models[some]), members[some]):
-                    for rows in numbers[cells]:
+                    for rows in blocks[cells]:
                         A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
         return A
 
     def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:
-        """Values of condensed fields at nodes by global number, (*numbers.shape, 2, fields).
+        """Values of fields at nodes, (*numbers.shape, 2, fields), by their first unknowns' numbers.
 
         Collective; every rank names the nodes it wants.
         """
-        index = (2 * numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
+        index = (numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
         here = PETSc.Vec().createSeq(len(index))
         where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
         scatter = PETSc.Scatter().create(fields[0], where, here, None)
@@ -234,12 +231,12 @@ class Space:
     def outer_numbers(self) -> NDArray[np.int32]:
         """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
 
-        The two pressures of a cell are numbered like the two unknowns of a node.
+        The two pressures of a cell are numbered like the two unknowns of a node, by the first.
         """
         nodes = self.numbers[self._cell_nodes[:, self.kernel.outer]]
         if not self.mixed:
             return nodes
-        cells = self._range[1] - len(nodes) + np.arange(len(nodes), dtype=np.int32)
+        cells = self._range[1] - 2 * len(nodes) + 2 * np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
     @contextmanager
@@ -268,6 +265,46 @@ class Space:
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]
         return part(self.densities(response, corners), self.contracted(response), corners)
+
+    def surface_facets(self, parts: Sequence[str]) -> SurfaceFacets:
+        """Facets of the named parts of the boundary whose cell this rank owns."""
+        topology, dofmap = self.mesh.topology, self.V.dofmap
+        to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
+        owned_cells = topology.index_map(2).size_local
+        nodes = []
+        for facet in np.concatenate([self.facets[part] for part in parts]):
+            cell = to_cell.links(facet)[0]
+            if cell < owned_cells:
+                local = int(np.flatnonzero(to_facet.links(cell) == facet)[0])
+                closure = dofmap.dof_layout.entity_closure_dofs(1, local)
+                nodes.append(dofmap.cell_dofs(cell)[closure])
+        index = np.array(nodes, dtype=np.int32).reshape(-1, self.degree + 1)
+        s = self.chart.along_surface(self.coordinates[index])
+        order = np.argsort(s, axis=1)
+        return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
+
+    def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
+        """Consistent nodal forces of a traction on the contact.
+
+        Args:
+            σ_YY: the traction over N/(2a).
+            knots: positions X over a, under the punch, between which it is smooth.
+        """
+        facets, ends = self.surface_facets(("contact",)), self.contact.s[[0, -1]]
+        forces = consistent_forces(facets.s, self.chart, ends, σ_YY, knots)
+        return NodalForces(self.numbers[facets.nodes.ravel()], facets.s.ravel(), forces.ravel())
+
+    def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
+        """The matrix of a response with what is held: "far" the far boundary, "contact" v under a punch.
+
+        Args:
+            A: the matrix without; it becomes the one with.
+            response: of the half-plane.
+            parts: what is held.
+        """
+        dofs = {"far": self.far_dofs, "contact": self.contact.dofs(1)}
+        A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
+        return A
 
     def nodes_on(self, part: str) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
@@ -304,19 +341,29 @@ class Space:
 
     @cached_property
     def _range(self) -> tuple[int, int]:
-        """Numbers that this rank owns, from the first to below the last: nodes, then pressures."""
-        owned = int((~self._inner[: self.V.dofmap.index_map.size_local]).sum())
-        owned += self.mesh.topology.index_map(2).size_local * self.mixed
+        """Unknowns that this rank owns, from the first to below the last: of nodes, then pressures."""
+        owned = 2 * len(self._owned_nodes) + self._owned_pressures
         last = self.comm.scan(owned)
         return last - owned, last
 
     @cached_property
+    def _owned_nodes(self) -> NDArray[np.int64]:
+        """Local numbers of this rank's nodes that have unknowns in the matrix."""
+        return np.flatnonzero(~self._inner[: self.V.dofmap.index_map.size_local])
+
+    @property
+    def _owned_pressures(self) -> int:
+        """Number of this rank's unknown pressures in the matrix."""
+        return 2 * self.mesh.topology.index_map(2).size_local * self.mixed
+
+    @cached_property
     def numbers(self) -> NDArray[np.int32]:
-        """Global number of each local node, ghosts included, without those inside cells (-1)."""
-        index_map = self.V.dofmap.index_map
-        outer = np.flatnonzero(~self._inner[: index_map.size_local])
-        shared = la.vector(index_map)  # in floating point, exact for any number of nodes
+        """Global number of each local node's first unknown, ghosts included; -1 where it has none.
+
+        That along X is the first, that along Y the next one.
+        """
+        shared = la.vector(self.V.dofmap.index_map)  # in floating point, exact for any number of nodes
         shared.array[:] = -1.0
-        shared.array[outer] = self._range[0] + np.arange(len(outer))
+        shared.array[self._owned_nodes] = self._range[0] + 2 * np.arange(len(self._owned_nodes))
         shared.scatter_forward()
         return shared.array.astype(np.int32)

@@ -15,37 +15,6 @@ _BETWEEN = 1e-9
 
 
 @dataclass(frozen=True)
-class SurfaceFacets:
-    """This rank's facets of the surface.
-
-    Attributes:
-        nodes: local node numbers of each facet in order of X, (F, p+1).
-        s: their surface coordinates, (F, p+1).
-    """
-
-    nodes: NDArray[np.int32]
-    s: NDArray[np.float64]
-
-
-def surface_facets(space: Space, parts: Sequence[str]) -> SurfaceFacets:
-    """Facets of the named parts of the boundary whose cell this rank owns."""
-    topology, dofmap = space.mesh.topology, space.V.dofmap
-    to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
-    owned_cells = topology.index_map(2).size_local
-    nodes = []
-    for facet in np.concatenate([space.facets[part] for part in parts]):
-        cell = to_cell.links(facet)[0]
-        if cell < owned_cells:
-            local = int(np.flatnonzero(to_facet.links(cell) == facet)[0])
-            closure = dofmap.dof_layout.entity_closure_dofs(1, local)
-            nodes.append(dofmap.cell_dofs(cell)[closure])
-    index = np.array(nodes, dtype=np.int32).reshape(-1, space.degree + 1)
-    s = space.chart.along_surface(space.coordinates[index])
-    order = np.argsort(s, axis=1)
-    return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
-
-
-@dataclass(frozen=True)
 class SurfaceTrace:
     """Displacements of several fields along the surface, the same on every rank.
 
@@ -119,7 +88,7 @@ class SurfaceSlopes:
 
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     """Trace of the given displacement fields on the whole surface."""
-    facets = surface_facets(space, ("contact", "free surface"))
+    facets = space.surface_facets(("contact", "free surface"))
     u = space.fetch(fields, space.numbers[facets.nodes])
     parts = space.comm.allgather((facets.s, u))
     s = np.concatenate([part[0] for part in parts])

@@ -9,7 +9,7 @@ from scipy.special import roots_jacobi
 
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.lagrange import lagrange
-from galinx.solvers.fem.surface import SurfaceTrace, surface_facets
+from galinx.solvers.fem.surface import SurfaceTrace
 
 #: Points of a facet's rule beyond those for products of shapes: the weight next door is no polynomial.
 _MORE = 12
@@ -25,7 +25,7 @@ class SurfaceInTime:
 
     def __init__(self, motion: Motion, X: NDArray) -> None:
         self.X, self._motion = np.asarray(X, dtype=float), motion
-        facets = surface_facets(motion.space, ("contact", "free surface"))
+        facets = motion.space.surface_facets(("contact", "free surface"))
         order = np.argsort(facets.s[:, 0])
         self._s, self._nodes = facets.s[order], facets.nodes[order]
         self._degree = motion.space.degree

@@ -62,6 +62,12 @@ class Dahl(FrictionLaw):
         # y = y₀ exp(decay); what is added to f keeps its digits where it is small.
         return (z[..., 0] - s * self.μ_C * y0 * np.expm1(decay))[..., None]
 
+    def distance(self, share: float) -> float:
+        """Slip from rest [m] after which f is a share of μ_C, 0 < share < 1; the study's L_a."""
+        fall = float(np.log1p(-share))
+        x = (1.0 - self.δ) * fall
+        return -self.μ_C / self.λ * fall * (float(np.expm1(x)) / x if x else 1.0)
+
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """∫ s f dd = μ_C (d - ∫ y dd), and ∫ y dd = sgn(y₀) μ_C/λ (|y₀|^(2-δ) - |y|^(2-δ))/(2-δ)."""
         y0, decay = self._decay(z, s, slip)

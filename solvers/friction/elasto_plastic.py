@@ -1,14 +1,22 @@
 """The elasto-plastic law of friction."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from galinx.solvers.friction.law import LAWS
 from galinx.solvers.friction.lugre import Bristles
 from galinx.solvers.parameters import parameter
+
+#: Width in y of a panel of Gauss's rule, its points, and y beyond that of breakaway squared from which
+#: on slip is y and a constant to the last digit.
+_WIDTH, _POINTS, _FAR = 0.5, 16, 40.0
+#: Steps of Newton's method that are always enough.
+_STEPS = 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +29,9 @@ class ElastoPlastic(Bristles):
     on, and between (1 + sin(π (ζ - (1+r)/2)/(1-r)))/2. So loads below breakaway do not let it drift.
     (P. Dupont, V. Hayward, B. Armstrong, F. Altpeter, IEEE Transactions on Automatic Control 47 (2002)
     787.) Its state is σ₀ z/N.
+
+    At constant speed w = s σ₀ z/g obeys dw/dx = 1 - α w in x = σ₀ d/g: a straight line up to r, an
+    exponential beyond 1, and between an integral of 1/(1 - α w), the same for all slips and stiffnesses.
 
     Raises:
         ValueError: a parameter is outside its range.
@@ -36,16 +47,116 @@ class ElastoPlastic(Bristles):
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """d(σ₀ z)/dd [1/m]."""
         ζ = s * z / self.g(V)
-        between = np.minimum(np.maximum((ζ - self.r) / (1.0 - self.r), 0.0), 1.0)
-        α = np.sin(0.5 * np.pi * between) ** 2
-        return s * self.σ0 * (1.0 - α * ζ)
+        return s * self.σ0 * (1.0 - np.sin(0.5 * np.pi * self._between(ζ)) ** 2 * ζ)
+
+    def _between(self, w: NDArray) -> NDArray[np.float64]:
+        """0 up to breakaway, 1 from steady sliding on."""
+        return np.minimum(np.maximum((w - self.r) / (1.0 - self.r), 0.0), 1.0)
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Breakaway."""
         return s * z / self.g(V) - self.r
 
-    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
-        return s * self.rate(z[..., 0], s, V) if V * self.σ1 == 0.0 else None
+    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        ζ0, w0, x = self._scaled(z, s, V, slip)
+        straight = ζ0 + s * self.σ0 * np.asarray(slip, dtype=float)
+        if w0 >= 1.0:
+            ζ = ζ0 + (ζ0 - s * self.g(V)) * np.expm1(-x)
+        else:
+            y = _yielding(self.r).after(x - max(self.r - w0, 0.0), max(w0, self.r))
+            ζ = np.where(x <= self.r - w0, straight, -s * self.g(V) * np.expm1(-y))
+        return np.where(x == 0.0, ζ0, ζ)[:, None]
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        """∫ s (σ₀ z + σ₁ ż + σ₂ v) dd, with ∫ w dx in its three parts."""
+        _, w0, x = self._scaled(z, s, V, slip)
+        if w0 >= 1.0:
+            area = x - (w0 - 1.0) * np.expm1(-x)
+        else:
+            stuck = np.clip(self.r - w0, 0.0, x)
+            yielded, first = x - stuck, max(w0, self.r)
+            short = _yielding(self.r).short(yielded, first)
+            area = stuck * (w0 + 0.5 * stuck) + yielded - np.where(yielded > 0.0, short, 0.0)
+        built = self.exact(z, s, V, slip)[:, 0] - z[..., 0]
+        bristles = self.g(V) ** 2 / self.σ0 * area
+        return bristles + s * self.σ1 * V / self.σ0 * built + self.σ2 * V * np.asarray(slip)
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        g = self.g(V)
+        w = s * z[..., 0] / g
+        between = self._between(w)
+        α = np.sin(0.5 * np.pi * between) ** 2
+        steeper = 0.5 * np.pi / (1.0 - self.r) * np.sin(np.pi * between)
+        return s * self.rate(z[..., 0], s, V) * (1.0 - V * self.σ1 / g * (α + w * steeper))
+
+    def _scaled(self, z: NDArray, s: int, V: float, slip: NDArray) -> tuple[float, float, NDArray]:
+        """σ₀ z/N and w at the start, and slips x."""
+        g = self.g(V)
+        return float(z[0]), s * float(z[0]) / float(g), self.σ0 / g * np.asarray(slip, dtype=float)
+
+
+class _Yielding:
+    """From breakaway to steady sliding, by y = -ln(1 - w), which grows with the slip without end.
+
+    With ε = 1 - w = e^-y and θ = π ε/(2(1 - r)), α is cos²θ, so that dx/dy = 1/(sin²θ/ε + cos²θ): smooth,
+    and 1 in the end.
+
+    Args:
+        r: breakaway ratio.
+    """
+
+    def __init__(self, r: float) -> None:
+        self._r, self._first = r, -np.log1p(-r)
+        count = int(np.ceil((self._first + _FAR) / _WIDTH))
+        self._y = self._first + _WIDTH * np.arange(count + 1)
+        pieces = self._pieces(self._y[:-1], self._y[1:])
+        self._x, self._short = np.hstack([np.zeros((2, 1)), np.cumsum(pieces, axis=1)])
+
+    def after(self, x: NDArray, w: float) -> NDArray[np.float64]:
+        """y after slips x from w, r <= w < 1; x < 0 counts as none."""
+        wanted = self._at(np.array([-np.log1p(-w)]))[0] + np.maximum(x, 0.0)
+        y = np.interp(wanted, self._x, self._y) + np.maximum(wanted - self._x[-1], 0.0)
+        for _ in range(_STEPS):
+            step = (wanted - self._at(y)[0]) / self._slopes(y)
+            y = np.maximum(y + step, self._first)
+            if np.all(np.abs(step) <= 1e-15 * (1.0 + y)):
+                break
+        return y
+
+    def short(self, x: NDArray, w: float) -> NDArray[np.float64]:
+        """∫ (1 - w) dx over slips x from w."""
+        start = np.array([-np.log1p(-w)])
+        return self._at(self.after(x, w))[1] - self._at(start)[1]
+
+    def _at(self, y: NDArray) -> NDArray[np.float64]:
+        """Slip, and ∫ (1 - w) dx, from breakaway to y, (2, n)."""
+        panel = np.clip(np.searchsorted(self._y, y, side="right") - 1, 0, len(self._y) - 2)
+        near = np.minimum(y, self._y[-1])
+        x, short = self._pieces(self._y[panel], near)
+        beyond = y - near
+        left = np.exp(-near) * -np.expm1(-beyond)
+        return np.array([self._x[panel] + x + beyond, self._short[panel] + short + left])
+
+    def _pieces(self, start: NDArray, end: NDArray) -> NDArray[np.float64]:
+        """The same from one y to another in the same panel, (2, n)."""
+        t, weights = leggauss(_POINTS)
+        half = 0.5 * (end - start)[:, None]
+        y = start[:, None] + half * (1.0 + t)
+        x = self._slopes(y)
+        return np.array([((half * x) @ weights), ((half * x * np.exp(-y)) @ weights)])
+
+    def _slopes(self, y: NDArray) -> NDArray[np.float64]:
+        """dx/dy."""
+        ε = np.exp(-y)
+        θ = 0.5 * np.pi * ε / (1.0 - self._r)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            rising = np.where(ε > 0.0, np.sin(θ) ** 2 / ε, 0.0)
+        return 1.0 / (rising + np.cos(θ) ** 2)
+
+
+@lru_cache(maxsize=64)
+def _yielding(r: float) -> _Yielding:
+    return _Yielding(r)
 
 
 LAWS.register("elasto_plastic", ElastoPlastic)

@@ -20,6 +20,8 @@ TOLERANCES = 1e-12, 1e-14
 
 #: Points of Gauss's rule in a piece of a stroke, and such pieces, for work without a formula.
 _POINTS, _PIECES = 10, 12
+#: Halvings of a piece at most, and accuracy over the whole work from which on it is not halved.
+_HALVINGS, _OF_WORK = 20, 1e-13
 
 #: A switch nearer to zero than this is one that was just met.
 _SWITCHED = 1e-10
@@ -105,11 +107,11 @@ def adaptively(
         ValueError: the integration failed.
     """
     at, back = np.unique(np.clip(slip, 0.0, length), return_inverse=True)
-    states, d = np.empty((len(at), len(z))), 0.0
+    states, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
     z = np.asarray(z, dtype=float)
     for i, end in enumerate(at):
         while d < end:
-            d, z = _smooth_piece(law, z, s, V, d, end)
+            d, z = _smooth_piece(law, z, s, V, (d, end), switched)
         states[i] = z
     return states[back]
 
@@ -124,34 +126,46 @@ def closely(
     if (states := law.exact(z, s, V, slip)) is not None:
         return states
     at, back = np.unique(np.clip(np.append(slip, length), 0.0, length), return_inverse=True)
-    found, d = np.empty((len(at), len(z))), 0.0
+    found, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
     found[:] = z
     while d < length:
-        ahead = at > d
-        piece = _solved(law, z, s, V, (d, length), at[ahead])
-        found[np.flatnonzero(ahead)[: len(piece.t)]] = piece.y.T
+        ahead = np.flatnonzero(at > d)
+        piece, switches = _solved(law, z, s, V, (d, length), switched, at[ahead])
+        # SciPy's y has no shape where a switch comes before the first place.
+        passed = np.reshape(piece.y, (len(z), -1)).T
+        found[ahead[: len(passed)]] = passed
         if piece.status == 0:
             break
-        d, z = max((t[0], y[0]) for t, y in zip(piece.t_events, piece.y_events) if len(t))
+        d, z = _last_switch(piece)
+        switched.update(switches)
     return found[back[:-1]]
 
 
 def _smooth_piece(
-    law: FrictionLaw, z: NDArray, s: int, V: float, d: float, end: float
+    law: FrictionLaw, z: NDArray, s: int, V: float, ends: tuple[float, float], switched: set[int]
 ) -> tuple[float, NDArray[np.float64]]:
-    """Slip and state at the end, or where the law switches first.
+    """Slip and state at the end, or where the law switches first, which ``switched`` then has, too.
 
     Raises:
         ValueError: the integration failed.
     """
-    found = _solved(law, z, s, V, (d, end))
+    found, switches = _solved(law, z, s, V, ends, switched)
     if found.status == 0:
-        return end, found.y[:, -1]
+        return ends[1], found.y[:, -1]
     # Located on the interpolant; from the last step before it, integration itself goes there.
-    at = max(float(times[0]) for times in found.t_events if len(times))
-    before = found.t[found.t < at][-1] if (found.t < at).any() else d
+    at, _ = _last_switch(found)
+    before = found.t[found.t < at][-1] if (found.t < at).any() else ends[0]
     start = found.y[:, np.flatnonzero(found.t == before)[0]]
-    return at, _solved(law, start, s, V, (before, at), switches=False).y[:, -1]
+    switched.update(switches)
+    if at == before:
+        return at, start
+    return at, _solved(law, start, s, V, (before, at), None)[0].y[:, -1]
+
+
+def _last_switch(found: Any) -> tuple[float, NDArray[np.float64]]:
+    """Slip and state at which SciPy has stopped."""
+    n = max((n for n, t in enumerate(found.t_events) if len(t)), key=lambda n: found.t_events[n][0])
+    return float(found.t_events[n][0]), found.y_events[n][0]
 
 
 def _solved(
@@ -160,24 +174,33 @@ def _solved(
     s: int,
     V: float,
     ends: tuple[float, float],
+    switched: set[int] | None,
     at: NDArray | None = None,
-    switches: bool = True,
-) -> Any:
-    """SciPy's result between two slips, at its own steps or at those wanted, up to the next switch.
+) -> tuple[Any, set[int]]:
+    """SciPy's result between two slips, up to the next switch, and which switches these are.
+
+    Args:
+        law, z, s, V: as of :func:`adaptively`.
+        ends: slips [m].
+        switched: which have switched in this stroke, each does once; None: none of them stops it.
+        at: slips at which states are wanted; None: its own steps.
 
     Raises:
         ValueError: the integration failed.
     """
     from scipy.integrate import solve_ivp  # slow to import, and exact laws do without
 
-    ahead = np.flatnonzero(law.switches(z, s, V) < -_SWITCHED) if switches else ()
+    ahead: list[int] = []
+    if switched is not None:
+        ahead = np.flatnonzero(law.switches(z, s, V) < -_SWITCHED).tolist()
+        ahead = [n for n in ahead if n not in switched]
     found = solve_ivp(
         lambda _, state: law.rate(state, s, V), ends, z, method="DOP853", t_eval=at,
-        events=[_event(law, s, V, int(n)) for n in ahead] or None, rtol=TOLERANCES[0], atol=TOLERANCES[1],
+        events=[_event(law, s, V, n) for n in ahead] or None, rtol=TOLERANCES[0], atol=TOLERANCES[1],
     )  # fmt: skip
     if not found.success:
         raise ValueError(f"{type(law).__name__} could not be integrated: {found.message}")
-    return found
+    return found, {n for n, t in zip(ahead, found.t_events or ()) if len(t)}
 
 
 def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
@@ -193,19 +216,36 @@ def work(
 ) -> NDArray[np.float64]:
     """∫ s f d(slip) [m] from a state over so much slip: by the law's formula, else by quadrature.
 
-    Gauss's rule on pieces that shrink towards the start, so that whatever f does there is resolved.
+    Gauss's rule on pieces that shrink towards the start and are halved where that changes their part.
     """
     if (known := law.work(z, s, V, np.array([slip]))) is not None:
         return known[..., 0]
     if slip == 0.0:
         return np.zeros(())
     x, w = np.polynomial.legendre.leggauss(_POINTS)
+
+    def parts(start: NDArray, end: NDArray) -> NDArray[np.float64]:
+        half = 0.5 * (end - start)
+        at = (0.5 * (end + start))[:, None] + half[:, None] * x
+        states = advance(law, z, s, V, slip, at.ravel())
+        f = s * law.friction(states, s, V)
+        return (np.reshape(f, (*f.shape[:-1], *at.shape)) * half[:, None] * w).sum(axis=-1)
+
     ends = np.append(0.0, slip * 0.5 ** np.arange(_PIECES - 1, -1, -1.0))
-    half = 0.5 * np.diff(ends)
-    at = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * x
-    states = advance(law, z, s, V, slip, at.ravel())
-    f = s * law.friction(states, s, V)
-    return (np.reshape(f, (*f.shape[:-1], *at.shape)) * half[:, None] * w).sum(axis=(-2, -1))
+    start, end = ends[:-1], ends[1:]
+    whole = parts(start, end)
+    total, size = np.zeros(whole.shape[:-1]), np.abs(whole).sum(axis=-1, keepdims=True)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (start + end)
+        halves = parts(np.append(start, middle), np.append(middle, end))
+        both = halves[..., : len(start)] + halves[..., len(start) :]
+        far = (np.abs(both - whole) > _OF_WORK * size).reshape(-1, len(start)).any(axis=0)
+        total = total + both[..., ~far].sum(axis=-1)
+        start, end = np.append(start[far], middle[far]), np.append(middle[far], end[far])
+        whole = halves[..., np.tile(far, 2)]
+        if not far.any():
+            break
+    return total + whole.sum(axis=-1)
 
 
 def by_runge_kutta(

@@ -111,8 +111,10 @@ class Laws(Registry[type[FrictionLaw]]):
         """Add a law of one's own, and return it.
 
         Raises:
+            TypeError: it is no class with the members of :class:`FrictionLaw`.
             ValueError: the name is taken, or another law has that parameter in another unit.
         """
+        self.check(name, model)
         for other, law in self.items():
             known = parameters(law)
             for key, parameter in parameters(model).items():
@@ -126,4 +128,4 @@ class Laws(Registry[type[FrictionLaw]]):
 
 
 #: Laws by the name that scenes use; every law adds itself.
-LAWS = Laws("friction law")
+LAWS = Laws("friction law", kind=FrictionLaw)

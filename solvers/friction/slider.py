@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,10 @@ from numpy.typing import NDArray
 
 from galinx.solvers.friction.law import FrictionLaw
 
-#: Relative tolerance of the integration, and absolute ones over the scales of the motion.
-TOLERANCES = 1e-10, 1e-12
+#: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
+#: scales of the motion; the first is for laws that remember nothing, whose motions are not stiff.
+_EXPLICIT = ("DOP853", 1e-12, 1e-14)
+_IMPLICIT = ("BDF", 1e-10, 1e-12), ("Radau", 1e-10, 1e-12)
 #: Stops, starts and switches of a law after which nothing more is to be expected of a motion.
 PIECES = 20_000
 #: How far beyond the speed of the drive an oscillation has to go, over that speed.
@@ -19,10 +22,13 @@ _SEEN = 1e-6
 #: Below this share of the drive's speed the mass is at rest: what laws of the logarithm of the speed bear
 #: is asked for there.
 _AT_REST = 1e-9
-#: Schemes, in the order in which they are tried.
-_SCHEMES = ("BDF", "Radau")
 #: An instant at rest [s].
 _INSTANT = 1e-300
+#: Periods of the mass on its spring after which the integration begins anew, and is asked how far it is.
+_PERIODS = 10
+#: Cycles after which a motion that has come back each time goes on so, and how well, over the sizes of
+#: the motion: no more is left of the tolerance in a cycle.
+_CYCLES, _SAME = 8, 1e-8
 
 
 @dataclass(frozen=True)
@@ -45,8 +51,26 @@ class Slider:
 
 
 @dataclass(frozen=True)
+class _Piece:
+    """A piece of a motion in one direction s = ±1, or at rest, s = 0.
+
+    Attributes:
+        start, end: times [s].
+        s: its direction.
+        y: spring, velocity and state of the law at times since its start, (2 + n, times).
+    """
+
+    start: float
+    end: float
+    s: int
+    y: Callable[[NDArray], NDArray]
+
+
+@dataclass(frozen=True)
 class Ride:
     """How a slider moved, at the steps of the integration, (n,).
+
+    The integration ends where a cycle has come back to itself; :meth:`at` goes on with it.
 
     Attributes:
         t: time [s].
@@ -62,6 +86,31 @@ class Ride:
     f: NDArray[np.float64]
     crossings: NDArray[np.float64]
     x_crossings: NDArray[np.float64]
+    _pieces: tuple[_Piece, ...]
+    _told: Callable[[float, int, NDArray], tuple[float, float, float]]
+    _repeats: bool
+
+    def at(self, times: NDArray) -> NDArray[np.float64]:
+        """Position [m], velocity [m/s] and friction coefficient at times [s], (3, times).
+
+        They are those of the scheme's own polynomials between its steps, as accurate as these.
+        """
+        t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
+        if self._repeats:
+            period, last = self.crossings[-1] - self.crossings[-2], self.crossings[-1]
+            cycles = np.maximum(np.floor((t - last) / period) + 1.0, 0.0)
+            t = t - cycles * period
+        starts = np.array([piece.start for piece in self._pieces])
+        which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
+        found = np.empty((3, len(t)))
+        for n in np.unique(which):
+            piece, some = self._pieces[n], np.flatnonzero(which == n)
+            since = np.clip(t[some], piece.start, piece.end) - piece.start
+            for i, y in zip(some, piece.y(since).T):
+                found[:, i] = self._told(float(t[i]), piece.s, y)
+        if self._repeats:
+            found[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
+        return found
 
     @property
     def cycle(self) -> slice | None:
@@ -97,22 +146,48 @@ def cycle(ride: Ride, drive_speed: float) -> Cycle:
     return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
 
 
-def pull(slider: Slider, law: FrictionLaw, load: float) -> Ride:
+#: What becomes of a slider.
+STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
+    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
+    "no whole cycle yet",
+)  # fmt: skip
+#: Share of the drive's speed within which one is another: of steady sliding, and of a stop in a cycle.
+_STEADY, _STOPPED = 1e-3, 1e-6
+
+
+def outcome(ride: Ride, drive_speed: float) -> str:
+    """What has become of a slider at the end of a motion, in words, by the drive's speed [m/s]."""
+    last = cycle(ride, drive_speed)
+    if np.isfinite(last.period):
+        return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
+    if len(ride.crossings) > 1 or abs(ride.v[-1] / drive_speed - 1.0) < _STEADY:
+        return STEADY
+    if len(ride.crossings) == 0:
+        return STAYS
+    return ONE_SLIP if ride.v[-1] <= _STOPPED * drive_speed else SHORT
+
+
+def pull(
+    slider: Slider, law: FrictionLaw, load: float, done: Callable[[float], None] = lambda share: None
+) -> Ride:
     """Move a slider under a law, by SciPy's BDF between stops, starts and switches of the law.
 
     Args:
         slider: mass, spring and drive.
         law: its friction.
         load: normal force per depth [N/m].
+        done: is told now and then how much of the duration is done.
 
     Raises:
         ValueError: the integration failed, or came to no end.
     """
     motion = _Motion(slider, law, load)
     for _ in range(PIECES):
-        if motion.t >= slider.duration:
+        if motion.t >= slider.duration or motion.repeats:
+            done(1.0)
             return motion.ride()
         motion.go_on()
+        done(min(motion.t / slider.duration, 1.0))
     raise ValueError(
         f"the mass has stopped, started and switched {PIECES} times in {motion.t:.3g} s: it rings in the "
         "law's own springs; give damping, or a larger mass"
@@ -127,6 +202,10 @@ class _Motion:
         self.t, self.e, self.v, self.z, self.s = 0.0, 0.0, 0.0, law.rest(), 0
         self._rows: list[tuple[float, float, float, float]] = []
         self._crossings: list[tuple[float, float]] = []
+        self._pieces: list[_Piece] = []
+        # Spring and state of the law at each crossing of the drive's speed.
+        self._came_back: list[NDArray[np.float64]] = []
+        self._longest = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
         self._slow = _AT_REST * slider.drive_speed
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
@@ -135,7 +214,35 @@ class _Motion:
         t, e, v, f = np.array(self._rows).T
         at, e_at = np.reshape(self._crossings, (-1, 2)).T
         drive = self.slider.drive_speed
-        return Ride(t, drive * t - e, v, f, at, drive * at - e_at)
+        return Ride(
+            t, drive * t - e, v, f, at, drive * at - e_at, tuple(self._pieces), self._told, self.repeats
+        )
+
+    @property
+    def _length(self) -> float:
+        """Of the spring, about [m]."""
+        slider = self.slider
+        return max(self.load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
+
+    @property
+    def repeats(self) -> bool:
+        """Has a cycle come back to itself often enough?"""
+        if len(self._came_back) <= _CYCLES:
+            return False
+        been, times = (
+            np.array(self._came_back[-_CYCLES - 1 :]),
+            np.array(self._crossings)[-_CYCLES - 1 :, 0],
+        )
+        sizes = np.abs(been).max(axis=0)
+        sizes[0] = max(sizes[0], self._length)
+        periods = np.diff(times)
+        alike = np.ptp(been, axis=0) <= _SAME * sizes
+        return bool(alike.all() and np.ptp(periods) <= _SAME * periods.max())
+
+    def _told(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
+        """Position, velocity and friction coefficient."""
+        f = self._friction(y, s) if s else self.pull(y[0], 0.0) / self.load
+        return self.slider.drive_speed * t - y[0], y[1], f
 
     def pull(self, e: float, v: float) -> float:
         """Of spring and dashpot [N/m]."""
@@ -168,6 +275,11 @@ class _Motion:
     def _stick(self, seconds: float) -> None:
         if seconds <= 0.0:
             return
+        begun, drive, z = self.e, self.slider.drive_speed, self.z
+        self._pieces.append(_Piece(
+            self.t, self.t + seconds, 0,
+            lambda t: np.vstack([begun + drive * t, 0.0 * t, np.outer(z, np.ones_like(t))]),
+        ))  # fmt: skip
         for t in np.linspace(0.0, seconds, 20):
             e = self.e + self.slider.drive_speed * t
             self._rows.append((self.t + t, e, 0.0, self.pull(e, 0.0) / self.load))
@@ -191,29 +303,25 @@ class _Motion:
         Raises:
             ValueError: none can.
         """
-        from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
-
         s, drive = self.s, self.slider.drive_speed
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
         events = [
             _event(lambda _, y: s * y[1] - 0.5 * self._slow, -1.0, True),
             _event(lambda _, y: y[1] - drive, 1.0, False),
-            _event(lambda _, y: self._acceleration(y), -1.0, False),
+            _event(lambda _, y: self._acceleration(y), 0.0, False),
             *(_event(lambda _, y, n=n: self._switch(y, int(n)), 1.0, True) for n in ahead),
         ]
-        length = max(self.load / self.slider.stiffness, 1e-3 * drive * self.slider.duration)
-        relative, absolute = TOLERANCES
-        accurate = [absolute * length, absolute * drive, *[absolute] * len(self.z)]
-        said = ""
-        for scheme in _SCHEMES:
+        last, said = min(self.slider.duration - self.t, self._longest), ""
+        scales = np.array([self._length, drive, *np.ones_like(self.z)])
+        remembers = self.law.flow(self.z, s, drive).any()
+        for scheme, relative, absolute in _IMPLICIT if remembers else (_EXPLICIT, *_IMPLICIT):
+            solved = partial(self._solved, scheme, events, relative, absolute * scales)
             try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
-                    found = solve_ivp(
-                        self._rates, (0.0, self.slider.duration - self.t),
-                        np.array([self.e, self.v, *self.z]), method=scheme, events=events, rtol=relative,
-                        atol=accurate,
-                    )  # fmt: skip
+                found = solved(last)
+                # Between two steps it may have stopped and been drawn on: a minimum tells.
+                slow = s * np.reshape(found.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
+                if slow.any():
+                    found = solved(float(found.t_events[2][np.argmax(slow)]))
             except ValueError as error:  # an event could not be located
                 said = str(error)
                 continue
@@ -222,20 +330,33 @@ class _Motion:
             said = found.message
         raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {said}")
 
-    def _keep(self, found: Any) -> None:
-        """The steps of a piece, and the fastest moments among them."""
-        self._crossings += [(self.t + t, y[0]) for t, y in zip(found.t_events[1], found.y_events[1])]
-        t = np.append(found.t, found.t_events[2])
-        fastest = np.reshape(found.y_events[2], (-1, len(found.y)))
-        y = np.concatenate([found.y.T, fastest])
-        for n in np.argsort(t, kind="stable"):
-            self._rows.append((self.t + t[n], y[n, 0], y[n, 1], self._friction(y[n])))
+    def _solved(self, scheme: str, events: Any, relative: float, absolute: NDArray, last: float) -> Any:
+        """SciPy's result until a time from now."""
+        from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
 
-    def _friction(self, y: NDArray) -> float:
-        return float(self.law.friction(y[2:], self.s, max(self.s * y[1], 0.0)))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
+            return solve_ivp(
+                self._rates, (0.0, last), np.array([self.e, self.v, *self.z]), method=scheme,
+                events=events, rtol=relative, atol=absolute, dense_output=True,
+            )  # fmt: skip
+
+    def _keep(self, found: Any) -> None:
+        """The steps of a piece, and the fastest and slowest moments among them."""
+        self._pieces.append(_Piece(self.t, self.t + found.t[-1], self.s, found.sol))
+        self._crossings += [(self.t + t, y[0]) for t, y in zip(found.t_events[1], found.y_events[1])]
+        self._came_back += [np.delete(y, 1) for y in found.y_events[1]]
+        t = np.append(found.t, found.t_events[2])
+        extremes = np.reshape(found.y_events[2], (-1, len(found.y)))
+        y = np.concatenate([found.y.T, extremes])
+        for n in np.argsort(t, kind="stable"):
+            self._rows.append((self.t + t[n], y[n, 0], y[n, 1], self._friction(y[n], self.s)))
+
+    def _friction(self, y: NDArray, s: int) -> float:
+        return float(self.law.friction(y[2:], s, max(s * y[1], 0.0)))
 
     def _acceleration(self, y: NDArray) -> float:
-        return (self.pull(y[0], y[1]) - self.load * self._friction(y)) / self.slider.mass
+        return (self.pull(y[0], y[1]) - self.load * self._friction(y, self.s)) / self.slider.mass
 
     def _switch(self, y: NDArray, n: int) -> float:
         return float(self.law.switches(y[2:], self.s, max(self.s * y[1], 0.0))[n])

@@ -143,6 +143,11 @@ class Layered:
         return self.surface.c_s
 
     @property
+    def flutter(self) -> tuple[float, float]:
+        """That of the solid at the surface: the shortest waves see no other."""
+        return self.surface.flutter
+
+    @property
     def slowest(self) -> float:
         """Least of the wave speeds by which solids' speeds are told [m/s]."""
         return min(solid.c_s for solid in self.solids)

@@ -99,4 +99,4 @@ def check_reach(profile: Any, left: float, right: float, found: str = "the conta
 
 
 #: Profiles by the name that scenes use; every profile adds itself.
-PROFILES: Registry[type[Profile]] = Registry("profile of the punch")
+PROFILES: Registry[type[Profile]] = Registry("profile of the punch", kind=Profile)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p  # NumPy's loses digits for small complex arguments
 
-from galinx.solvers.contact import from_edge, under_punch
+from galinx.solvers.contact import EdgeTraction, from_edge, under_punch
 from galinx.solvers.solids.solid import Response
 
 #: Newton's steps for the logarithm of a distance; where the answer is double they halve what is left.
@@ -73,8 +73,12 @@ class FlatPunch:
 
     def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
-        left, right = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
-        return 2.0 * self._sin / np.pi * right**self.α * left**self.β
+        return self.traction(np.asarray(left, dtype=float), np.asarray(right, dtype=float))
+
+    @property
+    def traction(self) -> EdgeTraction:
+        """The contact stress over N/(2a) by distances over a from the two edges."""
+        return EdgeTraction(2.0 * self._sin / np.pi, self.α, self.β)
 
     def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface over N/(2a); NaN at |r| = 1."""

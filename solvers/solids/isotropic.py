@@ -77,6 +77,16 @@ class Isotropic:
         """Rayleigh speed over the shear wave speed."""
         return rayleigh_speed(self.κ)
 
+    @property
+    def flutter(self) -> tuple[float, float]:
+        """σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else none.
+
+        By n and q the condition is β_d = ∓ i g (2w - 1), with w = (1 + k - k c²)/(1 + β_s β_d).
+        Between c_s and c_d, g is real at c² = 2 alone, where it is 1; that is below c_d² = 1/k for ν > 0.
+        """
+        g = 1.0 if self.ν > 0.0 else inf
+        return g, g
+
     def response(self, c: float) -> "MovingFrame":
         """The half-plane at a speed over the shear wave speed."""
         return MovingFrame(self.κ, c)

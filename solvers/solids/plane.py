@@ -55,6 +55,14 @@ class PlaneSolid(ABC):
         """Speed of the wave along the surface over ``c_s``."""
         return self._limit
 
+    @cached_property
+    def flutter(self) -> tuple[float, float]:
+        """Least σ_XY/σ_YY of either sign from which on short waves grow, infinite for none."""
+        from galinx.solvers.transient.admittance import Admittance  # loaded where it is needed
+        from galinx.solvers.transient.flutter import thresholds
+
+        return thresholds(Admittance.of(self._at_rest))
+
     def response(self, c: float) -> AnisotropicFrame:
         """The half-plane at a speed over ``c_s``.
 

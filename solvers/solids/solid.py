@@ -163,6 +163,11 @@ class Solid(Protocol):
     def knows_σ_ZZ(self) -> bool:
         """Are the constants enough for :meth:`σ_ZZ`? It is NaN without."""
 
+    @property
+    def flutter(self) -> tuple[float, float]:
+        """Least σ_XY/σ_YY > 0, and least -σ_XY/σ_YY > 0, from which on short waves along a surface that
+        slides on something rigid grow; infinite for none, see :mod:`galinx.solvers.transient.flutter`."""
+
     def limit(self) -> float:
         """Highest speed over ``c_s``: that of a wave along the surface."""
 
@@ -181,4 +186,4 @@ class Solid(Protocol):
 
 
 #: Solids by the name that scenes use; every solid adds itself.
-SOLIDS: Registry[type[Solid]] = Registry("kind of solid")
+SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)

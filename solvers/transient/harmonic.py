@@ -53,12 +53,13 @@ class OscillatingPunch:
         response: of steady motion at that speed.
         rayleigh: speed of the wave along the surface over c_s.
         ω: angular frequencies over c_s/a, > 0, growing.
+        way: ±1, in which the punch moves along X.
 
     Raises:
         ValueError: a wave along the contact is too short.
     """
 
-    def __init__(self, response: Response, rayleigh: float, ω: NDArray) -> None:
+    def __init__(self, response: Response, rayleigh: float, ω: NDArray, way: int = 1) -> None:
         if (last := float(ω.max())) > (most := highest(response, rayleigh)):
             raise ValueError(
                 f"found a frequency of {last:.4g} c_s/a, expected at most {most:.4g} c_s/a at c = "
@@ -68,10 +69,10 @@ class OscillatingPunch:
         band = np.floor(np.log(ω.max() / ω) / np.log(_BAND))
         self._bands = []
         for one in np.unique(band)[::-1]:
-            shortest = float(ω[band == one].max()) / (rayleigh - abs(response.c))
+            shortest = float(ω[band == one].max()) / (rayleigh - response.c)
             terms = ceil(_TERMS + _PER_RADIAN * shortest)
             s = 1j * ω[band == one]
-            self._bands.append((terms, Transformed(response, rayleigh, s, terms, _TURN / shortest)))
+            self._bands.append((terms, Transformed(response, rayleigh, s, terms, _TURN / shortest, way)))
 
     def oscillation(self, g: float) -> Oscillation:
         """What is answered where σ_XY = g σ_YY under the punch."""
@@ -92,4 +93,4 @@ class OscillatingPunch:
 
 def highest(response: Response, rayleigh: float) -> float:
     """Highest angular frequency over c_s/a that is known at a speed."""
-    return MOST * (rayleigh - abs(response.c))
+    return MOST * (rayleigh - response.c)

@@ -83,16 +83,18 @@ class StartingPunch:
         steps: of the quadrature.
         terms: polynomials of the pressure.
         surface: are stresses wanted along it?
+        way: ±1, in which the punch moves along X.
     """
 
     def __init__(
         self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24,
-        surface: bool = False,
+        surface: bool = False, way: int = 1,
     ) -> None:  # fmt: skip
         self._response, self._terms = response, terms
         self._scheme = Radau(end, steps)
-        self._transformed = Transformed(response, rayleigh, self._scheme.s, terms)
-        self._along = AlongSurface(response, rayleigh, self._scheme.s, ON_SURFACE) if surface else None
+        s = self._scheme.s
+        self._transformed = Transformed(response, rayleigh, s, terms, way=way)
+        self._along = AlongSurface(response, rayleigh, s, ON_SURFACE, way) if surface else None
 
     def course(self, g: float, load: Law) -> Course:
         """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""

@@ -41,22 +41,23 @@ def fastest(response: Any) -> float:
     return of.of(response).fastest
 
 
-def both_sides(response: Any, rayleigh: float) -> tuple[Side, Side]:
-    """Ahead and behind of a load that moves over a solid.
+def both_sides(response: Any, rayleigh: float, way: int) -> tuple[Side, Side]:
+    """On the sides towards +X and -X of a load that moves over a solid.
 
     Args:
         response: of the solid at the load's speed, :class:`LayersInCells` of layers.
         rayleigh: of the wave along the surface of a uniform solid over c_s.
+        way: ±1, in which the load moves along X.
 
     Raises:
         ValueError: the solid's waves are not known.
     """
     if not isinstance(response, LayersInCells):
-        surface = Admittance.of(response)
-        return Kernel(surface, response.c, rayleigh), Kernel(surface.mirrored, -response.c, rayleigh)
-    sheets, alone = Sheets.of(response), both_sides(response.surface, response.solid.surface.limit())
-    ahead, behind = (
-        OnLayers(one, Echoes(of, c))
-        for one, of, c in zip(alone, (sheets, sheets.mirrored), (response.c, -response.c))
+        surface, V = Admittance.of(response), way * response.c
+        return Kernel(surface, V, rayleigh), Kernel(surface.mirrored, -V, rayleigh)
+    sheets, V = Sheets.of(response), way * response.c
+    alone = both_sides(response.surface, response.solid.surface.limit(), way)
+    right, left = (
+        OnLayers(one, Echoes(of, c)) for one, of, c in zip(alone, (sheets, sheets.mirrored), (V, -V))
     )
-    return ahead, behind
+    return right, left

@@ -37,12 +37,13 @@ class AlongSurface:
         rayleigh: speed of the wave along the surface over c_s.
         s: over c_s/a, Re s > 0, (n,).
         X: places over a, not at the ends of the contact, (places,).
+        way: ±1, in which the punch moves along X.
     """
 
-    def __init__(self, response: Response, rayleigh: float, s: NDArray, X: NDArray) -> None:
+    def __init__(self, response: Response, rayleigh: float, s: NDArray, X: NDArray, way: int = 1) -> None:
         self._response, self._s, self._X = response, s, X
-        self._kernels = both_sides(response, rayleigh)
-        self._slowest = 1.0 / (rayleigh - abs(response.c))
+        self._kernels = both_sides(response, rayleigh, way)
+        self._slowest = 1.0 / (rayleigh - response.c)
 
     def strains(self, basis: Basis) -> NDArray[np.complex128]:
         """û,X over N̂/(2aμ) of each polynomial of the pressure where σ_XY = g σ_YY, (s, places, terms)."""

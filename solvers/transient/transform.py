@@ -35,14 +35,16 @@ class Transformed:
         s: over c_s/a, Re s >= 0 but not 0, (n,).
         terms: polynomials of the pressure.
         panel: largest width of a panel of distances over a.
+        way: ±1, in which the punch moves along X.
     """
 
     def __init__(
-        self, response: Response, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN
-    ) -> None:
+        self, response: Response, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN,
+        way: int = 1,
+    ) -> None:  # fmt: skip
         self._response, self.s, self._terms, self._panel = response, s, terms, min(panel, _EVEN)
-        self._kernels = both_sides(response, rayleigh)
-        self._slowest = 1.0 / (rayleigh - abs(response.c))
+        self._kernels = both_sides(response, rayleigh, way)
+        self._slowest = 1.0 / (rayleigh - response.c)
 
     def basis(self, g: float) -> Basis:
         """Of the pressure where σ_XY = g σ_YY."""

@@ -63,6 +63,38 @@ def test_a_failure_on_one_rank_ends_all(tmp_path):
     assert not (tmp_path / "never.h5").exists()
 
 
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        ("import sys\nsys.exit(5)", "SystemExit: 5, line 2"),
+        ("import sys\n\nsys.exit()", "SystemExit, line 3"),
+        ("raise KeyboardInterrupt", "KeyboardInterrupt, line 1"),
+        (
+            "import galinx\ngalinx.QUANTITIES.register('x/y', 3)",
+            "found 3, expected an instance of Quantity",
+        ),
+        ("import galinx\n\ngalinx.nothing", "has no attribute 'nothing', line 3"),
+        ("def f():\n    1 / 0\nf()", "ZeroDivisionError: division by zero, line 2"),
+        ("def f(:", "SyntaxError: invalid syntax (mine.py, line 1)"),
+    ],
+)
+def test_a_file_of_ones_own_that_fails_is_named_with_its_line(tmp_path, text, message):
+    (tmp_path / "mine.py").write_text(text, encoding="utf-8")
+    done = here("-x", "mine.py", "plan", SCENE, cwd=tmp_path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+    assert done.stderr.startswith("error: mine.py fails: ") and message in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("run", SCENE), ("show", "a.h5/"), ("report", "a.h5"), ("csv", "a.h5"), ("init", "box")]
+)
+def test_a_name_with_a_slash_at_its_end_is_no_files(tmp_path, words):
+    options = () if words[0] == "show" else ("-o", "new/")
+    done = here(*words, *options, cwd=tmp_path)
+    assert done.returncode == 2 and "the name of a folder; expected a file's" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("name", ["", *cli.commands])
 def test_help(name):
     done = here(*filter(None, [name]), "--help")

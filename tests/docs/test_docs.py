@@ -1,6 +1,7 @@
 """What pages name exists: tests, and other pages."""
 
 import re
+import runpy
 
 from support import HOME
 
@@ -40,3 +41,25 @@ def test_links_between_pages_hold():
         if "://" not in target and not (page.parent / target).exists()
     ]
     assert not faults, "\n".join(faults)
+
+
+def test_the_page_of_equations_names_code_and_tests_that_exist_for_each():
+    """Every row has code and a test, each name is in the file it links to, and no equation is missing."""
+    sources = runpy.run_path(str(HOME / "docs" / "sources.py"))
+    page = (HOME / "docs" / "equations.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([\d–, ]+) \|(.*)\|$", page, re.MULTILINE)
+    numbers_shown, faults = [], []
+    for numbers, row in rows:
+        for first, _, last in (part.partition("–") for part in numbers.split(", ")):
+            numbers_shown += range(int(first), int(last or first) + 1)
+        links = sources["LINK"].findall(row)
+        for name, file in links:
+            path = HOME / f"{file}.py"
+            if not path.exists() or name not in sources["names"](path.read_text(encoding="utf-8")):
+                faults.append(f"Eq {numbers}: {name} is not in {file}.py")
+        of_tests = [name.startswith("test_") and file.startswith("tests/") for name, file in links]
+        if not any(of_tests) or all(of_tests):
+            faults.append(f"Eq {numbers}: expected code and a test")
+    assert not faults, "\n".join(faults)
+    assert sorted(numbers_shown) == [*range(1, 59)]
+    assert page.count("](../") == sum(len(sources["LINK"].findall(row)) for _, row in rows)

@@ -8,6 +8,7 @@ from support import space_on
 from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem import surface
+from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.interior import InteriorGradients
 from galinx.solvers.fem.linear_loads import LinearLoads
 from galinx.solvers.fem.pieces import Pieces
@@ -74,3 +75,16 @@ def test_a_rank_that_has_worked_alone_works_with_the_others():
     alone = [space_on(*element, MPI.COMM_SELF).size] if MPI.COMM_WORLD.rank == 0 else []
     size = space_on(*element, MPI.COMM_WORLD).size
     assert all(size == one for one in alone)
+
+
+@pytest.mark.parametrize("form", ["isotropic", "nearly incompressible"])
+def test_dolfinx_assembles_the_same_on_all_ranks_together(form):
+    response, loads = MovingFrame(2.0, 0.6), []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        own = space_on("confocal", Refinement(4, 0.25, 1, (2.0,) * 3), 5, comm, form)
+        parts = own.mesh, own.facet_tags, own.tags, own.chart, 5, form, own.terms
+        punch = SlidingPunch(DolfinxSpace(*parts), response)
+        loads.append(punch.states([-0.6, 0.3]))
+        punch.destroy()
+    np.testing.assert_allclose(loads[1].normal, loads[0].normal, rtol=1e-9)
+    np.testing.assert_allclose(loads[1].v0, loads[0].v0, rtol=1e-9)

@@ -73,3 +73,64 @@ def test_tension_is_flagged_and_nothing_else_is():
     pulled = np.array([[np.nan, -1.0, 0.25, -1.0, np.nan]])
     assert "tension" not in archive()
     assert archive(**{"surface/fem/sigma_YY": pulled})["tension"] == 0.25
+
+
+def of_found_ends(**changes):
+    """A wedge's state: its pressure is infinite at the tip, 0."""
+    return archive(
+        **{
+            "states/closed_form/largest_pressure": np.array([np.nan]),
+            "states/fem/largest_pressure": np.array([np.nan]),
+            **{f"states/{method}/half_width": np.array([2e-3]) for method in METHODS},
+            **{f"states/{method}/centre": np.array([1e-3]) for method in METHODS},
+        }
+        | changes
+    )
+
+
+def test_the_pressure_of_found_ends_is_compared_over_its_largest_off_the_tip():
+    name = "sigma_YY of found ends"
+    assert of_found_ends()[name] == 0.0
+    at_tip, beside = (np.array([[np.nan, *σ, np.nan]]) for σ in ((-1.0, -9.0, -1.0), (-1.2, -2.0, -1.0)))
+    assert of_found_ends(**{"surface/fem/sigma_YY": at_tip})[name] == 0.0
+    assert of_found_ends(**{"surface/fem/sigma_YY": beside})[name] == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("which, moved", [("half_width", 1.9e-3), ("centre", 1.1e-3)])
+def test_ends_are_compared_over_the_half_width(which, moved):
+    found = of_found_ends(**{f"states/fem/{which}": np.array([moved])})
+    assert found["ends"] == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize("which, wanted", [("von_mises", 0.25), ("max_shear", 0.2), (None, 0.0)])
+def test_von_mises_and_shear_are_compared_each(which, wanted):
+    rows = {f"states/{method}/von_mises": np.array([4.0]) for method in METHODS}
+    rows |= {f"states/{method}/max_shear": np.array([2.5]) for method in METHODS}
+    if which:
+        rows[f"states/fem/{which}"] = np.array([3.0])
+    assert archive(**rows)["largest stresses"] == pytest.approx(wanted)
+
+
+def test_the_depth_of_yield_is_compared_where_there_is_one():
+    def depth(one, other):
+        rows = zip(METHODS, (one, other))
+        return archive(**{f"states/{method}/yield_depth": np.array([d]) for method, d in rows})
+
+    assert depth(0.5, 0.75)["depth of yield"] == 0.25
+    assert "depth of yield" not in depth(np.nan, np.nan)
+
+
+@pytest.mark.parametrize(
+    "normal, tangential, wanted", [(-8.0, -4.0, 0.0), (-9.0, -4.0, 0.1), (-8.0, -3.0, 0.1)]
+)
+def test_nodal_forces_are_compared_with_the_resultant_of_a_pressure_that_is_put_in(
+    normal, tangential, wanted
+):
+    found = archive(
+        **{
+            "states/closed_form/normal_force": np.array([-8.0]),
+            "states/fem/normal_force": np.array([normal]),
+            "states/fem/tangential_force": np.array([tangential]),
+        }
+    )
+    assert found["resultant"] == pytest.approx(wanted)

@@ -57,6 +57,26 @@ def kept(target, key="key"):
     return found, journal.damaged
 
 
+@pytest.mark.parametrize("replace", [False, True])
+def test_a_run_killed_after_publishing_leaves_nothing_for_ever(tmp_path, replace):
+    """The next run in that folder takes away what a published archive has made useless, no more."""
+    target, other = tmp_path / "out.h5", tmp_path / "other.h5"
+    if replace:
+        target.write_bytes(b"earlier")
+    folder, unpublished = interrupted(target), interrupted(other)
+    for archive, journal in ((target, Journal(target, "key")), (other, Journal(other, "key"))):
+        new = journal.folder / ".1.partial"
+        new.write_bytes(b"archive")
+        journal.about_to_publish(new)
+        if archive == target:
+            os.replace(new, target) if replace else (os.link(new, target), new.unlink())
+    other.write_bytes(b"archive")  # an earlier one: the new one was never published
+    with Journal(tmp_path / "third.h5", "key"):
+        assert not folder.exists() and unpublished.exists()
+    assert target.read_bytes() == b"archive"
+    assert kept(other) == ([0, 1, 2], 0)
+
+
 def test_parts_of_another_scene_are_refused(tmp_path):
     target = tmp_path / "out.h5"
     interrupted(target)

@@ -5,7 +5,7 @@ What only one method needs is imported when that is made for a plan.
 
 from galinx.app.console.progress import Progress
 from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.fem import LINEAR
+from galinx.app.plan.fem import DOLFINX, TENSOR
 from galinx.app.plan.task import Plan
 from galinx.app.run.methods.method import Method, MethodKind
 from galinx.app.scene.scene import Scene
@@ -125,7 +125,7 @@ def _of_layers(scene: Scene, body: Body, quantity: Quantity | None) -> str:
 def _finite_elements_refusal(scene: Scene, body: Body, quantity: Quantity | None) -> str:
     if body.layered:
         return _of_layers(scene, body, quantity)
-    if body.found and not isinstance(body.profile, LINEAR):
+    if body.found and not smooth(body.profile):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
         if quantity is stresses.RAW_PRESSURE:
@@ -148,7 +148,11 @@ METHODS: Registry[MethodKind] = Registry(
             "mesh and finite elements", _finite_elements, _finite_elements_refusal, loads=True
         ),
     },
+    MethodKind,
 )
 
 #: What the finite elements may be given: a punch, or the pressure under it.
 MODES = ("contact", "traction")
+
+#: Assemblers of their matrices: element matrices by tensor products, or dolfinx's own.
+ASSEMBLERS = (TENSOR, DOLFINX)

@@ -10,20 +10,29 @@ from typing import Any
 from mpi4py import MPI
 
 from galinx.app.console.progress import Progress
+from galinx.app.plan.fem import DOLFINX, TENSOR, FemPlan
 from galinx.app.plan.task import Plan
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells
+from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.meshes.store import obtain
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.space import Space
+
+#: Spaces by the assembler of their matrices.
+SPACES: dict[str, type[Space]] = {TENSOR: Space, DOLFINX: DolfinxSpace}
 
 #: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
 #: them are by about ε/√d. And the least, above rounding.
 _OF_ENDS, _LEAST = 1e-3, 1e-11
+
+#: Tolerance over the scene's of the cells that are tried where those for the scene's do not do.
+_FINER = 0.03
 
 
 class Discretisation:
@@ -67,14 +76,22 @@ class Discretisation:
         other.stresses = frozenset()
         return other
 
+    @cached_property
+    def finer(self) -> "Discretisation":
+        """What serves the same on cells for a tighter tolerance."""
+        whole = replace(self._whole, fem=on_finer_cells(self.plan))
+        other = Discretisation(whole, self._progress, self.clock)
+        other.stresses = self.stresses
+        return other
+
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+        self._progress.warn(text)
+
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree on a mesh; speeds share it, its form and its numbering."""
         if (degree, cuts) not in self._spaces:
-            with quiet_compiler():
-                self._spaces[degree, cuts] = Space(
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
-                    self.plan.terms, self.clock, self._progress.warn,
-                )  # fmt: skip
+            self._spaces[degree, cuts] = self.space_of(self.mesh(cuts), degree)
         return self._spaces[degree, cuts]
 
     def space_on(self, pattern: QuadMesh, degree: int) -> Space:
@@ -90,7 +107,7 @@ class Discretisation:
     def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
         """The space of a degree on such a mesh."""
         with quiet_compiler():
-            return Space(
+            return SPACES[self.plan.assembler](
                 *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
                 self.clock, self._progress.warn,
             )  # fmt: skip
@@ -111,6 +128,17 @@ class Discretisation:
         if cuts > 1:  # gmsh's copy of a cut mesh would only be large
             return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
         return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)
+
+
+def on_finer_cells(plan: FemPlan) -> FemPlan:
+    """The plan with cells for a tighter tolerance, and twice as many in angle and outwards."""
+    kind, wanted = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
+    if isinstance(kind, OnLayers):
+        return replace(plan, wanted=wanted, drawn=kind.drawn(wanted))
+    rings = kind.refinement(wanted)
+    columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
+    refinement = replace(rings, sectors=2 * rings.sectors, columns=columns)
+    return replace(plan, wanted=wanted, refinement=refinement)
 
 
 @contextmanager

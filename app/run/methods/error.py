@@ -14,7 +14,16 @@ from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.estimate import AT_DEPTHS, SLOWER, Rate, before, of_degrees, remaining
+from galinx.postprocess.estimate import (
+    AT_DEPTHS,
+    SAFETY,
+    SLOWER,
+    SLOWEST,
+    Rate,
+    before,
+    of_degrees,
+    remaining,
+)
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.solvers.fem.space import Space
@@ -27,6 +36,11 @@ _UPRIGHT = 0.1
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
+
+
+#: Degrees over which it is seen how changes fall, and by how much what is left at the highest degree has
+#: to miss the tolerance, were they to go on so, before a ladder ends there.
+_SEEN, _DOUBT = 2, 3.0
 
 
 @contextmanager
@@ -48,8 +62,28 @@ def climbed(
         ladder.destroy()
 
 
+@contextmanager
+def reached(
+    work: Any, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
+) -> Iterator[tuple[Ladder, "MeasuredError"]]:
+    """The same, on cells for a tighter tolerance where those for the wanted one do not do at any degree.
+
+    Args:
+        work, task, solved: of the :class:`Ladder`; the work with its ``finer``, which has such cells.
+        g: the speed's values of σ_XY/σ_YY, sorted.
+    """
+    tolerance = work.plan.tolerance
+    with climbed(work, task, g, solved) as (ladder, error):
+        if not error.of_cells:
+            yield ladder, error.told()
+            return
+    with climbed(work.finer, task, g, solved, None, tolerance / work.finer.plan.tolerance) as finer:
+        ladder, error = finer
+        yield ladder, error.told()
+
+
 def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
-    """Raise the degree until the measured error of sample states is within tolerance.
+    """Raise the degree until the measured error of sample states is within tolerance, or hardly falls.
 
     Args:
         ladder: without a level.
@@ -67,11 +101,23 @@ def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
     error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
     while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
+        if _stalls(changes, ladder.degree, share * plan.tolerance):
+            break
         ladder.add(g, ladder.degree + 1)
         error = MeasuredError(ladder, probes, loads, share)
         changes |= error.changes
     error.changes = changes
     return error
+
+
+def _stalls(changes: dict[int, float], degree: int, tolerance: float) -> bool:
+    """Do changes fall so slowly that the highest degree would not reach the tolerance either?"""
+    before, last = changes.get(degree - _SEEN, 0.0), changes[degree]
+    ρ = (last / before) ** (1.0 / _SEEN) if before else 0.0
+    if ρ >= 1.0:
+        return True
+    at_last = last * ρ ** (DEGREES[1] - degree)
+    return SAFETY * at_last * ρ / (1.0 - ρ) > _DOUBT * tolerance
 
 
 class MeasuredError:
@@ -86,6 +132,8 @@ class MeasuredError:
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
         excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
+        of_cells: is it, and the most of it neither rounding nor what the outer radius leaves?
+        worst: the largest error of the probes.
     """
 
     def __init__(
@@ -103,14 +151,32 @@ class MeasuredError:
         self.changes: dict[int, float] = {}
         if not ladder.work.plan.fixed:
             for i, degree in enumerate((ladder.degree - 1, ladder.degree)):
-                pairs = (float(pair[i].max()) for pair in self._sample.values())
-                self.changes[degree] = max(pairs, default=0.0)
+                by_word = {word: float(pair[i].max()) for word, pair in self._sample.items()}
+                ladder.changes[degree] = by_word
+                self.changes[degree] = max(by_word.values(), default=0.0)
         tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(found[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
-        self.excessive = any(
-            bool((error > np.maximum(tolerance, 1.1 * unseen[name])).any())
-            for name, error in self._errors(found, probes).items()
+        errors = self._errors(found, probes)
+        wrong = {
+            name: error > np.maximum(tolerance, 1.1 * unseen[name]) for name, error in errors.items()
+        }
+        self.excessive = any(bool(one.any()) for one in wrong.values())
+        self.of_cells = not ladder.work.plan.fixed and any(
+            bool((one & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
+            for name, one in wrong.items()
         )
+        self.worst, self._tolerance = max(float(error.max()) for error in errors.values()), tolerance
+
+    def told(self) -> "MeasuredError":
+        """Itself; a warning says where the tolerance is not reached."""
+        ladder = self._ladder
+        if self.excessive and not ladder.work.plan.fixed:
+            ladder.work.warn(
+                f"finite elements at c = {ladder.task.response.c:g} do not reach the tolerance "
+                f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
+                f"{ladder.degree}, and falls too slowly"
+            )
+        return self
 
     def record(self) -> dict[str, list[float]]:
         """The changes by degree, as they are archived."""
@@ -150,6 +216,15 @@ class MeasuredError:
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
     def _rate(self, word: str) -> Rate:
+        """What is counted on, or how changes fell over two degrees: over one it may be luck."""
+        rate, changes, degree = self._usual(word), self._ladder.changes, self._ladder.degree
+        earlier = changes.get(degree - _SEEN, {}).get(word)
+        if not earlier:
+            return rate
+        ρ = min((changes[degree][word] / earlier) ** (1.0 / _SEEN), SLOWEST)
+        return Rate(max(ρ, rate.usual), max(ρ, rate.believed), rate.least)
+
+    def _usual(self, word: str) -> Rate:
         if word == AT_INTERFACES:
             return AT_DEPTHS
         if word != INTENSITIES:

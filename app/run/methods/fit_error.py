@@ -46,6 +46,10 @@ class Estimates:
         """The smallest of all."""
         return float(np.min(self._errors[word]))
 
+    def covers(self, z: float) -> bool:
+        """Were errors measured there, or on both sides of it?"""
+        return min(self._z) <= z <= max(self._z)
+
     def beyond(self, tolerance: float) -> bool:
         """Are all of a word beyond it? Then no speed can be told to the tolerance."""
         return any(self.least(word) > tolerance for word in self._errors)

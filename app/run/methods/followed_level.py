@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from galinx.app.plan import layers
 from galinx.app.plan.fem import FemPlan, wanted_for
 from galinx.app.plan.task import Task
-from galinx.app.run.methods.discretisation import Discretisation
+from galinx.app.run.methods.discretisation import Discretisation, on_finer_cells
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.kinked_displacement import KinkedDisplacement
 from galinx.app.run.methods.punch import negligible, tests_of
@@ -105,6 +105,15 @@ class FollowingMesh:
         assert plan.drawn
         self._work, self.plan, self.stresses, self.clock = work, plan, stresses, work.clock
         self._mesh = work.own_mesh(plan.drawn)
+
+    @cached_property
+    def finer(self) -> "FollowingMesh":
+        """With cells for a tighter tolerance."""
+        return FollowingMesh(self._work, on_finer_cells(self.plan), self.stresses)
+
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+        self._work.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree."""

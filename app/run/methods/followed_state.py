@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import climb
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.followed_level import GROWTH, ONE, FollowedLevel, FollowingMesh, Sized
-from galinx.app.run.methods.ladder import Ladder, WorkDone
+from galinx.app.run.methods.ladder import WorkDone
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.errors import SolveError
@@ -142,21 +142,22 @@ class _Contact:
         self.done.count(found)
         return found
 
-    def solved(self, h: float) -> tuple[Sized, Ladder, dict[str, float]]:
+    def solved(self, h: float) -> tuple[Sized, FollowedLevel, dict[str, float]]:
         """On a mesh drawn for a half-width [m], as good as it has to be; and relative errors by word."""
         sized = Sized(self.task, h)
         words = self.work.stresses
         mesh = FollowingMesh(
             self.work, sized.plan(self.work.plan, words, self.work.plan.tolerance), words
         )
-        ladder = Ladder(mesh, sized.seen, lambda space, _: self.level(mesh, sized.seen, space))
         g = np.array([self.g])
-        error = climb(ladder, g)
-        for early in ladder.levels[:-1]:
-            early.destroy()
-        of = {word: float(values[0]) for word, values in error.of(g).items()}
-        self.record = error.record()
-        return sized, ladder, of
+
+        def level(space: Any, _: NDArray) -> FollowedLevel:
+            return self.level(mesh, sized.seen, space)
+
+        with reached(mesh, sized.seen, g, level) as (ladder, error):
+            of = {word: float(values[0]) for word, values in error.of(g).items()}
+            self.record = error.record()
+            return sized, ladder.levels.pop(), of
 
 
 def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDone) -> FollowedState:
@@ -174,13 +175,11 @@ def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDo
     """
     contact = _Contact(work, task, g, done)
     h = contact.settled(near)
-    sized, ladder, estimates = contact.solved(h)
-    last: FollowedLevel = ladder.levels[-1]
+    sized, last, estimates = contact.solved(h)
     h = float(np.exp(contact.moved(float(np.log(h)), last.off)))
     if abs(h / sized.half_width - 1.0) > _LEFT * work.plan.tolerance:
         last.destroy()
-        sized, ladder, estimates = contact.solved(h)
-        last = ladder.levels[-1]
+        sized, last, estimates = contact.solved(h)
         h = float(np.exp(contact.moved(float(np.log(h)), last.off)))
     check_reach(task.body.profile, h * (last.centre - 1.0), h * (last.centre + 1.0))
     off = abs(h / sized.half_width - 1.0)

@@ -1,9 +1,11 @@
 """Punches whose contact ends where the pressure says, by finite elements at one speed.
 
 The half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its width is, and
-what is held under the punch is a combination of few shapes: 1, s and s² for a parabola, 1 and s for a
-tilted flat base. Load and vanishing intensities at free ends are linear in their amplitudes, from which
-half-width and middle follow. Every friction and every load is found in the basis of the speed.
+what is held under the punch is a combination of few shapes: 1 and s for a tilted flat base, 1, s and s²
+for a parabola, as many polynomials as it takes for any other smooth profile. Load and vanishing
+intensities at free ends are linear in their amplitudes, from which half-width and middle follow; of a
+parabola directly, of other profiles by the conditions of :mod:`galinx.postprocess.free_ends`. Every
+friction and every load is found in the basis of the speed.
 """
 
 from collections.abc import Iterator
@@ -18,10 +20,11 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.punch import PunchesAtSpeed, PunchLevel
+from galinx.postprocess.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
 from galinx.postprocess.largest import largest
 from galinx.postprocess.near_ends import turns_at_ends
 from galinx.postprocess.pressure import JacobiPressure, chebyshev, from_moments, without_zeros
@@ -43,7 +46,7 @@ _NEAREST = 1e-6
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FoundAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
+    with reached(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
         yield FoundAtSpeed(ladder, error)
 
 
@@ -75,6 +78,7 @@ class FoundStates:
         free: which of the left and the right end are free, (states, 2).
         factor: Chebyshev coefficients of the pressure over a flat punch's weight, (states, moments).
         local: exponents of a flat punch.
+        left: of the profile's slope beyond the shapes, relative, (states,).
     """
 
     contact: ContactStates
@@ -83,6 +87,7 @@ class FoundStates:
     free: NDArray[np.bool_]
     factor: NDArray[np.float64]
     local: FlatPunch
+    left: NDArray[np.float64]
 
     @property
     def exponents(self) -> Exponents:
@@ -106,7 +111,7 @@ class FoundLevel(PunchLevel):
 
     def heights(self) -> NDArray[np.float64]:
         s = self.space.chart.surface_position(self.space.contact.s)
-        return s[None] if isinstance(self.task.body.profile, Flat) else np.stack([s, s**2])
+        return heights_of_shapes(s, self._work.plan.shapes)
 
     def found(self, g: NDArray, load: Any = None) -> FoundStates:
         """The states with these values of σ_XY/σ_YY, under the task's load or others [N/m].
@@ -115,19 +120,19 @@ class FoundLevel(PunchLevel):
             SolveError: no contact carries the load.
         """
         parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
-        solve = _tilted if isinstance(self.task.body.profile, Flat) else _parabola
-        K = np.stack([self._smooth(part, local).K_I for part in parts], axis=2)
+        K = np.stack([self._over_flat(part, local).K_I for part in parts], axis=2)
         loads = np.stack([part.load for part in parts], axis=1)
         body = self.task.body.loaded(load)
-        amplitudes, h, m, free, lowest = solve(body, loads, K)
+        solve = _SOLVES.get(type(body.profile), _smooth)
+        amplitudes, h, m, free, lowest, left = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = combined(g, parts, amplitudes)
-        factor = self._smooth(contact, local).c
+        factor = self._over_flat(contact, local).c
         deeper = replace(contact, v0=contact.v0 + lowest)
-        return FoundStates(deeper, h, m, free, factor, local)
+        return FoundStates(deeper, h, m, free, factor, local, left)
 
-    def _smooth(self, part: Part, local: FlatPunch) -> JacobiPressure:
+    def _over_flat(self, part: Part, local: FlatPunch) -> JacobiPressure:
         """Its pressure over a flat punch's weight."""
         return from_moments(part.tested(self.recovery.moments), local.α, local.β)
 
@@ -148,31 +153,52 @@ class FoundLevel(PunchLevel):
         ]
 
 
-#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, and by how much the lowest
-#: point of the punch lies below the level of the first shape, over N/(2μ).
-_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray]
+#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, by how much the lowest point
+#: of the punch lies below the level of the first shape, over N/(2μ), and what is left of the slope.
+_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
 
 
-def _parabola(body: Body, loads: NDArray, K: NDArray) -> _Solved:
-    """v = -v₀ + c₁ s + c₂ s² with the load, and without intensity at both ends.
+def _parabola(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
+    """v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
 
     Args:
         body: what slides over what.
-        loads: ∫σ_YY of every part, (states, 3).
-        K: intensities of every part at both ends, (states, 2, 3).
+        loads: ∫σ_YY of every part, (states, parts).
+        K: intensities of every part at both ends, (states, 2, parts).
+        local: exponents of a flat punch.
     """
     punch = body.profile
     assert isinstance(punch, Parabolic)
-    A = np.concatenate([loads[:, None], K], axis=1)
-    amplitudes = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
-    _, c1, c2 = amplitudes.T
+    A = np.concatenate([loads[:, None, :3], K[..., :3]], axis=1)
+    first = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
+    amplitudes = np.concatenate([first, np.zeros((len(A), loads.shape[1] - 3))], axis=1)
+    _, c1, c2 = first.T
     with np.errstate(invalid="ignore"):
-        h = np.sqrt(2.0 * punch.radius * c2 * body.displacement)
+        h = np.sqrt(punch.radius * c2 * body.displacement)
     free = np.ones((len(A), 2), dtype=bool)
-    return amplitudes, h, h * c1 / (2.0 * c2), free, c1**2 / (4.0 * c2)
+    return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
 
 
-def _tilted(body: Body, loads: NDArray, K: NDArray) -> _Solved:
+def _smooth(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
+    """v = -v₀ + the punch's height with the load, and without intensity at both ends."""
+    punch, few = body.profile, slice(1 + SHAPES)
+    units = np.broadcast_to(body.displacement, len(loads)).tolist()
+    known, near = free_ends(local, K[..., few], loads[:, few]), None
+    ends, slopes = [], []
+    for condition, unit in zip(known, units):
+        near = condition.found(punch, unit, near)
+        ends.append(near)
+        slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
+    (m, h), size, count = np.transpose(ends), np.abs(slopes), loads.shape[1] - 1
+    shapes = np.array(slopes)[:, :count]
+    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
+    lowest = np.asarray(punch.height(m)) / units
+    left = size[:, count:].sum(axis=1) / size.max(axis=1)
+    free = np.ones((len(m), 2), dtype=bool)
+    return np.column_stack([v0, shapes]), h, m, free, lowest, left
+
+
+def _tilted(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
     """v = -v₀ + c₁ s with the load; c₁ is known, or what leaves no intensity at the higher edge."""
     punch = body.profile
     assert isinstance(punch, Flat)
@@ -187,7 +213,11 @@ def _tilted(body: Body, loads: NDArray, K: NDArray) -> _Solved:
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
     centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
-    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1])
+    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1]), 0.0 * h
+
+
+#: Of those profiles whose conditions are linear.
+_SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
 class FoundAtSpeed(PunchesAtSpeed):
@@ -273,7 +303,8 @@ class FoundPunches:
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        return self.at.error.of(self.g, self.body.load)
+        found = self.at.error.of(self.g, self.body.load)
+        return {word: values + self.found.left for word, values in found.items()}
 
     @cached_property
     def surface(self) -> Surface:

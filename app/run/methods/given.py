@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climbed
+from galinx.app.run.methods.error import MeasuredError, reached
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.method import Pressure
@@ -26,7 +26,7 @@ from galinx.solvers.solution import Places, Surface
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: LoadsAtDegree(work, task, space, g)) as (ladder, error):
+    with reached(work, task, g, lambda space, g: LoadsAtDegree(work, task, space, g)) as (ladder, error):
         yield LoadsAtSpeed(ladder, error)
 
 
@@ -38,7 +38,7 @@ def one_state(
     loaded = LoadedHalfPlane(work.space(degree), task.response)
     try:
         punch = FlatPunch(task.response, g)
-        loaded.load(punch.σ_YY_by_distance)
+        loaded.load(punch.traction)
         yield loaded.space, loaded.fields, np.array([1.0, g]), punch.σ_YY
     finally:
         loaded.destroy()
@@ -61,7 +61,7 @@ class LoadsAtDegree:
         self._columns: dict[float, int] = {}
         for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
-            self.loaded.load(FlatPunch(task.response, value).σ_YY_by_distance)
+            self.loaded.load(FlatPunch(task.response, value).traction)
         self._gauges = StressGauges(work, task, lambda at: Displacement(at, space, self.loaded.fields))
 
     @property

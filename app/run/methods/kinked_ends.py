@@ -17,7 +17,7 @@ from galinx.app.run.methods.error import MeasuredError, climbed
 from galinx.app.run.methods.gauge import Gauge
 from galinx.app.run.methods.ladder import Ladder, WorkDone
 from galinx.app.run.methods.punch import PunchLevel
-from galinx.postprocess.free_ends import FreeEnds, heights_of_shapes
+from galinx.postprocess.free_ends import FreeEnds, free_ends, heights_of_shapes
 from galinx.postprocess.pressure import from_moments
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.fem.space import Space
@@ -101,10 +101,7 @@ class EndsLevel(PunchLevel):
             [from_moments(part.normal @ self.recovery.moments, local.α, local.β).K_I for part in parts],
             axis=-1,
         )
-        N = np.stack([part.normal.sum(axis=1) for part in parts], axis=-1)[:, None]
-        share = K[..., :1] / N[..., :1]
-        moments, wanted = (K - share * N)[..., 1:], 2.0 * share[..., 0]
-        return [FreeEnds(*one) for one in zip(local.α.tolist(), local.β.tolist(), moments, wanted)]
+        return free_ends(local, K, np.stack([part.load for part in parts], axis=-1))
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         ends = np.array(self.found(g, load))

@@ -1,6 +1,7 @@
 """A contact with kinks at one degree, and what its error is measured on."""
 
 from dataclasses import replace
+from functools import cached_property
 from math import ceil, log
 from typing import Any
 
@@ -18,7 +19,7 @@ from galinx.meshes.kinks import with_kinks
 from galinx.postprocess.kinked_pressure import KinkedPressure, gaps_of
 from galinx.postprocess.pressure import chebyshev
 from galinx.postprocess.quantities.quantity import INTENSITIES
-from galinx.postprocess.scale import off_tips
+from galinx.postprocess.scale import NEAR_TIP, off_tips
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
@@ -34,6 +35,9 @@ _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 #: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
 _AROUND_CUSP, _INNERMOST = 4, 30.0
+
+#: Size of the innermost cells at a tip over the distance from where stresses are looked at.
+_OF_TIP = 0.25
 
 #: Weights of a single field.
 ONE = np.ones((1, 1))
@@ -60,14 +64,16 @@ def rings_around_kinks(plan: FemPlan, body: Body) -> int:
     """How many more than around the ends.
 
     Next to a kink of the slope's derivative the pressure is d log d, and what the innermost cells make of
-    it is of their size whatever the degree is. At a tip it is infinite, and looked at farther away.
+    it is of their size whatever the degree is. At a tip it is infinite, and looked at farther away: where
+    an innermost cell reached there, no degree would resolve it, however loose the tolerance is.
     """
-    if jumps(body.profile):
-        return 0
     if cusp(body.profile):
         return _AROUND_CUSP
-    order = max((exponent(body.profile) or 2.0) - 1.0, 1.0)
-    size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
+    if jumps(body.profile):
+        size = _OF_TIP * NEAR_TIP
+    else:
+        order = max((exponent(body.profile) or 2.0) - 1.0, 1.0)
+        size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
     return max(0, ceil(log(size) / log(plan.refinement.ratio)) - plan.refinement.levels)
 
 
@@ -77,15 +83,25 @@ class OwnMeshes:
     Args:
         work: of all states.
         places: of the kinks over the half-width.
-        more: rings around these.
+        body: what slides over what.
 
     Attributes:
         plan: of all states.
     """
 
-    def __init__(self, work: Discretisation, places: NDArray, more: int) -> None:
-        self._work, self.plan = work, work.plan
+    def __init__(self, work: Discretisation, places: NDArray, body: Body) -> None:
+        self._work, self._places, self._body, self.plan = work, places, body, work.plan
+        more = rings_around_kinks(work.plan, body)
         self._mesh = work.own_mesh(with_kinks(work.plan.refinement, places, more))
+
+    @cached_property
+    def finer(self) -> "OwnMeshes":
+        """With cells for a tighter tolerance."""
+        return OwnMeshes(self._work.finer, self._places, self._body)
+
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+        self._work.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree."""

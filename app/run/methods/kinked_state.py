@@ -9,16 +9,15 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import climb
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.kinked_ends import Ends
 from galinx.app.run.methods.kinked_level import (
     ONE,
     KinkedLevel,
     OwnMeshes,
     places_of_kinks,
-    rings_around_kinks,
 )
-from galinx.app.run.methods.ladder import Ladder, WorkDone
+from galinx.app.run.methods.ladder import WorkDone
 from galinx.postprocess.near_ends import turns_at_ends
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -114,13 +113,10 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
         done.count(found)
         return found
 
-    more = rings_around_kinks(work.plan, task.body)
-    ladder = Ladder(OwnMeshes(work, places, more), task, level)
-    error = climb(ladder, np.array([g]))
-    for early in ladder.levels[:-1]:
-        early.destroy()
-    last: KinkedLevel = ladder.levels[-1]
-    estimates = {word: float(values[0]) for word, values in error.of(np.array([g])).items()}
+    of_one = np.array([g])
+    with reached(OwnMeshes(work, places, task.body), task, of_one, level) as (ladder, error):
+        estimates = {word: float(values[0]) for word, values in error.of(of_one).items()}
+        last: KinkedLevel = ladder.levels.pop()
     estimates[INTENSITIES] += ends.error
     size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
     return KinkedState(task, ends, last, estimates, size | error.record())

@@ -23,6 +23,9 @@ class Spaces(Protocol):
 
     def space(self, degree: int, cuts: int = 1) -> Space: ...
 
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+
 
 class Level(Protocol):
     """A solution at one degree; what it measures can be asked for after its release."""
@@ -67,6 +70,8 @@ class Ladder:
     Attributes:
         degree: of the last level.
         levels: the last ones.
+        changes: largest change from the degree before of what the error is measured on, by degree and by
+            word of output.quantities.
     """
 
     def __init__(
@@ -76,6 +81,7 @@ class Ladder:
         self.work, self.task = work, task
         self.degree = degree or work.plan.degrees[task.number]
         self.levels: list[Any] = []
+        self.changes: dict[int, dict[str, float]] = {}
         self._solved = solved
         self._work = WorkDone()
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import MeasuredError, climbed
+from galinx.app.run.methods.error import MeasuredError, reached
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
@@ -27,7 +27,7 @@ from galinx.solvers.solution import Places, Surface
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LoadsAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, _: LoadsLevel(work, task, space)) as (ladder, error):
+    with reached(work, task, g, lambda space, _: LoadsLevel(work, task, space)) as (ladder, error):
         yield LoadsAtSpeed(ladder, error)
 
 

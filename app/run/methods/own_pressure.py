@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
@@ -28,7 +28,7 @@ from galinx.solvers.solution import Surface
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressureAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (ladder, error):
+    with reached(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (ladder, error):
         yield OwnPressureAtSpeed(ladder, error)
 
 

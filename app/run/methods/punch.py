@@ -14,7 +14,7 @@ from galinx.app.plan.task import Task
 from galinx.app.run.methods import gauge
 from galinx.app.run.methods.discretisation import Discretisation
 from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import climbed
+from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.method import Pressure
 from galinx.postprocess.pressure import (
@@ -51,7 +51,7 @@ def negligible(work: Any) -> float:
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with climbed(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
+    with reached(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
         yield PunchesAtSpeed(ladder, error)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.plan.fem import levels
 from galinx.app.plan.sweep import LADDERS, MOST, Sweep
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.discretisation import Discretisation
@@ -48,23 +49,31 @@ AT_ONCE = 2
 _FRICTIONS, _BETWEEN = (8, 12, 16, 20, 26, 34, 44, 60), 3e-12
 
 
+#: Share of what solving every speed costs that may be lost where no fit becomes good enough.
+_REGRET = 0.08
+
+#: Speeds, at both ends of the sweep, at which the discretisation's error is measured in any case.
+_ENDS = 2
+
+
 class HigherDegree(Exception):
     """One of the speeds asks for a higher degree than those before were solved with."""
 
 
 @dataclass(frozen=True)
 class Trained:
-    """A fit that is good enough, and how good it is.
+    """A fit through some speeds, and how good it is.
 
     Attributes:
         fit: through the speeds that were solved.
         estimates: of the discretisation, measured at some speeds.
-        error: of the fit, by word of output.quantities.
+        error: of the fit, by word of output.quantities; None where it is not good enough, and tells the
+            solved speeds alone.
     """
 
     fit: Fit
     estimates: Estimates
-    error: dict[str, float]
+    error: dict[str, float] | None
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Any]:
@@ -73,8 +82,11 @@ class Trained:
         That is where what is estimated there is beyond the tolerance: alone it may do better.
         """
         number, fit = task.number, self.fit
-        told = number not in fit.solved
-        error = FitError(self.estimates, fit.sweep.z[number], self.error if told else {})
+        told, z = number not in fit.solved, float(fit.sweep.z[number])
+        if self.error is None and (told or not self.estimates.covers(z)):
+            yield None
+            return
+        error = FitError(self.estimates, z, self.error if told and self.error else {})
         worst = max((values.max() for values in error.of(g).values()), default=0.0)
         if worst > fit.work.plan.tolerance:
             yield None
@@ -98,7 +110,9 @@ class _Told:
 def train(
     work: Discretisation, tasks: list[Task], mode: ModuleType, say: Callable[[str], None]
 ) -> Trained | None:
-    """Solve speeds until a fit tells the others to the tolerance; None where none does.
+    """Solve speeds until a fit tells the others to the tolerance.
+
+    Where that may cost too much, were it in vain, it tells those that were solved.
 
     Args:
         work: gives spaces.
@@ -108,12 +122,15 @@ def train(
     """
     assert work.plan.sweep
     degree: int | None = None
+    lost = 0.0
     while True:
+        training = _Training(work, tasks, mode, work.plan.sweep, say, degree, lost)
         try:
-            training = _Training(work, tasks, mode, work.plan.sweep, say, degree)
             return training.done()
         except HigherDegree as higher:
-            degree = higher.args[0]
+            degree, lost = higher.args[0], training.spent
+            if lost > training.allowed:
+                return training.given_up()
         except SolveError as error:  # each speed by itself tells which, and why
             say(f"no fit through speeds: {error}")
             return None
@@ -140,13 +157,37 @@ class _Solved:
     off: dict[str, float] | None = None
 
 
+def _cost(degree: int) -> float:
+    """Of a factorisation and all that goes with it."""
+    return float(degree**4)
+
+
+def _cost_of_ladder(degree: int) -> float:
+    return sum(_cost(p) for p, _ in levels(degree, 1, fixed=False))
+
+
 class _Training:
-    """See :func:`train`; ``degree`` is that to begin with, the plan's if None."""
+    """See :func:`train`.
+
+    Costs are counted in factorisations, which go with the fourth power of the degree or so.
+
+    Args:
+        work, tasks, mode, sweep, say: of that.
+        degree: to begin with, the plan's if None.
+        lost: cost of what was solved before, in vain.
+
+    Attributes:
+        spent: cost of all that was solved.
+        allowed: cost that may be lost.
+    """
 
     def __init__(
         self, work: Discretisation, tasks: list[Task], mode: ModuleType, sweep: Sweep,
-        say: Callable[[str], None], degree: int | None,
+        say: Callable[[str], None], degree: int | None, lost: float = 0.0,
     ) -> None:  # fmt: skip
+        self.spent = lost
+        self._alone = [_cost_of_ladder(degree) for degree in work.plan.degrees]
+        self._lost, self.allowed = lost, _REGRET * sum(self._alone)
         self._work, self._tasks, self._mode, self._sweep = work, tasks, mode, sweep
         self._say, self._degree = say, degree
         body = tasks[0].body
@@ -158,59 +199,102 @@ class _Training:
         self._fit: Fit | None = None
 
     def done(self) -> Trained | None:
-        """The fit, None where it does not become good enough."""
+        """The fit; of the solved speeds alone where it does not become good enough."""
         tasks = self._tasks
         # The fastest asks for the highest degree: it is solved first, by every rank for itself.
         chosen = [int(np.argmin([task.response.margin for task in tasks]))]
         self._take([self._measured(chosen[0])])
+        self.spent += self._cost(True)  # it would be solved just so by itself
         number: int | None = None
         while len(chosen) < min(MOST, len(tasks) // 2):
             numbers = self._next(chosen, number)
             if not numbers:
-                break  # there is no other speed
-            before, error = self._solved(numbers, len(chosen))
+                break  # there is no other speed, or it would cost too much
+            before, error = self._solved(numbers)
             chosen += numbers
-            if len(chosen) >= LADDERS and self._estimates.beyond(self._work.plan.tolerance):
+            if len(self._estimates.numbers) > 1 and self._estimates.beyond(self._work.plan.tolerance):
                 break
             number = None
             if error and self._good(error):
                 assert before
                 changes = {worst: self._change(before, worst) for worst in self._worst(before)}
                 error = {word: max(one[word] for one in (error, *changes.values())) for word in error}
-                if self._good(error):
+                if self._good(error) and self._good(error := self._seconded(error, chosen)):
                     assert self._fit
                     return Trained(self._fit, self._estimates, error)
                 number = max(changes, key=lambda worst: self._excess(changes[worst]))
-        self._say("no fit through speeds is good enough: each is solved")
-        return None
+        return self.given_up()
 
-    def _next(self, chosen: list[int], number: int | None) -> list[int]:
-        """Numbers of the speeds that are solved next: the given one, and such as are far from all."""
-        found = [] if number is None else [number]
+    def _seconded(self, error: dict[str, float], chosen: list[int]) -> dict[str, float]:
+        """The error of a fit that is good, after that of the discretisation was measured at more speeds.
+
+        That was put off, lest it be in vain.
+        """
+        while (missing := LADDERS - len(self._estimates.numbers)) > 0:
+            more = self._far([], chosen)[:missing]
+            if not more:
+                break
+            _, off = self._solved(dict.fromkeys(more, True))
+            chosen += more
+            error = {word: max(value, off.get(word, 0.0)) for word, value in error.items()}
+        return error
+
+    def given_up(self) -> Trained | None:
+        """What was solved tells of itself."""
+        self._say("no fit through speeds is good enough at its cost: each is solved")
+        return Trained(self._fit, self._estimates, None) if self._fit else None
+
+    def _next(self, chosen: list[int], number: int | None) -> dict[int, bool]:
+        """Numbers of the speeds that are solved next: the given one, and such as are far from all.
+
+        Each with whether to measure its error, as at the ends of the sweep, and elsewhere as far as that
+        may be in vain. Those that would cost too much are left out.
+        """
+        found = self._far([] if number is None else [number], chosen)
+        lost, kept = self._lost, dict[int, bool]()
+        for number in found:
+            measured = len(self._estimates.numbers) + sum(kept.values())
+            for measures in (True, False):
+                more = self._cost(measures) - self._alone[number]
+                allowed = measured < LADDERS if measures else measured >= _ENDS
+                if allowed and lost + more <= self.allowed:
+                    lost += more
+                    kept[number] = measures
+                    break
+        return kept
+
+    def _far(self, found: list[int], chosen: list[int]) -> list[int]:
+        """Numbers of as many speeds as are solved at once: some, and others that are far from all."""
         while len(found) < AT_ONCE:
             number = leja(self._sweep.z, chosen + found)
             if number is None:
                 break
-            found.append(number)
+            found = [*found, number]
         return found
 
-    def _solved(self, numbers: list[int], count: int) -> tuple[Rational | None, dict[str, float]]:
+    def _cost(self, measures: bool) -> float:
+        """Of a speed at the fit's degree, with or without all that measures its error."""
+        assert self._degree
+        return _cost_of_ladder(self._degree) if measures else _cost(self._degree)
+
+    def _solved(self, numbers: dict[int, bool]) -> tuple[Rational | None, dict[str, float]]:
         """Solve speeds, shared out over the ranks, and take them in.
 
         Args:
-            numbers: of the speeds.
-            count: of those solved before.
+            numbers: of the speeds, and whether to measure the error there.
 
         Returns:
-            The fit before; how far it was off at most where no error was measured, by word.
+            The fit before; how far it was off at most, by word, nothing where there was none.
         """
-        laddered = numbers[: max(LADDERS - count, 0)]
+        for number, measures in numbers.items():
+            cost = self._cost(measures)
+            self.spent, self._lost = self.spent + cost, self._lost + cost - self._alone[number]
 
         def solve(number: int) -> _Solved:
-            return self._measured(number) if number in laddered else self._checked(number)
+            return self._measured(number) if numbers[number] else self._checked(number)
 
         before = self._fit.rational if self._fit else None
-        found = by_turns(numbers, solve, not self._work.plan.shared_speeds)
+        found = by_turns(list(numbers), solve, not self._work.plan.shared_speeds)
         self._take(found)
         off = [one.off for one in found if one.off]
         return before, {word: max(one[word] for one in off) for word in off[0]} if off else {}
@@ -242,6 +326,7 @@ class _Training:
         """Solve a speed with all that measures its error."""
         work, mode, task = self._work, self._mode, self._tasks[number]
         self._tell(task)
+        expected = self._expected(task)
 
         def solved(space: Space, g: NDArray) -> Any:
             return mode.Level(work, task, space, g)
@@ -254,7 +339,21 @@ class _Training:
             return _Solved(
                 number, ladder.degree, self._fit.sampled(task, level) if fits else None,
                 ladder.record() | error.record(), estimates=error.of(self._probes, self._loads),
+                off=self._off(level, expected) if fits else None,
             )  # fmt: skip
+
+    def _expected(self, task: Task) -> list[Gauge] | None:
+        """What the fit says of a speed, None where there is none yet."""
+        if not self._fit or not self._fit.rational:
+            return None
+        with self._fit.level(task) as told:
+            return told.measured(self._probes, self._loads)
+
+    def _off(self, level: Any, expected: list[Gauge] | None) -> dict[str, float] | None:
+        """How far that is from what was solved, by word."""
+        if expected is None:
+            return None
+        return largest_changes(level.measured(self._probes, self._loads), expected)
 
     def _tell(self, task: Task) -> None:
         self._say(f"finite elements at c = {task.response.c:g}, of the fit")
@@ -274,15 +373,14 @@ class _Training:
         return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
-        """Solve a speed that the fit tells."""
+        """Solve a speed alone."""
         work, fit, task = self._work, self._fit, self._tasks[number]
-        assert fit and fit.rational
+        assert fit
         self._tell(task)
-        with fit.level(task) as told:
-            expected = told.measured(self._probes, self._loads)
+        expected = self._expected(task)
         level = self._mode.Level(work, task, fit.space, self._all)
         try:
-            off = largest_changes(level.measured(self._probes, self._loads), expected)
+            off = self._off(level, expected)
             done = WorkDone()
             done.count(level)
             record = fit.record(number) | vars(done)

@@ -23,6 +23,19 @@ def test_one_and_two_ranks_agree(archives):
         np.testing.assert_allclose(b, a, rtol=1e-6, atol=1e-8)
 
 
+@pytest.mark.parametrize("scene", ["tables4_5", "traction"])
+def test_more_ranks_than_speeds_agree_with_one(tmp_path, scene):
+    """They share a mesh of so few cells that not every rank has a node of the far boundary."""
+    values = []
+    for ranks in (1, 3):
+        path = tmp_path / f"{ranks}.h5"
+        done = command("-n", ranks, "run", f"scenes/{scene}.toml", "-o", path, *FEW_DEGREES)
+        assert done.returncode == 0, done.stderr
+        with h5py.File(path) as file:
+            values.append(file["surface/fem/sigma_XX"][()])
+    np.testing.assert_allclose(values[1], values[0], rtol=1e-9, atol=1e-9 * np.abs(values[0]).max())
+
+
 def test_archive_layout(archive):
     with h5py.File(archive) as file:
         assert file["scene/text"].asstr()[()] == SCENE.read_text(encoding="utf-8")

@@ -133,7 +133,7 @@ WRONG = (
     | {
         "complete": (False, 1, 0, "no", "True", [True, True]),
         "speed_limit": NO_NUMBER,
-        "schema_version": ("2", 1, 0, -1, 4, 1.5, [2, 2]),
+        "schema_version": ("2", 1, 0, -1, 5, 1.5, [2, 2]),
         "verdict": (*NO_TEXT, "pass", "PASSED", "", "PASS "),
         "program": (*NO_TEXT, "Galinx", ""),
         "scene_sha256": (*NO_TEXT, "0" * 64, ""),

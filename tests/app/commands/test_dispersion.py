@@ -9,7 +9,8 @@ def test_dispersion_of_a_scene(tmp_path):
     assert "highest speed of a punch: 919.40169 m/s" in done.stdout
     assert (tmp_path / "waves.png").stat().st_size > 10_000
     speeds = [line.split()[2] for line in done.stdout.splitlines()[1:] if line[0].isdigit()]
-    assert len(speeds) == 61 and 919.4 < float(speeds[0]) < 935.0 and speeds[-1] == "nan"
+    assert len(speeds) == 61 and 919.4 < float(speeds[0]) < 935.0 and speeds[-1] == "none"
+    assert "none: no wave of that length is slower than the waves inside" in done.stdout
 
 
 def test_a_scene_without_layers_has_one_speed(tmp_path):

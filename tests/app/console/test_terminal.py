@@ -6,7 +6,7 @@ import re
 import subprocess
 
 import pytest
-from support import HOME, SCENE, clean_environment, command, widest
+from support import HOME, SCENE, clean_environment, command, here, widest
 
 CLOSED = ("--set", 'solve.methods=["closed_form"]')
 #: Strokes that many waves cross: nothing is warned about.
@@ -50,6 +50,14 @@ def test_output_fits_80_columns_without_colours(archive, arguments):
     where = (archive.name,) if arguments == ("check",) else ()
     done = command(*arguments, *where, cwd=archive.parent)
     assert done.returncode == 0 and widest(done.stdout) <= 80 and "\x1b" not in done.stdout
+
+
+@pytest.mark.parametrize("columns", ["0", "1", "-5", "many", "39"])
+def test_a_width_that_holds_nothing_is_another(archive, columns):
+    for words in (("show", archive), ("plan", SCENE)):
+        done = here(*words, COLUMNS=columns)
+        assert done.returncode == 0, done.stderr
+    assert "FM1" in here("show", archive, COLUMNS=columns).stdout
 
 
 def test_colours_on_a_terminal_unless_unwanted(archive, tmp_path):

@@ -9,6 +9,7 @@ import pytest
 from support import HOME, SCENE, clean_environment, here
 
 from galinx.app import ranks
+from galinx.app.process import begin
 from galinx.postprocess.hdf5 import reader
 
 #: A run that needs no finite elements.
@@ -44,6 +45,36 @@ def test_closed_streams_are_the_null_device(tmp_path, count):
     assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
     is_refused(galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
+    assert galinx(tmp_path, "-n", "many", *PLAN, shell='"$@" 2>&-').returncode == 2
+
+
+@on_ranks
+def test_a_closed_error_stream_costs_no_run(tmp_path, count):
+    """It alone: bash hands its script on under the number that is free."""
+    done = galinx(tmp_path, *count, *RUN, shell='"$@" 2>&-')
+    assert done.returncode == 0 and b"archive: x.h5" in done.stdout
+
+
+@on_ranks
+@pytest.mark.parametrize("folder", ["file", "/proc", "/no/such/folder"])
+def test_another_folder_serves_for_temporary_files(tmp_path, count, folder):
+    (tmp_path / "file").touch()
+    words = (*RUN, "--set", 'solve.methods=["fem"]', "--set", "solve.tolerance=1e-2")
+    done = galinx(tmp_path, *count, *words, TMPDIR=os.path.join(tmp_path, folder))
+    assert done.returncode == 0, done.stderr
+    assert b"Open MPI" not in done.stderr and b"ompi" not in done.stderr
+
+
+def test_no_folder_for_temporary_files_is_told(monkeypatch, capsys, tmp_path):
+    def refuse(*_):
+        raise PermissionError
+
+    monkeypatch.setattr(os, "mkdir", refuse)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    with pytest.raises(SystemExit) as ended:
+        begin._find_temporary_folder()
+    assert ended.value.code == 3
+    assert f"none can be made in {tmp_path}, /tmp, /var/tmp" in capsys.readouterr().err
 
 
 @on_ranks

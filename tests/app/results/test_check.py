@@ -2,12 +2,16 @@
 
 import hashlib
 import json
+import shutil
 
+import h5py
 import numpy as np
 import pytest
+from support import computed
 from tampering import attribute, opened, value
 
-from galinx.app.results import check
+from galinx.app.plan.plan import make_plan
+from galinx.app.results import check, recomputed
 from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import seal
 
@@ -101,3 +105,102 @@ def test_a_number_that_is_not_finite_is_refused(whole):
         UnreadableArchive, match="interior/fem/sigma_XX: found a number that is not finite"
     ):
         check.faults(whole)
+
+
+#: Small archives of each way to a number.
+SMALL = {
+    "both methods": (
+        "tables4_5",
+        {
+            "motion.c": 0.6, "motion.strokes": ["forward"], "motion.X_over_L": [0.5],
+            "output.quantities": ["sif", "surface", "interior"], "output.points": [[0.2, -0.7]],
+        },
+    ),
+    "finite elements alone": (
+        "cylinder",
+        {
+            "motion.c": 0.6, "motion.X_over_L": [0.5], "solve.methods": ["fem"], "output.map": None,
+            "output.quantities": ["sif", "surface"],
+        },
+    ),
+    "yield": (
+        "cylinder",
+        {
+            "motion.c": 0.6, "motion.X_over_L": [0.5], "solve.methods": ["closed_form"],
+            "output.map": None, "output.quantities": ["yield"], "motion.strokes": ["forward"],
+        },
+    ),
+    "layers": (
+        "coating",
+        {
+            "solve.methods": ["sie"], "output.quantities": ["sif", "surface"], "motion.X_over_L": [0.5],
+            "motion.strokes": ["forward"],
+        },
+    ),
+}  # fmt: skip
+#: What nobody can tell again of the work; the pressure that assumes no exponent, which is rough;
+#: and places, which may be anywhere where something is flat.
+NOT_COMPUTED = {
+    *(f"run/fem/{name}" for name in ("back_substitutions", "change_by_degree", "factorisations",
+      "iterations", "largest_condition", "largest_residual")),
+    "run/seconds", "surface/fem/sigma_YY_raw", "states/fem/largest_pressure_position",
+}  # fmt: skip
+OF_THE_RUN = {"created", "machine", "program", "version", "versions"}
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_every_number_of_an_archive_is_computed_again_or_compared(name, tmp_path):
+    """Each by itself a tenth larger, and with a new digest: nobody takes it for what it was."""
+    path, changed = tmp_path / "small.h5", tmp_path / "changed.h5"
+    computed(*SMALL[name]).save(path)
+    assert check.faults(path) == []
+    with h5py.File(path) as file:
+        found: list[str] = []
+        file.visititems(lambda name, item: found.append(name) if isinstance(item, h5py.Dataset) else None)
+        numbers = [
+            name
+            for name in found
+            if file[name].dtype.kind in "if" and np.nan_to_num(file[name][()]).any()
+        ]
+        attributes = list(file.attrs)
+    missed = []
+    for number in numbers:
+        shutil.copy(path, changed)
+        with opened(changed) as file:
+            file[number][...] = file[number][()] * (2 if file[number].dtype.kind == "i" else 1.1)
+        if not refused(changed):
+            missed.append(number)
+    assert set(missed) <= NOT_COMPUTED
+    missed = []
+    for number in attributes:
+        shutil.copy(path, changed)
+        with opened(changed) as file:
+            value = file.attrs[number]
+            text = "[]" if str(value)[:1] == "[" else "{}" if str(value)[:1] == "{" else "another"
+            if isinstance(value, str) and value == text:
+                continue
+            file.attrs[number] = text if isinstance(value, str) else value * 1.1
+        if not refused(changed):
+            missed.append(number)
+    assert set(missed) <= OF_THE_RUN
+
+
+def refused(path):
+    try:
+        return bool(check.faults(path))
+    except UnreadableArchive:
+        return True
+
+
+def test_v0_is_that_of_the_closed_form_of_any_punch():
+    """Indentations of finite elements against the pressure of the integral equation."""
+    for name, changes in {
+        "tables4_5": {"punch.tilt": "0.01 deg", "solve.methods": ["fem"]},
+        "cylinder": {"output.map": None, "solve.methods": ["fem"], "motion.c": [0.0, 0.8]},
+    }.items():
+        result = computed(name, changes | {"output.quantities": ["sif"]})
+        rows = np.arange(len(result.data["states/g"]))
+        plan = make_plan(result.scene)
+        assert not list(recomputed._of_indentations(result.data, plan, rows))
+        wrong = result.data | {"states/fem/v0": result.data["states/fem/v0"] * (1.0 + 3e-3)}
+        assert len(list(recomputed._of_indentations(wrong, plan, rows))) == len(plan.tasks)

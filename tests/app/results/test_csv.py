@@ -76,7 +76,8 @@ def test_in_si(path, result):
     data, scene = result.data, result.scene
     a = scene.punch.profile.half_width
     found = read(path, "inside", True)
-    assert [*found][7:] == [
+    assert [*found][7] == "load [N/m]" and set(numbers(found["load [N/m]"])) == {scene.punch.load}
+    assert [*found][8:] == [
         "X [m]",
         "Y [m]",
         *(f"closed_form_sigma_{ij} [Pa]" for ij in ("XX", "YY", "XY", "1", "2")),
@@ -87,6 +88,53 @@ def test_in_si(path, result):
     assert numbers(found["Y [m]"])[:20] == pytest.approx(a * data["interior/Y_over_a"], rel=1e-14)
     assert set(numbers(found["speed [m/s]"])) == set(scene.solid.c_s * np.array([0.0, 0.3, 0.6]))
     assert found["sigma0_over_load [1/m]"] == read(path, "inside")["sigma0_over_load [1/m]"]
+
+
+@pytest.mark.parametrize("loads", [1e4, [1e4, 4e4]])
+def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
+    """Stresses in Pa, places in m from the punch's axis, distances in m: a differs from row to row."""
+    changes = {
+        "solve.methods": ["closed_form"], "output.map": None, "punch.load": loads, "motion.c": [0.0, 0.8],
+        "output.quantities": ["sif", "surface", "interior", "yield"], "output.points": [[0.5, -0.7]],
+    }  # fmt: skip
+    path, result = tmp_path / "a.h5", computed("cylinder", changes)
+    result.save(path)
+    data, load = result.data, np.resize(loads, 2 * np.size(loads))
+    h, m = (data[f"states/closed_form/{name}"] for name in ("half_width", "centre"))
+    load = data.get("states/load", np.full(len(h), 1e4))
+    found = {which: read(path, which, True) for which in ("states", "surface", "inside")}
+    for table in found.values():
+        assert not [head for head in table if "N/(2a)" in head or "over_a" in head]
+    of_states = found["states"]
+    np.testing.assert_array_equal(numbers(of_states["load [N/m]"]), load)
+    unit = load / (2.0 * h)
+    for head, expected in {
+        "closed_form_largest_pressure [Pa]": unit * data["states/closed_form/largest_pressure"],
+        "closed_form_von_mises [Pa]": unit * data["states/closed_form/von_mises"],
+        "closed_form_von_mises_X [m]": m + h * data["states/closed_form/von_mises_X_over_a"],
+        "closed_form_von_mises_Y [m]": h * data["states/closed_form/von_mises_Y_over_a"],
+        "closed_form_largest_pressure_position [m]":
+            m + h * data["states/closed_form/largest_pressure_position"],
+    }.items():  # fmt: skip
+        np.testing.assert_allclose(numbers(of_states[head]), expected, rtol=1e-14, err_msg=head)
+    X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"]
+    np.testing.assert_allclose(
+        numbers(found["surface"]["X [m]"]), np.ravel(m[:, None] + h[:, None] * X), rtol=1e-13
+    )
+    np.testing.assert_allclose(
+        numbers(found["surface"]["closed_form_sigma_XX [Pa]"]), np.ravel(unit[:, None] * σ), rtol=1e-14
+    )
+    np.testing.assert_allclose(numbers(found["inside"]["Y [m]"]), -0.7 * h, rtol=1e-14)
+    # Hertz at rest without friction is p₀ = 2N/(πh); friction changes it little.
+    np.testing.assert_allclose(
+        numbers(of_states["closed_form_largest_pressure [Pa]"]), 2.0 * load / (np.pi * h), rtol=0.1
+    )
+    for text in (here("show", path, "--si").stdout, here("show", path, "--si", "--json").stdout):
+        assert "N/(2a)" not in text
+    here("report", path, "--si", "-o", tmp_path / "a.html")
+    assert (
+        "N/(2a)" not in (tmp_path / "a.html").read_text(encoding="utf-8").partition('<h2 id="figures')[0]
+    )
 
 
 @pytest.mark.parametrize("which", ["states", "surface", "inside"])

@@ -9,6 +9,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results import paraview as fields
 from galinx.app.results.paraview import ABOUT, state_field, write_fields
+from galinx.app.scene.templates import templates
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -56,6 +57,18 @@ def test_a_field_is_solved_once_and_for_any_scene(monkeypatch):
     assert "sigma_error" in state_field(fast, 0, extent=2.0, degree=4).data
     with pytest.raises(BadInput, match="is not below the Rayleigh speed"):
         state_field(fast, len(enumerate_states(fast)) - 1)
+
+
+@pytest.mark.parametrize("name", templates())
+def test_every_scene_has_fields_or_says_why_not(name):
+    """Also one that asks for a slider, or for motion in time: a state's field is the steady one."""
+    given = template(name, {"solve.tolerance": 1e-2})
+    if given.layers or given.body.found:
+        with pytest.raises(BadInput, match=r"layers|another half-width"):
+            state_field(given, 0, extent=2.0)
+    else:
+        field = state_field(given, 0, extent=2.0, degree=4)
+        assert np.isfinite(field.data["displacement"]).all()
 
 
 def test_given_tractions_of_the_users_own_have_a_field():

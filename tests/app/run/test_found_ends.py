@@ -1,11 +1,15 @@
 """Contacts whose ends are found, end to end: finite elements against the integral equation, archives."""
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from random_solids import random_solid
 from support import THOROUGH, computed
 
 import galinx
+from galinx import PROFILES, parameter
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
@@ -186,6 +190,89 @@ def test_kinks_in_any_solid_have_honest_estimates(seed, tolerance):
     # What the estimate does not promise the verdict does not either.
     assert in_plane <= 10.0 * tolerance or result.verdict == "FAIL"
     assert figure(result, "σ_YY of contacts") <= 10.0 * tolerance or result.verdict == "FAIL"
+
+
+@dataclass(frozen=True)
+class Skew:
+    """Height b (e^(±X/b) - 1 ∓ X/b): smooth, of no power, and not its own mirror image."""
+
+    about: ClassVar[str] = "skew"
+    sharp: ClassVar[tuple[bool, bool]] = (False, False)
+
+    b: float = parameter("length", "length b", "m", above=0.0)
+    way: float = parameter("way", "1, or -1 for its mirror image")
+
+    def height(self, X):
+        return self.b * (np.expm1(self.way * X / self.b) - self.way * X / self.b)
+
+    def slope(self, X):
+        return self.way * np.expm1(self.way * X / self.b)
+
+    def words(self):
+        return f"skew punch, length {self.b:g} m"
+
+
+@pytest.fixture
+def skew(monkeypatch):
+    monkeypatch.setitem(PROFILES, "skew", Skew)
+
+
+#: A scene's keys of punches that are smooth, and how wide they bend over a contact.
+SMOOTH = {
+    "a user's, gently bent": 'profile = "skew"\nlength = 0.02\nway = 1',
+    "a user's, strongly bent": 'profile = "skew"\nlength = 1e-4\nway = 1',
+    "|X|⁴": 'profile = "power"\nexponent = 4\ncoefficient = 1e6',
+}
+
+
+@pytest.mark.parametrize("name, seed, share", zip(SMOOTH, (0, 1, 2), (0.3, 0.85, 0.6)))
+def test_smooth_punches_take_the_parabolas_way(name, seed, share, skew):
+    """All states of a speed from one mesh, and the verdict of the defaults."""
+    outputs = '["sif", "surface", "interior"]\npoints = [[0.0, -0.7], [1.1, -0.05]]'
+    solid, c = of_solid(seed, share)
+    asked = scene(SMOOTH[name], solid, c, output=outputs, mu=0.4)
+    plan = make_plan(asked)
+    assert plan.fem.mode == "found ends" and 3 <= plan.fem.shapes <= 30
+    result = galinx.compute(asked)
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    assert result.comparisons["ends of the contact, over its half-width"] < 1e-9
+    assert result.comparisons["largest contact pressure, relative"] < 1e-8
+    data = result.data
+    np.testing.assert_allclose(
+        data["interior/fem/sigma_YY"], data["interior/closed_form/sigma_YY"], rtol=1e-5
+    )
+
+
+def test_the_mirror_image_of_a_smooth_punch_has_the_mirror_image_of_the_answer(skew):
+    """Finite elements alone, several loads: half-widths and depths the same, middles opposite."""
+    found = {}
+    for way, sign in ((1, "physical"), (-1, "eq25")):
+        changes = {
+            "punch.profile": "skew", "punch.half_width": None, "punch.length": 1e-4, "punch.way": way,
+            "punch.load": [1e4, 1e5], "friction.sign": sign, "solve.methods": ["fem"], "motion.c": 0.5,
+            "output.quantities": ["sif", "surface"],
+        }  # fmt: skip
+        found[way] = galinx.compute(galinx.template("tables4_5", changes)).data
+    one, other = found[1], found[-1]
+    for name, turned in (("half_width", 1), ("v0", 1), ("centre", -1), ("largest_pressure_position", -1)):
+        np.testing.assert_allclose(
+            one[f"states/fem/{name}"], turned * other[f"states/fem/{name}"], rtol=1e-6, atol=1e-9
+        )
+    X = one["surface/X_over_a"]
+    np.testing.assert_allclose(X, -X[::-1])
+    np.testing.assert_allclose(
+        one["surface/fem/sigma_XX"], other["surface/fem/sigma_XX"][:, ::-1], rtol=1e-4, atol=1e-5
+    )
+
+
+def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
+    """With three polynomials a strongly bent punch is not itself, and the estimate says so."""
+    monkeypatch.setattr("galinx.app.plan.fem._MOST_SHAPES", 3)
+    punch = SMOOTH["a user's, strongly bent"]
+    result = galinx.compute(scene(punch, c="0.2", output='["sif"]', mu=0.4))
+    estimate = result.data["states/fem/estimate"].max()
+    assert result.verdict == "FAIL"
+    assert result.comparisons["largest contact pressure, relative"] < estimate < 1.0
 
 
 def test_a_punch_with_kinks_has_all_that_a_cylinder_has():

@@ -161,6 +161,12 @@ def test_layers_with_a_fault_are_told_once(layers, told):
     [
         ('["sie"]', '["closed_form"]', 'solve.methods is ["closed_form"]'),
         ('methods = ["sie"]', 'mode = "traction"', 'solve.mode is "traction"'),
+        (
+            '["sie"]',
+            '["fem"]\ndegree = 5',
+            "solve.degree is 5, but layers have meshes and degrees of their own",
+        ),
+        ('["sie"]', '["sie", "fem"]\nmesh = "graded"', 'solve.mesh is "graded", but layers have'),
     ],
 )
 def test_what_layers_do_not_have_is_refused_in_one_message(old, new, told):

@@ -1,16 +1,22 @@
 """Any uniform solid by finite elements: against the closed form, against isotropic, mirrored."""
 
+import json
+
 import numpy as np
 import pytest
 from random_solids import isotropic_as
-from support import THOROUGH
+from support import THOROUGH, here
 
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
+from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
+
+#: Stiffness [Pa] of fibres askew to the surface.
+SKEW = [40e9, 12e9, 15e9, 16e9, 6e9, 13e9]
 
 FRICTION = """
 [friction]
@@ -171,6 +177,20 @@ def test_von_mises_asks_for_what_σ_ZZ_needs(known):
         strong = text.replace("rho =", 'yield_strength = "100 MPa"\nrho =').replace("interior", "yield")
         with pytest.raises(BadInput, match="stiffness_Z"):
             parse(strong.replace("points = [[0.0, -0.5]]\n", ""))
+
+
+def test_constants_that_are_lists_are_archived(tmp_path):
+    """And read again by every command; a solid of the user's own may have tables, too."""
+    (tmp_path / "skew.toml").write_text(
+        f'[solid]\nkind = "anisotropic"\nstiffness = {[*map(float, SKEW)]}\nrho = 1600\n{FRICTION}'
+        '[motion]\nc = 0.3\n[solve]\nmethods = ["closed_form"]\n'
+    )
+    for words in (("run", "skew.toml"), ("check", "skew.h5"), ("show", "skew.h5")):
+        done = here(*words, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    assert json.loads(galinx.load(tmp_path / "skew.h5").attributes["solid"])["stiffness"] == SKEW
+    assert ATTRIBUTES["solid"].fits('{"kind": "mine", "table": [[0.0, 1e9], [1.0, 2e9]]}')
+    assert not ATTRIBUTES["solid"].fits('{"kind": "mine", "table": [null]}')
 
 
 def test_figures_turn_a_solid_that_has_an_angle():

@@ -13,6 +13,7 @@ from galinx.postprocess import scale
 from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.parameters import values
 from galinx.solvers.solids import SOLIDS, Isotropic
+from galinx.solvers.solids.orthotropic import Orthotropic
 
 ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 #: Frictions of both signs, more than are sampled themselves.
@@ -132,7 +133,23 @@ def test_every_speed_is_solved_where_that_is_asked_for():
     assert np.all(result.data["run/fem/factorisations"] > 0)
 
 
-def test_what_no_fit_tells_well_enough_is_solved(monkeypatch):
+@pytest.fixture
+def work_done(monkeypatch):
+    """Degrees that are solved with, as long as the test runs."""
+    from galinx.app.run.methods.punch import PunchLevel
+
+    degrees, init = [], PunchLevel.__init__
+
+    def counted(self, work, task, space, g, fitted=None, recovery=None):
+        init(self, work, task, space, g, fitted, recovery)
+        degrees.extend([space.degree] * (fitted is None))
+
+    monkeypatch.setattr(PunchLevel, "__init__", counted)
+    return degrees
+
+
+def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
+    """And what was solved in vain, with the work as the fourth power of the degree, is little."""
     from galinx.app.run.methods import sweep
 
     monkeypatch.setattr(sweep, "FIT", 1e-12)
@@ -140,6 +157,24 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch):
     result = galinx.compute(scene(ISOTROPIC, c, 1e-2, ("sif",)))
     assert np.all(result.data["run/fem/factorisations"] > 0)
     assert not result.data["states/fem/fitted"].any() and result.verdict == "PASS"
+    swept = np.sum(np.array(work_done) ** 4)
+    work_done.clear()
+    every = galinx.compute(scene(ISOTROPIC, c, 1e-2, ("sif",), solve='sweep = "every"'))
+    assert swept <= 1.1 * np.sum(np.array(work_done) ** 4)
+    check(result, every, 1e-2)
+
+
+def test_speeds_that_ask_for_different_degrees_cost_little_more_than_each_by_itself(work_done):
+    """The fastest of them asks for two degrees more than the others, at which all of a fit are solved."""
+    solid = Orthotropic(0.755e9, 5.85e9, 3.67e9, 0.066, -0.18, 0.1, 0.252e9, 1.67e3, 45.0, "stress")
+    c = np.linspace(0.0, 0.97, 16) * solid.limit()
+    work = []
+    for sweep in ("auto", "every"):
+        result = galinx.compute(scene(solid, c, 1e-4, ("sif",), solve=f'sweep = "{sweep}"'))
+        assert result.verdict == "PASS"
+        work.append(np.sum(np.array(work_done) ** 4))
+        work_done.clear()
+    assert work[0] <= 1.1 * work[1]
 
 
 def test_two_ranks_tell_what_one_does(tmp_path):

@@ -10,6 +10,7 @@ from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
+from galinx.app.scene.changes import changed
 from galinx.app.scene.read import parse, read
 
 TEXT = SCENE.read_text(encoding="utf-8")
@@ -209,3 +210,53 @@ def test_a_map_lists_its_points_by_rows_before_the_single_ones():
 def test_maps_that_are_none_are_refused(value, message):
     with pytest.raises(BadInput, match=message):
         template("inside", {"output.map": value})
+
+
+_APART = {"friction.sigma0_over_load": None, "friction.sigma0": "1.5922 N/µm/mm"}
+
+
+def test_stiffness_and_load_apart():
+    """The study's σ₀ = 1.5922 N/µm and N = 55.3 N, of any depth, are σ₀ l/N = 28 792 1/m."""
+    (law,) = read(SCENE, _APART).friction.laws()
+    assert law.λ == pytest.approx(28792.0, abs=0.5)
+    deeper = {"friction.sigma0": "0.15922 N/µm/mm", "punch.load": "5.53 N/mm"}
+    assert read(SCENE, _APART | deeper).friction.parameters == pytest.approx(
+        read(SCENE, _APART).friction.parameters
+    )
+    # The load that a scene has where it gives none.
+    alone = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n[friction]\nmu_c = 0.7\n'
+    assert parse(f"{alone}sigma0 = [1.5922e9, 55.3e6]").friction.parameters[
+        "sigma0_over_load"
+    ] == pytest.approx((28792.04, 1000.0))
+    lugre = {"friction.model": "lugre", "friction.mu_s": 0.8, "friction.stribeck_velocity": 1e-3}
+    assert read(SCENE, _APART | lugre).friction.parameters["sigma0_over_load"] == pytest.approx(
+        (28792.04,)
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"friction.sigma0": 1e9}, "sigma0 and sigma0_over_load exclude each other; keep one"),
+        (_APART | {"punch.load": [1e3, 2e3]}, "found 2 loads, expected one punch.load"),
+        (_APART | {"friction.sigma0": "5 kg"}, "of dimension"),
+        (_APART | {"friction.sigma0": -1.0}, "friction.sigma0"),
+        (_APART | {"punch.load": "1 m"}, "punch.load"),
+    ],
+)
+def test_a_stiffness_that_does_not_go_with_the_rest_is_one_fault(changes, message):
+    with pytest.raises(BadInput, match="has 1 fault") as error:
+        read(SCENE, changes)
+    assert message in str(error.value)
+
+
+def test_laws_without_that_stiffness_do_not_have_the_key():
+    text = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n[friction]\nmodel = "coulomb"\nmu_c = 0.3\n'
+    with pytest.raises(BadInput, match=r"friction\.sigma0: no such key"):
+        parse(text + "sigma0 = 1e9")
+    with pytest.raises(BadInput, match=r"friction\.sigma0: no such key"):
+        read(SCENE, _APART | {"friction.model": "coulomb"})
+    # A scene that has it loses it with the law.
+    apart = changed(SCENE.read_text(encoding="utf-8"), _APART)
+    coulomb = parse(changed(apart, {"friction.model": "coulomb"})).friction
+    assert coulomb.law.__name__ == "Coulomb"

@@ -1,5 +1,6 @@
 """Computed tables beside the printed ones."""
 
+from dataclasses import replace
 from io import StringIO
 
 import numpy as np
@@ -8,15 +9,26 @@ from support import widest
 
 from galinx.app.console.sheets import new_console, print_sheet
 from galinx.app.study.published import (
+    FAST,
     INTENSITIES,
+    dimensions_sheet,
+    frame_sheet,
+    friction_sheet,
     intensities,
     intensity_rows,
+    limit_of_steady_motion,
+    not_as_printed,
+    speed_rows,
     table1,
     table1_rows,
+    table2,
     table3,
 )
 from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
+
+T302 = Isotropic(193e9, 0.25, 7860.0)
 
 
 def test_table_1_to_every_printed_digit_but_its_misprint():
@@ -47,16 +59,92 @@ def test_tables_4_and_5_to_every_printed_digit(tables_run):
     assert len(rows) == 12
     for row in rows:
         assert [round(K, 4) for K in row.K_I[1:]] == [row.K_I[0]] * 3
+        assert [round(diff, 2) for diff in row.diff_of_printed] == [row.diff_percent[0]] * 3
         np.testing.assert_allclose(row.diff_percent[1:], row.diff_percent[0], atol=0.015)
         assert row.agrees
 
 
+def test_the_studys_arithmetic_gives_its_differences(published):
+    """Its own printed K_I, and no other number."""
+    for name in ("table4", "table5"):
+        rows = published[name]["rows"]
+        for (_, _, first, diff), (_, _, second, same) in zip(rows[::2], rows[1::2]):
+            assert round(100 * abs(first - second) / first, 2) == diff == same
+
+
+def test_a_wrong_difference_or_intensity_does_not_agree(tables_run):
+    row, *_ = intensity_rows("table4", tables_run.data)
+    assert row.agrees
+    assert not replace(row, K_I=(0.3160, *row.K_I[1:])).agrees
+    assert not replace(row, K_I=(*row.K_I[:3], row.K_I[3] + 1e-4)).agrees
+    assert not replace(row, diff_percent=(1.64, *row.diff_percent[1:])).agrees
+    assert not replace(row, diff_of_printed=(*row.diff_of_printed[:2], 1.66)).agrees
+
+
+def test_table_3_by_the_text_of_the_study():
+    rows = speed_rows(T302, 1e-4)
+    c, V, time = rows["HS"]
+    assert c == FAST and round(V, 1) == 1880.4 and f"{time:.3e}" == "5.318e-08"
+    assert rows["SS"] == pytest.approx((4.786e-7, 1.5e-3, 0.06667), rel=1e-4)
+    assert "1880.4  " in printed(table3(T302, 1e-4)) and "5.318e-08" in printed(table3(T302, 1e-4))
+
+
+def test_what_is_not_as_printed_is_counted(monkeypatch):
+    assert not_as_printed(T302, 1e-4) == 0
+    assert not_as_printed(Isotropic(193e9, 0.25, 7900.0), 1e-4) == 3  # V at high speed, and both times
+    assert not_as_printed(T302, 1.01e-4) == 1  # the time at slow speed is printed, the other follows
+    monkeypatch.setattr("galinx.app.study.published.Dahl", lambda μ, λ, δ: Dahl(1.001 * μ, λ, δ))
+    assert not_as_printed(T302, 1e-4) > 0
+
+
+def test_distances_over_which_friction_develops():
+    """0.018, 0.055, 0.092 and 0.129 mm for μ_C = 0.1, 0.3, 0.5, 0.7."""
+    laws = [Dahl(μ, 25000.0, 1.0) for μ in (0.1, 0.3, 0.5, 0.7)]
+    rows = friction_sheet(laws, 1e-4).rows
+    assert [row[-1] for row in rows] == ["0.018", "0.055", "0.092", "0.129"]
+
+
+def test_constants_of_the_moving_frame():
+    """At rest 1 and (κ - 1)/(κ + 1); at speed by the Rayleigh function as it is written."""
+    slow, fast = ([float(cell) for cell in row[1:]] for row in frame_sheet(T302).rows)
+    assert slow == pytest.approx([1.0, 1 / 3, 1.0, 1 / 3], abs=1e-6)
+    β_s, β_d, e = np.sqrt(1 - 0.36), np.sqrt(1 - 0.12), 2 - 0.36
+    n, q, m = np.array([0.36 * β_d, e - 2 * β_s * β_d, 0.36 * β_s]) / (4 * β_s * β_d - e * e)
+    assert fast == pytest.approx([4 * n / 3, 4 * q / 3, 4 * m / 3, 4 * q / 3], abs=1e-6)
+
+
+def test_intensities_with_dimensions_are_the_limits_of_the_pressure(tables_run):
+    """-σ_YY 2^-β (a - X)^-α at 1e-9 a from X = a, in MPa and mm, of a punch of another size."""
+    N, a = 1e5, 2e-3
+    rows = dimensions_sheet(tables_run.data, N, a).rows
+    assert len(rows) == 12
+    for row, g in zip(rows, tables_run.data["states/g"]):
+        c = float(row[0].split()[1])
+        punch, d = FlatPunch(T302.response(c), g), 1e-9
+        near = -1e-6 * N / (2 * a) * np.array(
+            [punch.σ_YY_by_distance(d, 2.0 - d), punch.σ_YY_by_distance(2.0 - d, d)]
+        )  # fmt: skip
+        limits = near * [2.0**-punch.α * (2 * d) ** -punch.β, 2.0**-punch.β * (2 * d) ** -punch.α]
+        assert [float(cell) for cell in row[4:]] == pytest.approx(limits, abs=6e-5)
+
+
+def test_a_stroke_that_is_too_short_is_told(tables_run):
+    assert limit_of_steady_motion("table4", tables_run.data, 1e-3) == ""
+    note = limit_of_steady_motion("table5", tables_run.data, 1e-3)
+    assert "0.083 times (a = 1 mm)" in note and "limits" in note
+
+
 def test_the_studys_tables_fit_80_columns(tables_run):
+    note = limit_of_steady_motion("table5", tables_run.data, 1e-3)
+    sheets = [table1(), table2(T302), table3(T302, 1e-4), frame_sheet(T302)]
+    sheets += [intensities(name, intensity_rows(name, tables_run.data), note) for name in INTENSITIES]
+    sheets += [dimensions_sheet(tables_run.data, 55.3e3, 1e-3)]
+    said = "".join(map(printed, sheets))
+    assert (said.count(" yes "), said.count(" NO")) == (12, 0)
+    assert widest(said) <= 80
+
+
+def printed(sheet):
     text = StringIO()
-    sheets = [table1(), table3(Isotropic(193e9, 0.25, 7860.0), 1e-4)]
-    sheets += [intensities(name, intensity_rows(name, tables_run.data)) for name in INTENSITIES]
-    for sheet in sheets:
-        print_sheet(new_console(text), sheet)
-    said = text.getvalue()
-    assert (said.count(" yes "), said.count(" ≤ 0.01 "), said.count(" NO")) == (4, 8, 0)
-    assert widest(text.getvalue()) <= 80
+    print_sheet(new_console(text), sheet)
+    return text.getvalue()

@@ -115,10 +115,12 @@ def test_an_inset_goes_where_no_curve_is():
 
 def test_the_studys_figures_are_legible(study_run):
     shown = list(of_study(study_run.data, study_run.scene))
-    assert [drawing.name for drawing in shown] == [f"fig{n}" for n in (2, 5, 6, 7, 8, 9, 10)]
+    named = [f"fig{n}" for n in range(1, 11)]
+    assert [drawing.name for drawing in shown] == [*named, "sinusoidal", "laws"]
     legible(shown)
     widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
-    assert widths == {3.5, 7.0}
+    assert widths == {3.5, 5.0, 7.0}
+    assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0  # of a page, in mm
 
 
 def test_what_is_not_legible_is_found():
@@ -202,6 +204,24 @@ def test_style_is_left_as_it_was():
     before = dict(matplotlib.rcParams)
     loops_figure([Panel("", [Loop("", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])])])
     assert dict(matplotlib.rcParams) == before
+
+
+def test_what_somebody_has_set_for_other_figures_is_not_for_these(monkeypatch):
+    """Texts by LaTeX, which may not be there, among it."""
+    import matplotlib
+
+    from galinx.postprocess.figures.canvas import content
+    from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
+
+    def drawn():
+        loop = Loop("f", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])
+        return content(loops_figure([Panel("", [loop])]), "svg")
+
+    plain = drawn()
+    others = {"text.usetex": True, "axes.facecolor": "red", "axes.grid": True, "savefig.bbox": "tight"}
+    for key, value in others.items():
+        monkeypatch.setitem(matplotlib.rcParams, key, value)
+    assert drawn() == plain
 
 
 def test_panels_are_as_large_as_there_is_room():

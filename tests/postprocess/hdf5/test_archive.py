@@ -132,7 +132,7 @@ def test_rows_are_written_without_reading_what_is_there(tmp_path, monkeypatch):
 def test_an_archive_tells_what_slides_over_what(tmp_path):
     support.computed("fig5", {"solve.methods": ["closed_form"]}).save(tmp_path / "a.h5")
     _, told = reader.read(tmp_path / "a.h5")
-    assert told["material"] == "T302" and told["schema_version"] == 3
+    assert told["material"] == "T302" and told["schema_version"] == 4
     assert json.loads(told["solid"]) == {
         "kind": "isotropic", "E": 193e9, "nu": 0.25, "rho": 7860.0, "plane": "strain",
         "yield_strength": 205e6,

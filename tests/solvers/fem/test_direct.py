@@ -56,6 +56,32 @@ def test_several_solutions_at_once_are_those_of_one_after_the_other(entry):
         np.testing.assert_allclose(x, factor.solve(b).array, rtol=1e-12)
 
 
+@pytest.mark.parametrize("share, refused", [(1e-3, True), (1e-6, False)])
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_solution_that_leaves_a_thousandth_of_its_load_is_refused(share, refused, count):
+    """A factor of another matrix solves its system only nearly: that is measured on the system."""
+    from petsc4py import PETSc
+
+    A = PETSc.Mat().createAIJ((8, 8), nnz=8, comm=PETSc.COMM_SELF)
+    A.setValues(range(8), range(8), np.diag(np.arange(1.0, 9.0)))
+    A.assemble()
+    loads = []
+    for i in range(count):
+        b = A.createVecLeft()
+        b.setArray(np.arange(8.0) - i)
+        loads.append(b)
+    factor = Factor(A, Clock())
+    factor.solve(loads[0])
+    factor.A = A.copy()
+    factor.A.scale(1.0 + share)
+    if refused:
+        with pytest.raises(SolveError, match=r"\|b - Ax\|/\|b\| = 0.001, expected at most"):
+            factor.solve_all(loads)
+    else:
+        factor.solve_all(loads)
+        assert factor.largest_residual == pytest.approx(share)
+
+
 def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
     expected = small_punch().states(0.5).normal
     monkeypatch.setattr(linear, "WORKSPACE", (-80, 400))

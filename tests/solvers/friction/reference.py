@@ -208,23 +208,34 @@ def bouc_wen(strokes, places, mu_c, yield_displacement, exponent, gamma):
 def elasto_plastic(
     strokes, places, sigma0_over_load, sigma1_over_load, sigma2_over_load, breakaway_ratio, **curve
 ):
-    """All strokes at one speed: what is steady does not change then."""
-    V = strokes[0][1]
-    g = _curve(V, **curve)
+    """w = s σ₀ z/(N g) over x = σ₀ d/g, in pieces: up to breakaway it is a straight line."""
+    ζ, f, work = 0.0, [], []
+    for s, V, length, _ in strokes:
+        g = _curve(V, **curve)
 
-    def slope(w, V):
-        α = 0.0
-        if breakaway_ratio < w < 1.0:
-            middle = 0.5 * (1.0 + breakaway_ratio)
-            α = 0.5 * (1.0 + sin(pi * (w - middle) / (1.0 - breakaway_ratio)))
-        return sigma0_over_load / g * (1.0 - (1.0 if w >= 1.0 else α) * w)
+        def slope(w):
+            α = 0.0
+            if breakaway_ratio < w < 1.0:
+                middle = 0.5 * (1.0 + breakaway_ratio)
+                α = 0.5 * (1.0 + sin(pi * (w - middle) / (1.0 - breakaway_ratio)))
+            return 1.0 - (1.0 if w >= 1.0 else α) * w
 
-    ζ, _ = _by_quadrature(strokes, places, slope, (breakaway_ratio,))
-    f = []
-    for (s, _, _, _), row in zip(strokes, ζ):
-        z_dot = np.array([s * V * slope(s * w, V) * g / sigma0_over_load for w in row])
-        f.append(g * row + sigma1_over_load * z_dot + sigma2_over_load * s * V)
-    return np.array(f), None
+        x, first = np.linspace(0.0, sigma0_over_load * length / g, places), s * ζ / g
+        free = max(breakaway_ratio - first, 0.0)
+        stuck = np.minimum(x, free)
+        w, area = first + stuck, stuck * (first + 0.5 * stuck)
+        if (beyond := x > free).any():
+            start = np.array([first + free, area[-1]])
+            states, _, _ = _advance(
+                lambda _, y: np.array([slope(y[0]), y[0]]), start, np.append(free, x[beyond])
+            )
+            w[beyond], area[beyond] = states[1:].T
+        f.append(s * (g * w + V * sigma1_over_load * np.array([slope(one) for one in w])))
+        f[-1] = f[-1] + s * sigma2_over_load * V
+        by_bristles = g * area[-1] + sigma1_over_load * V * (w[-1] - first)
+        work.append(g / sigma0_over_load * by_bristles + sigma2_over_load * V * length)
+        ζ = s * g * w[-1]
+    return np.array(f), np.array(work)
 
 
 def table(strokes, places, shape, shape_backward=()):

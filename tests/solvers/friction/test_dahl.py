@@ -91,3 +91,14 @@ def test_small_friction_keeps_its_digits(δ, x):
     y = mpmath.exp(-X) if p == 0 else (1 - p * X) ** (1 / p)
     wanted = mpmath.mpf(law.μ_C) * (1 - y)
     assert exact(law, 0.0, 1, d) == pytest.approx(float(wanted), rel=1e-14)
+
+
+@pytest.mark.parametrize("δ", [0.3, 0.8, 1.0 - 1e-13, 1.0, 1.0 + 1e-9, 1.5, 2.5])
+@pytest.mark.parametrize("share", [1e-6, 0.5, 0.99])
+def test_distance_over_which_friction_develops(δ, share):
+    """There the law itself is at that share of μ_C."""
+    law = Dahl(0.7, 25000.0, δ)
+    f = law.exact(law.rest(), 1, 0.0, np.array([law.distance(share)]))[0, 0]
+    assert f == pytest.approx(share * law.μ_C, rel=1e-12)
+    if δ == 1.0:
+        assert law.distance(share) == pytest.approx(-law.μ_C / law.λ * np.log(1.0 - share), rel=1e-9)

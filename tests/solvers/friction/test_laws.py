@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 import random_laws as random
 import reference
+from support import at_most
 
 from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.elasto_plastic import ElastoPlastic
 from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
 from galinx.solvers.parameters import made
 
@@ -40,29 +42,97 @@ def test_exact_laws_are_their_equations(name, seed):
     np.testing.assert_allclose(done, wanted, rtol=0.0, atol=1e-12 * max(scale, 1.0) * random.LENGTH)
 
 
-@pytest.mark.parametrize("name", random.INTEGRATED)
-@pytest.mark.parametrize("seed", range(SETS))
-def test_integrated_laws_are_their_equations(name, seed):
-    rng = np.random.default_rng([seed, *name.encode()])
-    parameters, strokes = random.parameters(name, rng), random.strokes(rng, one_speed=True)
-    strokes = [(s, V, 0.5 * length, 0.0) for s, V, length, _ in strokes]
-    f, _ = follow(made(LAWS[name], parameters), strokes)
-    f_wanted, _ = getattr(reference, name)(strokes, PLACES, **parameters)
-    np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-10)
+class Integrated(ElastoPlastic):
+    """A law of one's own whose rate alone is known."""
+
+    def exact(self, z, s, V, slip):
+        return None
+
+    def work(self, z, s, V, slip):
+        return None
 
 
 @pytest.mark.parametrize("seed", range(SETS))
-def test_curves_of_integrated_laws_are_as_good_as_a_figure_wants(seed):
-    """Interpolated between the steps of the scheme, across breakaway."""
+def test_a_rate_alone_is_integrated(seed):
+    """Each state to the last digits, a curve as well as a figure wants, against the formula."""
     rng = np.random.default_rng([seed, 5])
-    law = made(LAWS["elasto_plastic"], random.parameters("elasto_plastic", rng))
-    d = np.linspace(0.0, random.LENGTH, 23)
-    for z, s in ((0.0, 1), (-0.9 * law.μ_C, 1), (0.5 * law.μ_C, -1)):
-        found, wanted = (
-            advance(law, np.array([z]), s, 1e-3, random.LENGTH, d) for advance in (closely, adaptively)
-        )
-        np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-8)
-        assert found[0, 0] == z and not np.array_equal(found, wanted)
+    parameters = random.parameters("elasto_plastic", rng)
+    by_formula, law = made(ElastoPlastic, parameters), made(Integrated, parameters)
+    d, starts = np.linspace(0.0, random.LENGTH, 23), ((0.0, 1), (-0.9 * law.μ_C, 1), (0.5 * law.μ_C, -1))
+    for z, s in starts:
+        z = np.array([z])
+        wanted = exactly(by_formula, z, s, 1e-3, random.LENGTH, d)
+        closest = exactly(law, z, s, 1e-3, random.LENGTH, d)
+        curve = closely(law, z, s, 1e-3, random.LENGTH, d)
+        np.testing.assert_allclose(closest, wanted, rtol=0.0, atol=1e-10)
+        np.testing.assert_allclose(curve, wanted, rtol=0.0, atol=1e-8)
+        assert curve[0] == z and not np.array_equal(curve, closest)
+
+
+@pytest.mark.parametrize("stiffness", [3e5, 5e5, 1e6, 1e7])
+def test_a_switch_may_come_before_the_first_place(stiffness):
+    """Bristles so stiff that they break away within a hundredth of the stroke, or a thousandth."""
+    curve = {"mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 1e-3, "sigma0_over_load": stiffness}
+    d = np.linspace(0.0, random.LENGTH, 101)
+    wanted, z = made(ElastoPlastic, curve).exact(np.zeros(1), 1, 1e-3, d), np.zeros(1)
+    with at_most(20.0):
+        for advance in (closely, adaptively):
+            found = advance(made(Integrated, curve), z, 1, 1e-3, random.LENGTH, d)
+            np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-7)
+
+
+def _power(rng, low, high):
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def wide(name, rng):
+    """Parameters over all of their range by keys, and the slip within which friction changes [m]."""
+    μ, k = _power(rng, -3.0, 1.0), _power(rng, 2.0, 9.0)
+    curve = {
+        "mu_c": μ, "mu_s": _power(rng, -3.0, 1.0), "stribeck_velocity": _power(rng, -6.0, 2.0),
+        "stribeck_exponent": _power(rng, -1.0, 1.0),
+    }  # fmt: skip
+    bristles = curve | {"sigma0_over_load": k, "sigma1_over_load": _power(rng, -2.0, 3.0)}
+    bristles |= {"sigma2_over_load": _power(rng, -2.0, 2.0)}
+    springs = [(_power(rng, 2.0, 9.0), _power(rng, -4.0, 1.0)) for _ in range(int(rng.integers(1, 6)))]
+    slip = max(limit / stiffness for stiffness, limit in springs)
+    return {
+        "bouc_wen": lambda: (
+            {"mu_c": μ, "yield_displacement": 1.0 / k, "exponent": _power(rng, 0.0, 1.7),
+             "gamma": rng.uniform(0.0, 0.999)}, 1.0 / k),
+        "coulomb": lambda: ({"mu_c": μ}, 1.0),
+        "dahl": lambda: ({"mu_c": μ, "sigma0_over_load": k, "delta": _power(rng, 0.0, 1.0)}, μ / k),
+        "elasto_plastic": lambda: (bristles | {"breakaway_ratio": rng.uniform(0.001, 0.999)}, μ / k),
+        "gms": lambda: (
+            curve | {"elements": tuple(springs), "attraction_rate": _power(rng, -3.0, 2.0)}, slip),
+        "lugre": lambda: (bristles, μ / k),
+        "maxwell_slip": lambda: ({"elements": tuple(springs)}, slip),
+        "rate_and_state": lambda: (
+            {"reference_friction": _power(rng, -2.0, 0.0), "reference_speed": _power(rng, -9.0, 0.0),
+             "a": _power(rng, -1.5, 0.0), "b": _power(rng, -3.0, -0.5), "critical_slip": 1.0 / k,
+             "evolution": str(rng.choice(["ageing", "slip"])), "state0": _power(rng, -6.0, 6.0)},
+            1.0 / k),
+        "stribeck": lambda: (curve | {"sigma2_over_load": _power(rng, -2.0, 2.0)}, 1.0),
+        "table": lambda: (random.parameters("table", rng), random.LENGTH),
+    }[name]()  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("seed", range(SETS))
+def test_laws_far_from_usual_sizes_are_their_equations(name, seed):
+    """Of any stiffness, at any speed, along strokes of a hundredth to ten times what friction needs."""
+    rng = np.random.default_rng([seed, 77, *name.encode()])
+    parameters, slip = wide(name, rng)
+    strokes = [
+        (int(rng.choice([-1, 1])), _power(rng, -7.0, 1.0), slip * _power(rng, -2.0, 1.0), rest)
+        for rest in (0.0, 2.0, 0.0, 0.3)
+    ]
+    f, done = follow(made(LAWS[name], parameters), strokes)
+    f_wanted, wanted = getattr(reference, name)(strokes, PLACES, **parameters)
+    scale = np.abs(f_wanted).max()
+    # Integrated in time, the reference itself has no more digits on bristles as stiff as these.
+    np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-9 * scale)
+    np.testing.assert_allclose(done, wanted, rtol=0.0, atol=1e-9 * scale * max(s[2] for s in strokes))
 
 
 def of(name, **parameters):
@@ -171,11 +241,11 @@ def test_loads_below_breakaway_do_not_let_the_elasto_plastic_law_drift():
     creeps, stays = of("lugre", **curve), of("elasto_plastic", breakaway_ratio=0.8, **curve)
     drift = []
     for law in (creeps, stays):
-        z = adaptively(law, law.rest(), 1, 1e-4, 6e-6, np.array([6e-6]))[-1]
+        z = exactly(law, law.rest(), 1, 1e-4, 6e-6, np.array([6e-6]))[-1]
         first = z
         for _ in range(20):
             for s in (-1, 1):
-                z = adaptively(law, z, s, 1e-4, 3e-6, np.array([3e-6]))[-1]
+                z = exactly(law, z, s, 1e-4, 3e-6, np.array([3e-6]))[-1]
         drift.append(abs(float(z[0] - first[0])))
     assert drift[0] > 1e-2 and drift[1] <= 1e-13
 

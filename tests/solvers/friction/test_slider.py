@@ -69,8 +69,7 @@ def test_dahls_slider_is_the_equations_integrated_by_somebody_else():
         rates, (0.0, 3.0), [0.0] * 3, "DOP853", times, rtol=1e-12, atol=1e-14, max_step=1e-2
     )
     ride = pull(slider, of("dahl", mu_c=μ, sigma0_over_load=λ), N)
-    for name, row in zip(("x", "v", "f"), wanted.y):
-        np.testing.assert_allclose(np.interp(times, ride.t, getattr(ride, name)), row, atol=2e-5)
+    np.testing.assert_allclose(ride.at(times), wanted.y, atol=1e-7)
 
 
 ELEMENTS = ((300.0, 0.3), (100.0, 0.3))
@@ -94,14 +93,42 @@ def test_the_drive_gives_what_friction_takes_and_the_spring_and_the_mass_hold(la
     slider, N = Slider(1.0, 20.0, 2.0, 0.1, 4.0), 1.3
     ride = pull(slider, law, N)
     assert ride.t[-1] == pytest.approx(4.0) and (np.diff(ride.t) >= 0.0).all()
-    e, over = 0.1 * ride.t - ride.x, 0.1 - ride.v
-    given = trapezoid(0.1 * (20.0 * e + 2.0 * over), ride.t)
-    taken = trapezoid(N * ride.f * ride.v + 2.0 * over**2, ride.t)
-    held = 0.5 * ride.v[-1] ** 2 + 10.0 * e[-1] ** 2
+    t = np.linspace(0.0, 4.0, 8001)
+    x, v, f = ride.at(t)
+    e, over = 0.1 * t - x, 0.1 - v
+    given = trapezoid(0.1 * (20.0 * e + 2.0 * over), t)
+    taken = trapezoid(N * f * v + 2.0 * over**2, t)
+    held = 0.5 * v[-1] ** 2 + 10.0 * e[-1] ** 2
     assert given == pytest.approx(taken + held, rel=1e-4)
-    np.testing.assert_allclose(
-        np.diff(ride.x), 0.5 * (ride.v[1:] + ride.v[:-1]) * np.diff(ride.t), atol=1e-5
-    )
+    np.testing.assert_allclose(np.diff(x), 0.5 * (v[1:] + v[:-1]) * np.diff(t), atol=1e-5)
+
+
+@pytest.mark.parametrize("stiffness, duration", [(8.0, 20.0), (1e8, 2.0)])
+def test_a_slider_is_told_between_steps_as_it_is_at_them(stiffness, duration):
+    """v = V (1 - cos ωt) at any time, in six cycles and in 3183: a cycle that comes back goes on so."""
+    slider = Slider(1.0, stiffness, 0.0, 0.1, duration)
+    ride = pull(slider, of("coulomb", mu_c=0.5), 1.0)
+    t, ω = np.linspace(0.0, duration, 4001), np.sqrt(stiffness)
+    later = np.maximum(t - 0.5 / (stiffness * 0.1), 0.0)
+    x, v, f = ride.at(t)
+    np.testing.assert_allclose(v, 0.1 * (1.0 - np.cos(ω * later)), rtol=0.0, atol=1e-8 * 0.2)
+    np.testing.assert_allclose(x, 0.1 * (later - np.sin(ω * later) / ω), rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(f[later > 0.0], 0.5, rtol=1e-9)
+    assert cycle(ride, 0.1).peak == pytest.approx(0.2, rel=1e-8)
+    assert abs(cycle(ride, 0.1).least) < 1e-9
+    assert len(ride.t) < 2000  # not of thousands of cycles
+
+
+def test_a_stick_slip_that_comes_back_goes_on_so():
+    """Bristles wiped out by each stick: the last of many cycles is that of a few."""
+    law, load = of("stribeck", **CURVE), 1.0
+    short, long = (pull(Slider(1.0, 2.0, 0.0, 0.1, end), law, load) for end in (60.0, 400.0))
+    assert long.t[-1] < 100.0
+    t = np.linspace(30.0, 60.0, 101)
+    period, slip = cycle(long, 0.1).period, cycle(long, 0.1).slip
+    np.testing.assert_allclose(long.at(t), short.at(t), rtol=0.0, atol=1e-7)
+    x, v, f = long.at(t + 40.0 * period)
+    np.testing.assert_allclose([x - 40.0 * slip, v, f], short.at(t), rtol=0.0, atol=1e-7)
 
 
 def test_what_rings_without_end_is_told(monkeypatch):

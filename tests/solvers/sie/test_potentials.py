@@ -81,6 +81,27 @@ def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
         assert identity.applyfunc(sp.cancel).is_zero_matrix, name
 
 
+def test_the_moving_frame_turns_eqs_9_to_12_into_eqs_15_and_16():
+    """Balance of momentum and Hooke's law in x, y and t, for a field that travels: u(x - Vt, y)."""
+    x, y, t = sp.symbols("x y t", real=True)
+    μ, ρ, κ, V = sp.symbols("μ ρ κ V", positive=True)
+    X, c2, K, coupling = x - V * t, V**2 * ρ / μ, (κ + 1) / (κ - 1), 2 / (κ - 1)
+    u, v = (sp.Function(name)(X, y) for name in "uv")
+    λ_div = (3 - κ) / (κ - 1) * (u.diff(x) + v.diff(y))
+    σ_xx, σ_yy = (μ * (2 * strain + λ_div) for strain in (u.diff(x), v.diff(y)))
+    σ_xy = μ * (u.diff(y) + v.diff(x))
+    by_momentum = [
+        σ_xx.diff(x) + σ_xy.diff(y) - ρ * u.diff(t, 2),
+        σ_xy.diff(x) + σ_yy.diff(y) - ρ * v.diff(t, 2),
+    ]
+    eqs_15_and_16 = [
+        (K - c2) * u.diff(x, 2) + coupling * v.diff(x, y) + u.diff(y, 2),
+        (1 - c2) * v.diff(x, 2) + coupling * u.diff(x, y) + K * v.diff(y, 2),
+    ]
+    for momentum, equation in zip(by_momentum, eqs_15_and_16):
+        assert sp.simplify(momentum - μ * equation) == 0
+
+
 @pytest.mark.parametrize("c", [1e-200, 1e-162, 3e-155, 1e-155, 1e-154, 1e-150, 1e-16, 1e-12])
 def test_at_the_slowest_speeds_the_field_is_that_of_rest(c):
     """c² may be below the smallest number, or have lost its digits there."""

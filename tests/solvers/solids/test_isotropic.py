@@ -42,6 +42,13 @@ def test_constants_keep_their_digits_at_every_speed(c):
     assert frame.q == pytest.approx(float(q), rel=2e-14)
 
 
+def test_ω_of_the_study_are_those_of_the_fourier_solution():
+    """Eqs 31 and 33, at high speed: 4/(κ + 1) times what unit tractions do to slope and strain."""
+    κ = 2.2
+    n, q, m = (4.0 / (κ + 1.0) * value for value in surface_response(κ, 0.6))
+    assert MovingFrame(κ, 0.6).ω == pytest.approx((n / np.pi, q, m / np.pi, q), rel=1e-11)
+
+
 def test_constants_at_rest():
     frame = MovingFrame(2.0, 0.0)
     assert (frame.n, frame.q, frame.m) == pytest.approx((0.75, 0.25, 0.75), rel=1e-15)

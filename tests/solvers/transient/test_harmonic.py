@@ -59,10 +59,10 @@ def test_mirror_image_answers_alike(solid):
     known = solid.response(c)
 
     class Mirrored:
-        c, n, q, n12 = -known.c, known.n, known.q, -known.n12
+        c, n, q, n12 = known.c, known.n, known.q, -known.n12
         c11, c12, c16, c22, c26 = known.c11, known.c12, -known.c16, known.c22, -known.c26
 
-    found = OscillatingPunch(Mirrored, solid.limit(), ω).oscillation(-g)
+    found = OscillatingPunch(Mirrored, solid.limit(), ω, -1).oscillation(-g)
     expected = oscillation(solid, c, g, ω)
     np.testing.assert_allclose(found.flexibility, expected.flexibility, rtol=1e-9)
     np.testing.assert_allclose(found.centre, -expected.centre, atol=1e-9)

@@ -1,0 +1,189 @@
+"""The half-plane by dolfinx's own assembler: ``fem.form``, ``assemble_matrix`` and ``dirichletbc``.
+
+The weak form of Eqs 15-16 is a UFL form over ``dx`` here, and the traction of a friction state one over
+``ds``. FFCx compiles both, every unknown stays in the matrix, and any form that is registered works as it
+stands. This is the ordinary path. :class:`.space.Space` is proved against it; its element matrices by
+tensor products, and condensation, are several times faster at the degrees that the program solves with.
+"""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from dolfinx import fem
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from galinx.solvers.contact import EdgeTraction
+from galinx.solvers.fem import adapter
+from galinx.solvers.fem.cells import image
+from galinx.solvers.fem.compiler import compiling
+from galinx.solvers.fem.condensation import size_of_cells
+from galinx.solvers.fem.forms import traction_form, weak_form
+from galinx.solvers.fem.nodes import NodalForces, Traction
+from galinx.solvers.fem.space import Space
+from galinx.solvers.panel import interpolation
+from galinx.solvers.solids.solid import ByCells, Response
+
+#: Degree to which the traction times a test function is integrated on facets: next to the edges of the
+#: contact it is no polynomial.
+_ON_FACETS = 401
+
+
+class DolfinxSpace(Space):
+    """Continuous vector Lagrange elements on a mesh, assembled by dolfinx; see :class:`.space.Space`."""
+
+    @property
+    def _quadrature(self) -> int:
+        """Degree of quadrature: as many points as the element matrices by tensor products have."""
+        return 2 * self.degree + 2
+
+    @cached_property
+    def _pressures(self) -> Any:
+        """Discontinuous pressures, two degrees below the displacement."""
+        return adapter.function_space(self.mesh, adapter.pressure_element(self.degree - 2))
+
+    @cached_property
+    def _plane(self) -> tuple[Any, Any]:
+        """Re p and Im p of the plane X + pY in which the mesh is drawn."""
+        return fem.Constant(self.mesh, 0.0), fem.Constant(self.mesh, 1.0)
+
+    @cached_property
+    def _constants(self) -> list[Any]:
+        """The weak form's constants: one number each for all cells."""
+        return [fem.Constant(self.mesh, 0.0) for _ in self.form.constants]
+
+    @cached_property
+    def _varying(self) -> list[Any]:
+        """The weak form's constants where they change with depth: values at the points of quadrature."""
+        Q = adapter.function_space(self.mesh, adapter.quadrature_element(self._quadrature))
+        return [fem.Function(Q) for _ in self.form.constants]
+
+    @cached_property
+    def _sizes(self) -> Any:
+        """Sizes of cells, which pressures are over: small cells' weigh as much as large ones'."""
+        D = adapter.function_space(self.mesh, adapter.pressure_element(0))
+        sizes, corners = fem.Function(D), self._all_corners
+        sizes.x.array[adapter.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
+        return sizes
+
+    @property
+    def _all_corners(self) -> NDArray[np.float64]:
+        """Vertices of all cells that this rank has, ghosts included, (cells, 4, 3)."""
+        cells = self.mesh.topology.index_map(2)
+        return adapter.vertices(self.mesh, cells.size_local + cells.num_ghosts)
+
+    @cached_property
+    def _forms(self) -> dict[bool, Any]:
+        """Compiled weak forms, by whether their constants vary; blocks where there are pressures."""
+        return {}
+
+    def _form(self, response: Response) -> Any:
+        """The compiled weak form with the constants of a response."""
+        varies, p = isinstance(response, ByCells), self.contracted(response).p
+        for constant, value in zip(self._plane, (p.real, p.imag)):
+            constant.value = value
+        if isinstance(response, ByCells):
+            self._set_varying(response)
+        else:
+            for constant, name in zip(self._constants, self.form.constants):
+                constant.value = float(getattr(response, name))
+        if varies not in self._forms:
+            spaces = [self.V, self._pressures] if self.mixed else [self.V]
+            forms = weak_form(
+                self.form, spaces, self.chart, self._plane,
+                self._varying if varies else self._constants, self._sizes if self.mixed else None,
+                self._quadrature,
+            )  # fmt: skip
+            compiled = [[self._compiled(form) for form in row] for row in forms]
+            self._forms[varies] = compiled if self.mixed else compiled[0][0]
+        return self._forms[varies]
+
+    def _set_varying(self, response: ByCells) -> None:
+        """Set constants at the points of quadrature of all cells."""
+        points, corners = adapter.quadrature_points(self._quadrature), self._all_corners
+        Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
+        solids = response.solids(corners[..., 1].mean(axis=1))
+        tables = response.constants(self.form.constants)
+        values = np.empty((*Y.shape, len(self.form.constants)))
+        for i in np.unique(solids).tolist():
+            cells = solids == i
+            values[cells] = interpolation(response.share(i, Y[cells]), len(tables[i])) @ tables[i]
+        for k, function in enumerate(self._varying):
+            function.x.array[adapter.cell_nodes(function.function_space)[: len(Y)]] = values[..., k]
+
+    def _compiled(self, form: Any) -> Any:
+        with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
+            return adapter.form(form, options)
+
+    def assemble(self, response: Response) -> PETSc.Mat:
+        """Matrix of the moving-frame form without boundary conditions."""
+        form = self._form(response)
+        with self.clock("assembly"):
+            return adapter.matrix(form, [])
+
+    def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
+        """Matrix with Dirichlet conditions: "far" on the far boundary, "contact" for v under a punch.
+
+        Args:
+            A: the matrix without, which is destroyed.
+            response: of the half-plane.
+            parts: what is held.
+        """
+        A.destroy()
+        v, zero = self.V.sub(1), np.zeros(2)
+        far, contact = (
+            fem.locate_dofs_topological(of, 1, self.facets[part])
+            for of, part in ((self.V, "far"), (v, "contact"))
+        )
+        conditions = {
+            "far": lambda: fem.dirichletbc(zero, far, self.V),
+            "contact": lambda: fem.dirichletbc(PETSc.ScalarType(-1.0), contact, v),
+        }
+        form = self._form(response)
+        with self.clock("assembly"):
+            return adapter.matrix(form, [conditions[part]() for part in parts])
+
+    @cached_property
+    def _load(self) -> tuple[Any, EdgeTraction]:
+        """The compiled form of a flat punch's σ_YY, and the constants in it."""
+        traction = EdgeTraction(*(fem.Constant(self.mesh, 0.0) for _ in range(3)))
+        form = traction_form(
+            self.V, traction, self.chart, self.facet_tags, self.tags["contact"], _ON_FACETS
+        )
+        return self._compiled(form), traction
+
+    def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
+        """Consistent nodal forces of the traction under a flat punch, by a linear form over ``ds``.
+
+        Raises:
+            TypeError: the traction is another, which no compiled form knows.
+        """
+        if not isinstance(σ_YY, EdgeTraction):
+            raise TypeError("expected the traction under a flat punch")
+        form, traction = self._load
+        for constant, value in zip(vars(traction).values(), vars(σ_YY).values()):
+            constant.value = float(value)
+        b = adapter.vector(form)
+        forces = np.array(b.getValues(self.contact.dofs(1)))
+        b.destroy()
+        return NodalForces(self.contact.numbers, self.contact.s[self.contact.owned], forces)
+
+    def cell_values(
+        self, fields: Sequence[PETSc.Vec], response: Response, cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+
+        Collective.
+        """
+        return self.fetch(fields, self.numbers[self._cell_nodes[cells]])
+
+    @cached_property
+    def _inner(self) -> NDArray[np.bool_]:
+        """No node is eliminated."""
+        return np.zeros(len(self.coordinates), dtype=bool)
+
+    @property
+    def _owned_pressures(self) -> int:
+        return int(self._pressures.dofmap.index_map.size_local) if self.mixed else 0

@@ -1,0 +1,179 @@
+"""What an estimate is made of, and when a ladder of degrees ends: errors of levels are prescribed."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from galinx.app.run.methods import gauge
+from galinx.app.run.methods.error import MeasuredError, climb, reached
+from galinx.app.run.methods.gauge import Gauge
+from galinx.app.run.methods.ladder import Ladder
+from galinx.meshes import MESHES, Wanted
+from galinx.meshes.kind import DEGREES
+from galinx.postprocess.pressure import MOMENTS, JacobiPressure
+
+G = np.array([-0.5])
+FIRST = 6
+
+
+def level(value, left=0.0, rounding=0.0):
+    """One number that is relative to 1, and what a level knows of itself."""
+    return SimpleNamespace(
+        space=SimpleNamespace(cells=1, size=1, degree=FIRST),
+        factor=SimpleNamespace(solves=1, iterations=0, largest_residual=0.0, condition=0.0),
+        mirrored=True,
+        measured=lambda g, load=None: [
+            Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
+        ],
+        rounding=lambda g: [rounding],
+        release=lambda: None,
+        destroy=lambda: None,
+    )
+
+
+class Work:
+    """Spaces that are numbers: the degree; ``errors`` are those of a level by its degree."""
+
+    def __init__(self, tolerance, errors, finer=None):
+        kind, wanted = MESHES["confocal"], Wanted(tolerance)
+        self.plan = SimpleNamespace(
+            kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1
+        )
+        self.errors, self.finer, self.said, self.solved = errors, finer, [], []
+
+    def space(self, degree, cuts=1):
+        self.solved.append(degree)
+        return self, degree
+
+    def warn(self, text):
+        self.said.append(text)
+
+
+def solved(space, g):
+    work, degree = space
+    return level(work.errors(degree))
+
+
+TASK = SimpleNamespace(
+    number=0,
+    body=SimpleNamespace(alike=True, layered=False),
+    response=SimpleNamespace(c=0.3, margin=1.0, n=0.75, m=0.75, n12=0.0, contraction=1j),
+)
+
+
+def estimated(left=0.0, rounding=0.0, tolerance=1e-3):
+    """The estimate of three levels, the last as given."""
+    ladder = Ladder(Work(tolerance, None), TASK, solved)
+    ladder.levels = [level(0.0), level(0.0), level(0.0, left, rounding)]
+    return MeasuredError(ladder, G).of(G)["sif"][0]
+
+
+def test_an_estimate_holds_rounding_and_what_a_level_knows_of_itself():
+    assert estimated(rounding=1e-5) - estimated() == pytest.approx(3e-5, rel=1e-9)
+    assert estimated(left=1e-5) - estimated() == pytest.approx(1e-5, rel=1e-9)
+
+
+def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges():
+    """Measured at far boundaries of 1e2 to 1e4 a: compliance times leaning, and 1.8 of what is left."""
+    kind, wanted = MESHES["confocal"], Wanted(1e-3)
+    innermost, far = kind.unseen(wanted, FIRST, 1, 1.0), kind.truncation(wanted, 1.0)
+    leaning = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.1)
+    assert estimated() == pytest.approx(innermost + far * (leaning + 1.8 * far), rel=1e-12)
+
+
+def climbed(work):
+    ladder = Ladder(work, TASK, solved)
+    return ladder, climb(ladder, G)
+
+
+def test_degrees_rise_until_the_tolerance_is_met_and_no_further():
+    work = Work(1e-6, lambda p: 10.0 ** (2.0 - 1.2 * p))
+    ladder, error = climbed(work)
+    assert not error.excessive and ladder.degree == work.solved[-1] < DEGREES[1]
+    assert work.solved == list(range(FIRST - 2, ladder.degree + 1))
+    assert ladder.degree == 8 and work.errors(8) < error.worst < 10.0 * work.errors(8)
+
+
+@pytest.mark.parametrize("ratio", [0.8, 0.95, 1.1])
+def test_a_ladder_that_does_not_converge_ends_before_the_highest_degree(ratio):
+    work = Work(1e-6, lambda p: 1e-3 * ratio**p * (-1.0) ** p)
+    ladder, error = climbed(work)
+    assert error.excessive and error.of_cells
+    assert ladder.degree <= FIRST + 1
+
+
+def test_a_ladder_that_gets_there_is_not_given_up():
+    """Slowly, and by steps of different size, of which two together tell how fast."""
+    work = Work(1e-5, lambda p: 10.0 ** (-0.6 * p + (0.2 if p % 2 else 0.0)))
+    ladder, error = climbed(work)
+    assert not error.excessive and 9 <= ladder.degree <= DEGREES[1]
+    assert work.errors(ladder.degree) <= error.worst
+
+
+def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_said():
+    slow, good = (lambda p: 1e-3 * 0.8**p), (lambda p: 10.0 ** (-1.0 - 1.2 * p))
+    finer = Work(1e-8, good)
+    work = Work(1e-6, slow, finer)
+    with reached(work, TASK, G, solved) as (ladder, error):
+        assert ladder.work is finer and not error.excessive and error.worst <= 1e-6
+    assert work.solved and finer.solved and not work.said + finer.said
+    finer = Work(1e-8, slow)
+    with reached(Work(1e-6, slow, finer), TASK, G, solved) as (ladder, error):
+        assert error.excessive and ladder.degree < DEGREES[1]
+    (said,) = finer.said
+    assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
+
+
+def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
+    work = Work(1e-9, None)
+
+    def rounded(space, g):
+        return level(1e-8 * (-1.0) ** space[1], rounding=1e-7)
+
+    with reached(work, TASK, G, rounded) as (ladder, error):
+        assert error.excessive and not error.of_cells and ladder.work is work
+    assert work.said
+
+
+def test_the_pressure_and_its_moments_are_gauged():
+    smooth = np.array([[-0.3, 0.1, *[0.0] * (MOMENTS - 2)]])
+    pressure = JacobiPressure(np.array([-0.4]), np.array([-0.6]), smooth)
+    one = gauge.of_pressure(pressure, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]))
+    for i in range(1, 6):
+        moments = np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])
+        moments[0, i] += 2e-3
+        assert gauge.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
+    steeper = JacobiPressure(pressure.α, pressure.β, smooth + 1e-3 * (np.arange(MOMENTS) == 2))
+    assert gauge.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
+
+
+@pytest.mark.parametrize("component", range(3))
+def test_every_stress_inside_is_gauged(component):
+    points = np.array([[0.0, -1.0], [2.0, -0.5]])
+    σ = np.array([[[-1.0, 0.2]], [[-0.5, 0.1]], [[0.3, 0.0]]])
+    other = σ.copy()
+    other[component, 0, 0] += 0.01
+    change = gauge.of_inside(other, points).change(gauge.of_inside(σ, points))
+    assert change[0] == pytest.approx(0.01, rel=0.02)
+
+
+def test_stresses_are_no_better_than_the_last_digits_of_displacements():
+    """All that is known of their rounding without mirror images: 100 over the root of the margin."""
+    displacement = SimpleNamespace(
+        prepare=lambda words: None,
+        surface=lambda g, weights, σ_YY: SimpleNamespace(σ_XX=np.array([[2.0, -4.0]])),
+        rounding=lambda weights: np.array([[4e-13, 8e-13]]),
+    )
+    places = SimpleNamespace(X=np.array([-2.0, 2.0]), points=np.empty((0, 2)), around=np.empty((0, 2)))
+    task = SimpleNamespace(places=places, response=SimpleNamespace(margin=0.04))
+    gauges = gauge.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
+    (found,) = gauges.rounding(G, np.ones((1, 1)), np.zeros((1, 2)))
+    assert found == pytest.approx(100.0 / 0.2 * 2e-13)
+
+
+def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():
+    ladder = Ladder(Work(1e-3, None), TASK, solved)
+    ladder.levels = [level(0.0), level(0.0), level(0.0)]
+    error = MeasuredError(ladder, G)
+    assert (error._rate("sif").usual, error._rate("surface").usual) == (0.16, 0.5)

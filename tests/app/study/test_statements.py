@@ -1,0 +1,322 @@
+"""The study's statements: against formulas written anew, and with results that say the opposite."""
+
+import re
+from itertools import pairwise
+from math import atan, exp, log, pi, sqrt
+
+import numpy as np
+import pytest
+from support import computed
+
+from galinx.app.study.published import FAST, SLOW, state_of
+from galinx.app.study.statements import statements, statements_sheet
+from galinx.postprocess.quantities import column
+from galinx.solvers.solids.isotropic import Isotropic
+
+T302 = Isotropic(193e9, 0.25, 7860.0)
+#: What the computed results say of each; the others hold.
+DOES_NOT = {"5b", "6a", "12a"}
+NUMBERS = [*"1234", "5a", "5b", "6a", "6b", *"789", "10", "11", "12a", "12b", *map(str, range(13, 18))]
+
+
+@pytest.fixture(scope="module")
+def study():
+    """scenes/study.toml by the closed form."""
+    return computed("study", {"solve.methods": ["closed_form"]}).data
+
+
+@pytest.fixture
+def data(study):
+    """A copy to be changed."""
+    return {path: np.array(values) if isinstance(values, np.ndarray) else values
+            for path, values in study.items()}  # fmt: skip
+
+
+def decided(data):
+    return {one.number: one for one in statements(data, T302)}
+
+
+# Friction and stresses from the formulas of the study, without the program's.
+
+
+def dahl(y0, λ, d, μ, δ):
+    """1 - s f/μ_C after the slip d."""
+    if δ == 1.0:
+        return y0 * exp(-λ * d / μ)
+    return max(y0 ** (1.0 - δ) - (1.0 - δ) * λ * d / μ, 0.0) ** (1.0 / (1.0 - δ))
+
+
+def f(motion="FM1", X=0.2, μ=0.7, λ=25000.0, δ=1.0, L=1e-4):
+    end = μ * (1.0 - dahl(1.0, λ, L, μ, δ))
+    turned = -μ * (1.0 - dahl(1.0 + end / μ, λ, L, μ, δ))
+    if motion == "FM1":
+        return μ * (1.0 - dahl(1.0, λ, X * L, μ, δ))
+    if motion == "BM1":
+        return -μ * (1.0 - dahl(1.0 + end / μ, λ, (1.0 - X) * L, μ, δ))
+    return μ * (1.0 - dahl(1.0 - turned / μ, λ, X * L, μ, δ))
+
+
+def constants(c, κ=2.0):
+    """n, q, m of the moving frame; at slow speed those at rest."""
+    if c < 1e-3:
+        return (κ + 1) / 4, (κ - 1) / 4, (κ + 1) / 4
+    k = (κ - 1) / (κ + 1)
+    β_s, β_d, e = sqrt(1 - c * c), sqrt(1 - k * c * c), 2 - c * c
+    R = 4 * β_s * β_d - e * e
+    return c * c * β_d / R, (e * 1.0 - 2 * β_s * β_d) / R, c * c * β_s / R
+
+
+def exponent(f, c):
+    n, q, _ = constants(c)
+    return -0.5 + atan(f * q / n) / pi  # cot(πα) = g q/n, g = -f
+
+
+def σ_YY(r, f, c):
+    α = exponent(f, c)
+    return 2 / pi * np.sin(pi * α) * (1 - r) ** α * (1 + r) ** (-1 - α)
+
+
+def σ_XX(r, f, c, κ=2.0):
+    """Beside the punch, where σ_YY vanishes (Eq 32)."""
+    α, m = exponent(f, c), constants(c)[2]
+    H = 2 / pi * np.sign(r) * abs(r - 1) ** α * abs(r + 1) ** (-1 - α)
+    return 8 * m / (κ + 1) * -f * H
+
+
+UNDER = np.array([r for r in [*np.linspace(-0.88, 0.88, 45), -0.9, 0.9]])
+BESIDE = 1.0 + 0.1 ** (4 / 3)
+#: A step on the surface next to 1.05 a.
+assert abs(BESIDE - 1.0464158883) < 1e-9
+
+
+def apart(one, other, c=SLOW):
+    return np.abs(σ_YY(UNDER, one, c) - σ_YY(UNDER, other, c)).max()
+
+
+def behind(c=SLOW, **state):
+    return σ_XX(-BESIDE, f(**state), c)
+
+
+def ahead(c=SLOW, **state):
+    return σ_XX(BESIDE, f(**state), c)
+
+
+LEVELS, STIFFNESSES, EXPONENTS = (0.1, 0.3, 0.5, 0.7), (12500.0, 25000.0, 50000.0), (0.8, 1.0, 1.2, 1.5)
+GRID = np.linspace(0.0, 1.0, 101)
+
+
+def gap(**law):
+    """Mean of f in FM1 less f in FM2."""
+    return np.mean([f("FM1", X, **law) - f("FM2", X, **law) for X in GRID])
+
+
+def percent(motion, c):
+    early, late = (-np.sin(pi * exponent(f(motion, X), c)) / pi for X in (0.2, 0.8))
+    return 100 * (late - early) / (late if motion == "BM1" else early)
+
+
+def tilt(**varied):
+    """-σ_YY at -0.9 a and 0.9 a, σ_XX behind and ahead, with a parameter."""
+    ((name, values),) = varied.items()
+    X = 0.2 if name == "λ" else 0.4
+    frictions = [f(X=X, μ=0.5, **{name: value}) for value in values]
+    return [
+        *(-σ_YY(r, of, SLOW) for r in (-0.9, 0.9) for of in frictions),
+        *(σ_XX(r, of, SLOW) for r in (-BESIDE, BESIDE) for of in frictions),
+    ]
+
+
+def independent():
+    """The numbers that decide each statement, as and in the order in which they are printed."""
+    every = [("FM1", X) for X in (0.2, 0.5, 0.8, 1.0)] + [("FM2", X) for X in (0.2, 0.5, 0.8, 1.0)]
+    tension = [behind(c, motion=motion, X=X) for motion, X in every for c in (SLOW, FAST)]
+    tension += [ahead(c, motion="BM1", X=X) for X in (0.2, 0.5, 0.8) for c in (SLOW, FAST)]
+    FM1, FM2 = ([σ_XX(-BESIDE, f(motion, X), SLOW) for X in (0.2, 1.0)] for motion in ("FM1", "FM2"))
+    higher = [
+        X
+        for X in GRID
+        if any(f("FM2", X, 0.5, δ=b) > f("FM2", X, 0.5, δ=a) for a, b in pairwise(EXPONENTS))
+    ]
+    second = [f("FM2", 0.2, 0.5, λ) for λ in STIFFNESSES]
+    fast = [[abs(σ_XX(r, of, FAST) - σ_XX(r, of, SLOW)) for r in (-BESIDE, BESIDE)] for of in second]
+    most = [behind(FAST, X=X, μ=μ) for μ in LEVELS for X in (0.2, 0.4, 0.5, 0.8, 1.0)]
+    spread = [
+        (np.ptp([σ_YY(UNDER, f(X=X, μ=μ), SLOW) for μ in LEVELS], axis=0).max(),
+         np.ptp([behind(X=X, μ=μ) for μ in LEVELS])) for X in (0.2, 0.8)
+    ]  # fmt: skip
+    lean = {name: tilt(**{name: values}) for name, values in (("λ", STIFFNESSES), ("δ", EXPONENTS))}
+    return {
+        "2": shown(".2f", *(f(X=0.1, μ=μ) / μ for μ in LEVELS)),
+        "3": shown(".3f", *(gap(μ=μ) for μ in LEVELS), *(gap(μ=0.5, λ=λ) for λ in STIFFNESSES)),
+        "4": shown(".3f", *(0.5 * log(2.0) / (λ * 1e-4) for λ in STIFFNESSES)),
+        "5a": shown(".2f", *(f(X=1.0, μ=0.5, δ=δ) / 0.5 for δ in EXPONENTS)),
+        "5b": shown(".2f", max(higher), *(f("FM2", 0.0, 0.5, δ=δ) for δ in EXPONENTS)),
+        "6a": shown(".2f", *(apart(f("FM1", X), f("BM1", X)) for X in (0.2, 0.5, 1.0))),
+        "6b": shown(".2f", *(apart(f("FM1", X), f("BM1", 1.0 - X)) for X in (0.2, 0.5, 1.0)),
+                    *(apart(f("FM1", X), f("FM2", X)) for X in (0.5, 1.0))),
+        "7": shown(".1%", max(
+            np.abs(σ_YY(UNDER, one, FAST) / σ_YY(UNDER, one, SLOW) - 1).max()
+            for one in (f("FM1", 1.0), f("BM1", 0.2)))),
+        "8": ["22 of 22", *shown("+.2f", min(tension), max(tension))],
+        "9": shown(".2f", FM2[0], FM1[0]) + shown(".1%", 1 - FM2[1] / FM1[1]),
+        "10": shown(".2f", *(behind(FAST, X=X) - behind(X=X) for X in (0.2, 0.5, 0.8, 1.0)),
+                    *(behind(FAST, X=0.8, μ=μ) - behind(X=0.8, μ=μ) for μ in LEVELS)),
+        "11": shown(".2f", spread[0][0], spread[1][0], spread[0][1], spread[1][1]),
+        "12a": shown(".2f", *lean["λ"][:6]),
+        "12b": shown(".2f", *lean["λ"][6:]),
+        "13": shown("+.4f", *second),
+        "14": shown(".2f", *np.max(fast, axis=1)),
+        "15": shown(".2f", *lean["δ"]),
+        "16": shown("+.2f", *(percent(m, c) for c in (SLOW, FAST) for m in ("FM1", "BM1", "FM2"))),
+        "17": shown(".2f", min(most), max(most), *(max(
+            ahead(FAST, X=X, μ=μ) for μ in LEVELS for X in (0.2, 1.0)),)),
+    }  # fmt: skip
+
+
+def shown(form, *values):
+    return [f"{value:{form}}" for value in values]
+
+
+def test_all_statements_with_what_decides_them(data):
+    found = decided(data)
+    assert list(found) == NUMBERS
+    assert {number for number, one in found.items() if not one.holds} == DOES_NOT
+    for number, expected in independent().items():
+        in_order = r"(?!\d).*?(?<![\d.])".join(map(re.escape, expected))
+        assert re.search(in_order, found[number].numbers), (number, found[number].numbers, expected)
+
+
+def test_words_say_which_way_it_went(data):
+    found = decided(data)
+    assert found["1"].words.startswith("holds: ") and found["12a"].words.startswith("does not: ")
+    rows = statements_sheet(list(found.values())).rows
+    assert [row[0] for row in rows] == NUMBERS and rows[0][2] == found["1"].words
+
+
+# Results that say the opposite.
+
+
+def _loops(data, **law):
+    row = data["loops/of_state"][state_of(data, SLOW, "FM1", 0.2, **law)]
+    return data["loops/f"][row].reshape(3, -1)
+
+
+def _law(name, value):
+    return {"mu_c": value} if name == "mu_c" else {"mu_c": 0.5, name: value}
+
+
+def _swap_loops(data, name, one, other):
+    a, b = (_loops(data, **_law(name, value)) for value in (one, other))
+    a[:], b[:] = b.copy(), a.copy()
+
+
+def _surface(data, what, **state):
+    state = {"c": SLOW, "motion": "FM1", "X": 0.2} | state
+    return data[f"surface/closed_form/sigma_{what}"][state_of(data, **state)]
+
+
+def _faster(data):
+    data["states/f"][data["states/c"] == FAST] += 1e-6
+
+
+def _slow_to_settle(data):
+    _loops(data, mu_c=0.1)[0] *= 0.9
+
+
+def _never_apart(data):
+    loops = _loops(data, mu_c=0.7)
+    loops[2] = loops[0]
+
+
+def _without_a_turn(data):
+    for δ in EXPONENTS:
+        loops = _loops(data, mu_c=0.5, delta=δ)
+        loops[2] = loops[0]
+
+
+def _slight_on_the_axis(data):
+    for X, share in ((0.2, 0.1), (0.5, 1.0), (1.0, -0.5)):
+        one, other = (_surface(data, "YY", X=X, motion=motion) for motion in ("FM1", "BM1"))
+        other[:] = one + share * (1.0 if X < 1.0 else one)
+
+
+def _backwards(data):
+    loops = _loops(data)
+    loops[1] = loops[1][::-1].copy()
+
+
+def _far_from_slow(data):
+    _surface(data, "YY", c=FAST)[:] *= 1.2
+
+
+def _other_end(data):
+    σ = _surface(data, "XX", motion="BM1", X=0.5)
+    σ[:] = σ[::-1].copy()
+
+
+def _late_difference(data):
+    _surface(data, "XX", motion="FM2", X=1.0)[:] *= 1.5
+
+
+def _speeds_swapped(data):
+    for X in (0.2, 0.5, 0.8, 1.0):
+        slow, fast = (_surface(data, "XX", c=c, X=X) for c in (SLOW, FAST))
+        slow[:], fast[:] = fast.copy(), slow.copy()
+
+
+def _places_swapped(data):
+    for μ in LEVELS:
+        for what in ("XX", "YY"):
+            early, late = (_surface(data, what, X=X, mu_c=μ) for X in (0.2, 0.8))
+            early[:], late[:] = late.copy(), early.copy()
+
+
+def _mirrored(data):
+    for what in ("XX", "YY"):
+        path = f"surface/closed_form/sigma_{what}"
+        data[path] = data[path][:, ::-1].copy()
+
+
+def _forward(data):
+    path = column("f")
+    for c in (SLOW, FAST):
+        data[path][state_of(data, c, "FM2", 0.2, mu_c=0.5, sigma0_over_load=12500.0)] *= -1.0
+
+
+def _alike(data):
+    law = {"motion": "FM2", "mu_c": 0.5, "sigma0_over_load": 50000.0}
+    _surface(data, "XX", c=FAST, **law)[:] = _surface(data, "XX", **law)
+
+
+def _unequal(data):
+    data["states/closed_form/K_I_right"] *= 1.001
+
+
+def _less_there(data):
+    _surface(data, "XX", c=FAST, X=1.0)[:] *= 0.5
+
+
+@pytest.mark.parametrize(
+    ("number", "change"),
+    [
+        ("1", _faster), ("2", _slow_to_settle), ("3", _never_apart),
+        ("4", lambda data: _swap_loops(data, "sigma0_over_load", 12500.0, 50000.0)),
+        ("5a", lambda data: _swap_loops(data, "delta", 0.8, 1.5)),
+        ("5b", _without_a_turn), ("6a", _slight_on_the_axis), ("6b", _backwards), ("7", _far_from_slow),
+        ("8", _other_end), ("9", _late_difference), ("10", _speeds_swapped), ("11", _places_swapped),
+        ("12a", _mirrored), ("12b", _mirrored), ("13", _forward), ("14", _alike), ("15", _mirrored),
+        ("16", _unequal), ("17", _less_there),
+    ],
+)  # fmt: skip
+def test_other_results_turn_a_statement_round(data, number, change):
+    before = decided(data)[number]
+    change(data)
+    after = decided(data)[number]
+    assert before.holds == (number not in DOES_NOT)
+    assert after.holds != before.holds, after.words
+
+
+def test_a_state_that_is_missing_is_named(data):
+    data["states/X_over_L"][data["states/X_over_L"] == 0.5] = 0.55
+    with pytest.raises(LookupError, match=r"X/L = 0\.5"):
+        statements(data, T302)

@@ -1,0 +1,130 @@
+"""Flutter thresholds against Stroh's eigenvectors: in 30 digits, and by counting growing waves."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from random_solids import random_solid, stiffness
+
+import galinx
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids import Isotropic
+from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.transient.admittance import Admittance
+from galinx.solvers.transient.flutter import thresholds
+
+#: Solid, angle, smaller of both thresholds, and a speed near that at which waves neither grow nor decay.
+TABLE = [
+    ("carbon-epoxy", 0.0, 2.68875095, 3.712),
+    ("carbon-epoxy", 90.0, 0.37191991, 1.3803),
+    ("spruce", 90.0, 0.35101815, 1.142),
+    ("copper", 0.0, 1.54691298, 0.936),
+    ("copper", 30.0, 0.46258727, -1.8608),
+    ("zinc", 30.0, 0.45207929, -1.3669),
+    ("silicon", 30.0, 0.70962742, -1.6064),
+]
+
+
+def material(name, angle):
+    changes = {"solid.material": name, "solid.angle": f"{angle} deg"}
+    return galinx.template("tables4_5", changes).solid
+
+
+def ratio(C, c):
+    """-Y₂₂/Y₂₁ at a speed by eigenvectors of the fundamental matrix, c complex."""
+    c11, c12, c16, c22, c26, c66 = [mp.mpf(float(x)) for x in C]
+    Q = mp.matrix([[c11 - c * c, c16], [c16, c66 - c * c]])
+    R, T = mp.matrix([[c16, c12], [c66, c26]]), mp.matrix([[c66, c26], [c26, c22]])
+    inverse = T**-1
+    blocks = -inverse * R.T, inverse, R * inverse * R.T - Q, -R * inverse
+    N = mp.matrix(4)
+    for k, block in enumerate(blocks):
+        for i in range(2):
+            for j in range(2):
+                N[2 * (k // 2) + i, 2 * (k % 2) + j] = block[i, j]
+    values, vectors = mp.eig(N)
+    some = [k for k in range(4) if values[k].imag > 0]
+    assert len(some) == 2
+    A, B = (mp.matrix([[vectors[i + row, k] for k in some] for i in range(2)]) for row in (0, 2))
+    Y = A * B**-1
+    return -Y[1, 1] / Y[1, 0]
+
+
+@pytest.mark.parametrize("name, angle, expected, near", TABLE)
+def test_thresholds_are_those_of_waves_that_neither_grow_nor_decay(name, angle, expected, near):
+    solid = material(name, angle)
+    C = stiffness(solid.response(0.0))
+    with mp.workdps(45):
+        above = mp.mpc(0, mp.mpf(10) ** -40)  # from where waves grow
+
+        def real(c):
+            return ratio(C, c + above).real
+
+        def imaginary(c):
+            return ratio(C, c + above).imag
+
+        near = mp.mpf(near)
+        if abs(imaginary(near)) < 1e-20:  # all along: an extreme
+            c = mp.findroot(
+                lambda c: (real(c + 1e-9) - real(c - 1e-9)) * 1e9, (near, near * 1.0001), tol=1e-14
+            )
+        else:
+            c = mp.findroot(imaginary, (near, near * 1.0001), tol=1e-30)
+        exact = float(abs(real(c)))
+    assert min(solid.flutter) == pytest.approx(exact, rel=1e-12)
+    assert min(solid.flutter) == pytest.approx(expected, abs=1e-8)
+
+
+def growing(C, g):
+    """Number of waves that grow, by the turns of L₁₁ - g L₂₁ round the upper half of the c plane."""
+    c11, c12, c16, c22, c26, c66 = C
+    size, low = 100.0 * np.sqrt(c11 + c22), 1e-4
+    share = np.linspace(-1.0, 1.0, 10_001)
+    along = np.sinh(share * np.arcsinh(size / 0.05)) * 0.05 + 1j * low
+    arc = np.linspace(0.0, np.pi, 501)
+    c = np.concatenate([along, size * np.exp(1j * arc)[1:-1] + 1j * low, along[:1]])
+    Q = np.array([[c11, c16], [c16, c66]]) - (c * c)[:, None, None] * np.eye(2)
+    R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
+    inverse = np.linalg.inv(T)
+    N = np.empty((len(c), 4, 4), dtype=complex)
+    N[:, :2, :2], N[:, :2, 2:] = -inverse @ R.T, inverse
+    N[:, 2:, :2], N[:, 2:, 2:] = R @ inverse @ R.T - Q, -R @ inverse
+    p, vectors = np.linalg.eig(N)
+    order = np.argsort(-p.imag, axis=1)[:, None, :2]
+    A, B = (np.take_along_axis(vectors[:, rows], order, axis=2) for rows in (slice(2), slice(2, 4)))
+    L = B @ np.linalg.inv(A)
+    F = L[:, 0, 0] - g * L[:, 1, 0]
+    return round(np.angle(F[1:] / F[:-1]).sum() / (2.0 * np.pi))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_below_the_threshold_no_wave_grows_and_above_it_some_do(seed):
+    solid = random_solid(seed)
+    C = stiffness(solid.response(0.0))
+    for sign, g in zip((1.0, -1.0), solid.flutter):
+        limited = min(g, 20.0)
+        assert growing(C, 0.97 * sign * limited) == 0
+        if g == limited:
+            assert growing(C, 1.03 * sign * g) > 0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_mirror_image_of_a_solid_has_the_thresholds_of_the_other_sign(seed):
+    rng = np.random.default_rng(seed)
+    constants = *rng.uniform(1.0, 10.0, 3), *rng.uniform(0.0, 0.3, 3), rng.uniform(0.2, 1.0), 1.0
+    one, other = (Orthotropic(*constants, angle) for angle in (37.0, -37.0))
+    np.testing.assert_allclose(one.flutter, other.flutter[::-1], rtol=1e-12)
+    np.testing.assert_allclose(Orthotropic(*constants, 37.0 + 180.0).flutter, one.flutter, rtol=1e-12)
+
+
+@pytest.mark.parametrize("ν", [-0.9, -0.2, 0.0, 0.01, 0.25, 0.4999])
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_isotropic_solids_have_1_where_they_grow_narrow_when_pulled(ν, plane):
+    solid = Isotropic(2e11, ν, 7800.0, plane)
+    np.testing.assert_allclose(solid.flutter, thresholds(Admittance.of(solid.response(0.0))), rtol=1e-9)
+    assert solid.flutter == ((1.0, 1.0) if ν > 0.0 else (np.inf, np.inf))
+
+
+def test_layers_have_that_of_their_surface():
+    coating, below = material("carbon-epoxy", 90.0), Isotropic(2e11, 0.3, 7800.0)
+    assert Layered((Layer(1e-3, coating),), below).flutter == coating.flutter
+    assert Layered((Layer(1e-3, below),), coating).flutter == (1.0, 1.0)

@@ -74,7 +74,8 @@ def _two_series(
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
     count = _SEEN_AT[0 if at_end else 1]
     t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    known, powers = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2, np.arange(_TERMS_OF_EACH)
+    known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
+    powers = np.arange(_TERMS_OF_EACH)
 
     def terms(d: NDArray) -> NDArray[np.float64]:
         x = d / high**2
@@ -85,7 +86,7 @@ def _two_series(
         more[:, :-1] *= np.log(x)[:, None]
         return np.concatenate([found, more], axis=1)
 
-    return known, terms, np.linalg.pinv(terms(known))
+    return known, terms, np.asarray(np.linalg.pinv(terms(known)), dtype=np.float64)
 
 
 @dataclass(frozen=True)

@@ -186,8 +186,8 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if isinstance(group.pressure, Weighted):
         place = (group.β - group.α) / (group.β + group.α)
         return -group.pressure.σ_YY(place[:, None])[:, 0], place
-    value, place = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
-    return np.array([value]), np.array([place])
+    top, at = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
+    return np.array([top]), np.array([at])
 
 
 def largest(
@@ -205,7 +205,7 @@ def largest(
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    found = [_nearer(pressure, *r[[i - 1, i + 1]], places) for i in tops.tolist()]
+    found = [_nearer(pressure, r[i - 1], r[i + 1], places) for i in tops.tolist()]
     if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
         for at in places:
             near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))

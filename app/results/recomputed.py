@@ -211,7 +211,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
     if states.INDENTATION.path in data and fem.terms and not body.pressure:
         yield from _of_indentations(data, plan, some)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
-    if all(path in data for path in loads) and not _near(*(data[path] for path in loads), _FROM_EXACT):
+    if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
         yield f"{' and '.join(loads)} are not near each other"
     twins = {
         quantity.path: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
@@ -267,7 +267,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64
         body = plan.body.loaded(load)
         try:
             with method.at(task, np.unique(g[rows])) as solver:
-                solution = solver.states(g[rows], load)  # type: ignore[call-arg]
+                solution: Any = solver.states(g[rows], load)  # type: ignore[call-arg]
                 σ_YY = solution.surface.σ_YY
         except SolveError:
             continue

@@ -292,7 +292,7 @@ def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
     ids=["1e-2", "1e-3", "2e-4", "fibres"],
 )
 def test_degrees_converge_under_a_wedge_at_any_tolerance(tolerance, solid, c, mu, output):
-    """Cells at its tip are smaller than the distance from where it is looked at, and rings not too steep."""
+    """Cells at its tip are smaller than the distance from where it is looked at, and rings not steep."""
     wedge = 'profile = "wedge"\nslope = 0.0065'
     result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]

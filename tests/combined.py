@@ -99,7 +99,7 @@ _ODD = re.compile(r"/(f|g|centre|tangential_force|sigma_XY(_max|_min)?|\w+_posit
 _LENGTH, _MODULUS, _DENSITY = 1e-3, 70.0, 3.0
 _SPEED = (_MODULUS / _DENSITY) ** 0.5
 UNITS = {
-    "": 1.0, "1": 1.0, "deg": 1.0, "N/(2a)": 1.0, "none": 1.0,
+    "": 1.0, "1": 1.0, "deg": 1.0, "rad": 1.0, "N/(2a)": 1.0, "none": 1.0,
     "m": _LENGTH, "1/m": 1.0 / _LENGTH, "Pa": _MODULUS, "kg/m^3": _DENSITY, "m/s": _SPEED,
     "N/m": _MODULUS * _LENGTH, "s": _LENGTH / _SPEED, "J/m": _MODULUS * _LENGTH**2,
     "W/m": _MODULUS * _LENGTH * _SPEED, "N/m^2": _MODULUS,
@@ -142,8 +142,8 @@ class Case:
 
     @property
     def by_finite_elements(self):
-        """Do these solve it? Over layers their meshes follow no kink, and no edge that has lifted."""
-        return not self.layered or self.punch in ("flat", "tilted", "parabolic", *PRESSURE)
+        """Do these solve it? Over layers their meshes follow no kink, and no edge that may lift."""
+        return not self.layered or self.punch in ("flat", "parabolic", *PRESSURE)
 
     def text(self):
         """The scene in TOML."""
@@ -253,7 +253,7 @@ def answers(data):
     The exponents that are fitted to raw nodal forces say so, too.
     """
     sections = ("states", "surface", "interior", "interfaces")
-    quality = ("estimate", "error", "fem/alpha", "fem/beta", "slope_under")
+    quality = ("estimate", "error", "residual", "fem/alpha", "fem/beta", "slope_under")
     return {
         name: values
         for name, values in data.items()

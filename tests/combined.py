@@ -90,7 +90,12 @@ _TURNED = {"angle": True, "tilt": True, "stiffness": (2, 4), "stiffness_Z": (2,)
 
 #: Ends of datasets' names: of places over a, of what a mirror exchanges, of what changes its sign there.
 _PLACES = ("_over_a", "_position", "yield_depth", "reach_left", "reach_right", "centre")
-_SIDES = (("left", "right"), ("alpha", "beta"), ("sigma_XY_max", "sigma_XY_min"))
+_SIDES = (
+    ("left", "right"),
+    ("alpha", "beta"),
+    ("sigma_XY_max", "sigma_XY_min"),
+    ("flutter_positive", "flutter_negative"),
+)
 _OTHER = {one: other for pair in _SIDES for one, other in (pair, pair[::-1])}
 _SIDE = re.compile("|".join(_OTHER))
 _ODD = re.compile(r"/(f|g|centre|tangential_force|sigma_XY(_max|_min)?|\w+_position|\w*X_over_a)$")

@@ -90,7 +90,12 @@ _TURNED = {"angle": True, "tilt": True, "stiffness": (2, 4), "stiffness_Z": (2,)
 
 #: Ends of datasets' names: of places over a, of what a mirror exchanges, of what changes its sign there.
 _PLACES = ("_over_a", "_position", "yield_depth", "reach_left", "reach_right", "centre")
-_SIDES = (("left", "right"), ("alpha", "beta"), ("sigma_XY_max", "sigma_XY_min"))
+_SIDES = (
+    ("left", "right"),
+    ("alpha", "beta"),
+    ("sigma_XY_max", "sigma_XY_min"),
+    ("flutter_positive", "flutter_negative"),
+)
 _OTHER = {one: other for pair in _SIDES for one, other in (pair, pair[::-1])}
 _SIDE = re.compile("|".join(_OTHER))
 _ODD = re.compile(r"/(f|g|centre|tangential_force|sigma_XY(_max|_min)?|\w+_position|\w*X_over_a)$")
@@ -99,7 +104,7 @@ _ODD = re.compile(r"/(f|g|centre|tangential_force|sigma_XY(_max|_min)?|\w+_posit
 _LENGTH, _MODULUS, _DENSITY = 1e-3, 70.0, 3.0
 _SPEED = (_MODULUS / _DENSITY) ** 0.5
 UNITS = {
-    "": 1.0, "1": 1.0, "deg": 1.0, "N/(2a)": 1.0, "none": 1.0,
+    "": 1.0, "1": 1.0, "deg": 1.0, "rad": 1.0, "N/(2a)": 1.0, "none": 1.0,
     "m": _LENGTH, "1/m": 1.0 / _LENGTH, "Pa": _MODULUS, "kg/m^3": _DENSITY, "m/s": _SPEED,
     "N/m": _MODULUS * _LENGTH, "s": _LENGTH / _SPEED, "J/m": _MODULUS * _LENGTH**2,
     "W/m": _MODULUS * _LENGTH * _SPEED, "N/m^2": _MODULUS,
@@ -142,8 +147,8 @@ class Case:
 
     @property
     def by_finite_elements(self):
-        """Do these solve it? Over layers their meshes follow no kink, and no edge that has lifted."""
-        return not self.layered or self.punch in ("flat", "tilted", "parabolic", *PRESSURE)
+        """Do these solve it? Over layers their meshes follow no kink, and no edge that may lift."""
+        return not self.layered or self.punch in ("flat", "parabolic", *PRESSURE)
 
     def text(self):
         """The scene in TOML."""
@@ -253,7 +258,7 @@ def answers(data):
     The exponents that are fitted to raw nodal forces say so, too.
     """
     sections = ("states", "surface", "interior", "interfaces")
-    quality = ("estimate", "error", "fem/alpha", "fem/beta", "slope_under")
+    quality = ("estimate", "error", "residual", "fem/alpha", "fem/beta", "slope_under")
     return {
         name: values
         for name, values in data.items()

@@ -7,6 +7,7 @@ from typing import Any
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
 from galinx.app.extremes import friction_law, mechanics, resolution
+from galinx.app.extremes.all_kinds import all_kinds
 from galinx.app.extremes.random_scenes import random_scenes
 from galinx.app.extremes.row import Row
 from galinx.postprocess.target import ARCHIVE, Folder, Target
@@ -23,13 +24,15 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
 
     Args:
         folder: is made.
-        seed, scenes: random number seed and number of the random scenes.
+        seed, scenes: random number seed, and number of the random scenes of each of both rows.
 
     Raises:
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    makers: tuple[Callable[[], Row], ...] = (*ROWS, partial(random_scenes, seed, scenes))
+    makers: tuple[Callable[[], Row], ...] = (
+        *ROWS, partial(random_scenes, seed, scenes), partial(all_kinds, seed, scenes),
+    )  # fmt: skip
     target, rows = folder.target("stress.h5", ARCHIVE), []
     with Progress() as progress:
         for i, make in enumerate(makers):

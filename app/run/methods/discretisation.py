@@ -131,13 +131,15 @@ class Discretisation:
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:
-    """The plan with cells for a tighter tolerance, and twice as many in angle and outwards."""
+    """The plan with cells for a tighter tolerance, and twice as many in angle and in distance."""
     kind, wanted = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
     if isinstance(kind, OnLayers):
         return replace(plan, wanted=wanted, drawn=kind.drawn(wanted))
     rings = kind.refinement(wanted)
     columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
-    refinement = replace(rings, sectors=2 * rings.sectors, columns=columns)
+    refinement = replace(
+        rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
+    )
     return replace(plan, wanted=wanted, refinement=refinement)
 
 

@@ -16,6 +16,7 @@ from galinx.app.run.methods.kinked_displacement import KinkedDisplacement
 from galinx.app.run.methods.kinked_ends import Ends
 from galinx.app.run.methods.punch import negligible
 from galinx.meshes.kinks import with_kinks
+from galinx.meshes.rings import Refinement
 from galinx.postprocess.kinked_pressure import KinkedPressure, gaps_of
 from galinx.postprocess.pressure import chebyshev
 from galinx.postprocess.quantities.quantity import INTENSITIES
@@ -60,7 +61,19 @@ def places_of_kinks(body: Body, ends: Ends) -> NDArray[np.float64]:
     return inside
 
 
-def rings_around_kinks(plan: FemPlan, body: Body) -> int:
+def _gentle(plan: FemPlan) -> Refinement:
+    """The plan's refinement with rings no steeper than its mesh has them as a rule.
+
+    They are steeper where cells are finer in angle, which does at ends that are free: the pressure at a
+    kink is no power of the distance, and a ring that spans a fifth of it is slow to follow that.
+    """
+    rings, ratio = plan.refinement, plan.kind.ratio
+    if rings.ratio >= ratio:
+        return rings
+    return replace(rings, levels=ceil(rings.levels * log(rings.ratio) / log(ratio)), ratio=ratio)
+
+
+def rings_around_kinks(rings: Refinement, tolerance: float, body: Body) -> int:
     """How many more than around the ends.
 
     Next to a kink of the slope's derivative the pressure is d log d, and what the innermost cells make of
@@ -73,8 +86,8 @@ def rings_around_kinks(plan: FemPlan, body: Body) -> int:
         size = _OF_TIP * NEAR_TIP
     else:
         order = max((exponent(body.profile) or 2.0) - 1.0, 1.0)
-        size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
-    return max(0, ceil(log(size) / log(plan.refinement.ratio)) - plan.refinement.levels)
+        size = (_INNERMOST * tolerance) ** (1.0 / order)
+    return max(0, ceil(log(size) / log(rings.ratio)) - rings.levels)
 
 
 class OwnMeshes:
@@ -91,8 +104,9 @@ class OwnMeshes:
 
     def __init__(self, work: Discretisation, places: NDArray, body: Body) -> None:
         self._work, self._places, self._body, self.plan = work, places, body, work.plan
-        more = rings_around_kinks(work.plan, body)
-        self._mesh = work.own_mesh(with_kinks(work.plan.refinement, places, more))
+        rings = _gentle(work.plan)
+        more = rings_around_kinks(rings, work.plan.tolerance, body)
+        self._mesh = work.own_mesh(with_kinks(rings, places, more))
 
     @cached_property
     def finer(self) -> "OwnMeshes":

@@ -1,23 +1,38 @@
+import re
+from itertools import islice
+
 import h5py
 import numpy as np
 import pytest
 
-from galinx.app.extremes import friction_law, matrix, mechanics, random_scenes, resolution
+from galinx.app.extremes import all_kinds, friction_law, matrix, mechanics, random_scenes, resolution
+from galinx.app.extremes.all_kinds import Judged
 from galinx.app.extremes.random_scenes import Ratios
 from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
 from galinx.app.scene.read import parse
 from galinx.postprocess.target import Folder
+from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids import SOLIDS
 
 
 def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(
         matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
     )
+    monkeypatch.setattr(matrix, "all_kinds", lambda seed, _: all_kinds.all_kinds(seed, 1))
     assert matrix.stress(Folder(tmp_path), scenes=4)
     printed = capsys.readouterr().out
     assert "verdict: PASS" in printed and "FAILS" not in printed
     names = {path.name for path in tmp_path.iterdir()}
-    assert {"stress.h5", "dahl.pdf", "dahl.png", "runge_kutta.png", "degree.png", "random.png"} <= names
+    assert {
+        "stress.h5",
+        "dahl.pdf",
+        "dahl.png",
+        "runge_kutta.png",
+        "degree.png",
+        "random.png",
+        "kinds.png",
+    } <= names
     with h5py.File(tmp_path / "stress.h5") as file:
         assert file.attrs["verdict"] == "PASS" and len(file["degree/x"]) == 10
         assert file["dahl/x"].attrs["units"] == "1"
@@ -30,6 +45,7 @@ def test_a_broken_promise_fails(tmp_path, capsys, monkeypatch):
     )
     monkeypatch.setattr(matrix, "ROWS", (lambda: broken,))
     monkeypatch.setattr(matrix, "random_scenes", lambda *_: kept)
+    monkeypatch.setattr(matrix, "all_kinds", lambda *_: kept)
     assert not matrix.stress(Folder(tmp_path), scenes=4)
     printed = capsys.readouterr().out
     assert "FAILS  worse" in printed and "holds  worse" in printed and "verdict: FAIL" in printed
@@ -77,3 +93,39 @@ def test_estimates_are_bounds_and_tight(found, holds):
 
     assert good(found, found, found) == holds
     assert not good(found, found, [*found, 101.0]) and not good(found, found, found, [0.9])
+
+
+def test_scenes_of_all_kinds_are_those_of_their_seed():
+    def drawn(seed):
+        return list(islice(all_kinds.scenes(seed), 60))
+
+    texts = drawn(5)
+    assert texts == drawn(5) != drawn(6)
+    for name in (*PROFILES, *SOLIDS):
+        assert any(f'= "{name}"' in text for text in texts), name
+    assert any("[[layer]]" in text and "to = {" in text for text in texts)
+    assert all(parse(text) for text in texts)
+
+
+@pytest.mark.parametrize(
+    "below, alone, holds",
+    [(0, 0, (True, True)), (1, 0, (False, True)), (0, 3, (True, True)), (0, 4, (True, False))],
+)
+def test_scenes_of_all_kinds_are_counted(below, alone, holds):
+    found = [Judged("", True, False, {"estimate": 0.9}) for _ in range(below)]
+    found += [Judged("", False, True, {"estimate": 3.0}) for _ in range(alone)]
+    found += [Judged("", False, False, {"estimate": 0.1})]  # what FAILs says so already
+    found += [Judged("", True, False, {"estimate": 2.0, "estimate inside": 5.0})] * (100 - len(found))
+    made = all_kinds.row(found, 1)
+    assert tuple(verdict.holds for verdict in made.verdicts) == holds
+    assert f"{below} of 100" in made.verdicts[0].text and f"{alone} of 100" in made.verdicts[1].text
+
+
+def test_what_the_verdict_compares_judges_the_estimates():
+    """A box's walls are seen by its estimate; at a tolerance that they do not allow all FAILs."""
+    text = next(text for text in all_kinds.scenes(0) if '"isotropic"' in text and '"flat"' in text)
+    text = re.sub(r"tilt = .*", "tilt = 0.0", re.sub(r"tolerance = .*", "tolerance = 1e-3", text))
+    boxed = re.sub(r"mesh = .*", 'mesh = "box"', text)
+    good, bad = all_kinds.judged(text), all_kinds.judged(boxed)
+    assert good.passed and not good.alone and min(good.ratios.values()) >= 1.0
+    assert not bad.passed and not bad.below

@@ -13,6 +13,8 @@ from galinx.solvers.fem.surface import SurfaceTrace
 
 #: Points of a facet's rule beyond those for products of shapes: the weight next door is no polynomial.
 _MORE = 12
+#: Distance over a from a place to either side of it: more than that within which facets are one.
+_BESIDE = 1e-8
 
 
 class SurfaceInTime:
@@ -31,9 +33,10 @@ class SurfaceInTime:
         self._degree = motion.space.degree
 
     def strain(self, u: NDArray) -> NDArray[np.float64]:
-        """μ u,X over N/(2a) of displacements (unknowns,): (n,)."""
+        """μ u,X over N/(2a) of displacements (unknowns,): (n,); between two cells the mean of both."""
         trace = SurfaceTrace(self._s, u.reshape(-1, 2)[self._nodes][..., None])
-        return trace.derivative(self.X)[:, 0, 0]
+        left, right = (trace.derivative(self.X + beside)[:, 0, 0] for beside in (-_BESIDE, _BESIDE))
+        return np.asarray((left + right) / 2.0)
 
     def pressure(self, forces: NDArray, α: float, β: float) -> NDArray[np.float64]:
         """σ_YY over N/(2a), 0 beside the punch: the weight (1 - X)^α (1 + X)^β times what shapes tell.

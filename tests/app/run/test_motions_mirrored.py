@@ -120,8 +120,7 @@ def alike(one, other, accuracy):
         if path.endswith("estimate"):
             size = 1.0  # a difference of what is compared here
         np.testing.assert_array_equal(np.isnan(values), np.isnan(other[path]), err_msg=path)
-        # On the boundary of two cells u,X is that of the right one: as far apart as the solution is off.
-        atol = (1e-5 if path == "time/surface/fem/sigma_XX" else accuracy) * size + 1e-12
+        atol = accuracy * size + 1e-12
         np.testing.assert_allclose(other[path], values, rtol=0.0, atol=atol, err_msg=path)
 
 

@@ -66,7 +66,13 @@ def test_both_methods_agree(case, archived, request):
 
 @pytest.mark.parametrize(
     "case, method, word",
-    [(case, method, word) for case in ALONE for method in case.methods for word in case.words],
+    [
+        (case, method, word)
+        for case in ALONE
+        for method in case.methods
+        for word in case.words
+        if method != "fem" or case.by_finite_elements
+    ],
     ids=str,
 )
 def test_asking_for_less_changes_no_number(case, method, word, archived):
@@ -104,7 +110,7 @@ def test_it_has_a_page_and_fields_or_says_why_not(case, archived):
     done = here("report", path.name, "--overwrite", cwd=path.parent)
     assert done.returncode == 0, done.stderr
     page = path.with_suffix(".html").read_text(encoding="utf-8")
-    assert page.count("<svg") > 2 and "Traceback" not in page
+    assert page.rstrip().endswith("</html>") and "verdict" in page and "<svg" in page
     done = here("fields", path.name, "--overwrite", "--extent", 2, cwd=path.parent)
     scene = galinx.load(path).scene
     refusals = {

@@ -165,7 +165,8 @@ class MeasuredError:
             bool((one & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
             for name, one in wrong.items()
         )
-        self.worst, self._tolerance = max(float(error.max()) for error in errors.values()), tolerance
+        self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
+        self._tolerance = tolerance
 
     def told(self) -> "MeasuredError":
         """Itself; a warning says where the tolerance is not reached."""

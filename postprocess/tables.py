@@ -245,8 +245,13 @@ def sliders_sheet(data: dict[str, Any]) -> Sheet:
     return Sheet("Motion of the slider", heads, rows, ["peak, least: of the velocity in the last cycle"])
 
 
-def starts_sheet(data: dict[str, Any]) -> Sheet:
-    """Where the first starts have come to at the end, by the better method that there is."""
+def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
+    """Where the first starts have come to at the end, by the better method that there is.
+
+    Args:
+        data: datasets by path.
+        unit: a/c_s [s].
+    """
     title = "In time, at the end"
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
@@ -254,16 +259,52 @@ def starts_sheet(data: dict[str, Any]) -> Sheet:
     c, g, steady = (
         data[row.path][:LIMIT] for row in (over_time.SPEED, over_time.RATIO, over_time.STEADY_CENTRE)
     )
+    ways = ["-+"[way > 0.0] + "X" for way in data[over_time.DIRECTION.path][:LIMIT, -1]]
     by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
     last = [data[row[method].path][:LIMIT, -1] for row in by_method]
     off, near = data[to_steady.OFF[method].path], data[to_steady.WITHIN[method].path][:, 1]
-    columns = [values[:LIMIT].tolist() for values in (c, g, *last, steady, 100.0 * off, near)]
-    rows = [[f"{value:.6g}" for value in row] for row in zip(*columns)]
-    heads = ["c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady centre/a"]
-    heads += ["off steady (%)", "within 1 % from (a/c_s)"]
+    columns = [values[:LIMIT].tolist() for values in (c, g, *last, steady, 100.0 * off)]
     end = data[over_time.TIMES.path][-1]
+    rows = [
+        [
+            way,
+            *(_known(value, 5) for value in row),
+            _known(far, 3),
+            _when(seen, end, unit),
+            _rounded(by_formula, unit),
+        ]
+        for way, *row, far, seen, by_formula in zip(ways, *columns, near, data[to_steady.APPROACH.path])
+    ]
+    heads = ["way", "c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady"]
+    heads += ["off (%)", "within 1 % from", "by formula"]
     notes = [
-        f"at t = {end:g} a/c_s; centre: of the pressure, towards +X",
-        "off steady: K_I and centre, the largest difference; within 1 %: of both, by 1/t after the end",
+        f"at t = {end:g} a/c_s = {_seconds(end * unit)}; centre: of the pressure, towards +X",
+        "steady: centre in steady motion",
+        "off: K_I and centre, the largest difference from steady motion",
+        "within 1 %: of both, over a/c_s; ~ by 1/t after the end",
+        "by formula: for late times, of uniform solids, over a/c_s",
     ]
     return Sheet(title, heads, rows, notes)
+
+
+def _known(value: float, digits: int) -> str:
+    return "" if isnan(value) else f"{value:.{digits}g}"
+
+
+def _when(time: float, end: float, unit: float) -> str:
+    """A time over a/c_s: as it was met by the end, or about."""
+    if isnan(time):
+        return "too short to tell"
+    return f"{time:.3g} ({_seconds(time * unit)})" if time <= end else f"~ {_rounded(time, unit)}"
+
+
+def _rounded(time: float, unit: float) -> str:
+    """A time over a/c_s that is known to two digits."""
+    return "" if isnan(time) else f"{float(f'{time:.1e}'):g} ({_seconds(time * unit, 2)})"
+
+
+def _seconds(seconds: float, digits: int = 3) -> str:
+    for size, name in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if seconds >= size:
+            return f"{float(f'{seconds / size:.{digits - 1}e}'):g} {name}"
+    return f"{float(f'{seconds / 1e-9:.{digits - 1}e}'):g} ns"

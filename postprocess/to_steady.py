@@ -10,6 +10,10 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities import to_steady as of
 from galinx.postprocess.quantities.to_steady import SHARES
 
+#: How much the distance times the time may change over the second half of a motion that comes to steady
+#: motion like 1/t.
+_ALIKE = 0.1
+
 
 def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
     """Largest difference of K_I over that of steady motion, and of the centre over a, (starts, times).
@@ -27,7 +31,8 @@ def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     """Times from which on starts are within ``SHARES`` of steady motion, (starts, shares).
 
     Where that is later than the last time what is left is taken to fall like 1/t from there on, t from
-    when the load was half.
+    when the load was half, if it does so to a tenth in the second half of that time; else it is NaN:
+    too little of the motion is known.
 
     Args:
         t: times over a/c_s, (times,).
@@ -37,12 +42,15 @@ def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     lacks, steps = np.concatenate([[1.0], 1.0 - load]), np.diff(t, prepend=0.0)
     begun = float(steps @ (lacks[1:] + lacks[:-1])) / 2.0
     found = np.empty((len(off), len(SHARES)))
+    tail, since = t >= (begun + t[-1]) / 2.0, t - begun
     for i, one in enumerate(off):
+        left = since[tail] * one[tail]
+        like = np.isfinite(left).all() and np.ptp(left) <= _ALIKE * left[-1]
         for n, share in enumerate(SHARES):
             far = np.flatnonzero(one > share)
             last = int(far[-1]) if len(far) else -1
             if last == len(t) - 1:
-                found[i, n] = begun + (t[-1] - begun) * one[-1] / share
+                found[i, n] = begun + left[-1] / share if like else np.nan
             elif last < 0:
                 found[i, n] = t[0]
             else:

@@ -39,8 +39,9 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
             states = states_sheet(data, attributes["title"], scaled)
+            unit = attributes["half_width"] / attributes["c_s"]
             friction = inner_sheet(data), loops_sheet(data), sliders_sheet(data)
-            sheets = states, *friction, starts_sheet(data), limits_sheet(data, scaled)
+            sheets = states, *friction, starts_sheet(data, unit), limits_sheet(data, scaled)
             print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
             print_warnings(attributes)
     return errors.GOOD

@@ -53,7 +53,14 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         Interface(i, float(reach[i]), f"$Y = {number(-depths[i])}\\,{unit}$")
         for i in spread(range(len(depths)), max(1, int(width / _LEAST)))
     ]
-    figure = interfaces_figure(data[ALONG_X.path], _rows(data, choice), columns, curves, choice.size)
+    figure = interfaces_figure(
+        data[ALONG_X.path],
+        _rows(data, choice),
+        columns,
+        curves,
+        choice.size,
+        choice.frames(some.tolist()),
+    )
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
         "sides share, and in-plane stress, which jumps."

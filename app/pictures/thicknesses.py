@@ -62,7 +62,7 @@ def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         with suppress(SolveError):
             if c < body.solid.limit():
                 row[:] = _at(body, c, steepest)
-    titles = _SHOWN
+    titles: tuple[str, ...] = _SHOWN
     if choice.in_si:
         found[:, 2:] *= 1e-6 * scene.body.stress
         titles = tuple(title.replace("/(N/2a)$", "$ [MPa]") for title in _SHOWN)

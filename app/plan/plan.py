@@ -1,6 +1,6 @@
 """Which work a scene needs, derived from the outputs it asks for."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -67,6 +67,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, known.speeds, "fem" in methods)]
+    warnings += _left_out(scene, body, methods)
     friction = enumerate_states(scene, done) if "fem" in methods or scene.time else None
     fem = None
     if "fem" in methods:
@@ -112,6 +113,14 @@ def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
         return ()
     wanted = dict.fromkeys(scene.solve.methods)
     return tuple(name for name in wanted if not METHODS[name].refusal(scene, body, None))
+
+
+def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[str]:
+    """Methods that the scene names and that do not solve it; the others' answers stand alone."""
+    for name in dict.fromkeys(scene.solve.methods if methods else ()):
+        kind = METHODS[name]
+        if name not in methods and (body.layered or not kind.of_layers):
+            yield f"solve.methods: {name} does not solve this: {kind.refusal(scene, body, None)}"
 
 
 def _quantities(

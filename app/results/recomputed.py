@@ -26,7 +26,7 @@ from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
 from galinx.postprocess.hdf5.reader import Archive
 from galinx.postprocess.quantities import QUANTITIES, Quantity, runs, states, stresses, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, FOUND, LOCAL, SIE, STATE
+from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, FOUND, LOCAL, SIE, STATE
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import smooth
 from galinx.solvers.sie.indentation import indentation, places
@@ -104,7 +104,12 @@ def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], lis
     for method in (CLOSED_FORM, SIE):
         if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
             continue
-        own = [quantity for quantity in plan.quantities if quantity.of and quantity.method == method]
+        # Residuals may be rounding alone; comparisons have them.
+        own = [
+            quantity
+            for quantity in plan.quantities
+            if quantity.of and quantity.method == method and quantity.mode != ALONE
+        ]
         if method == CLOSED_FORM:
             own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
         methods = (method,) if method in plan.methods else ()
@@ -206,7 +211,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
     if states.INDENTATION.path in data and fem.terms and not body.pressure:
         yield from _of_indentations(data, plan, some)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
-    if all(path in data for path in loads) and not _near(*(data[path] for path in loads), _FROM_EXACT):
+    if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
         yield f"{' and '.join(loads)} are not near each other"
     twins = {
         quantity.path: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
@@ -262,7 +267,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64
         body = plan.body.loaded(load)
         try:
             with method.at(task, np.unique(g[rows])) as solver:
-                solution = solver.states(g[rows], load)  # type: ignore[call-arg]
+                solution: Any = solver.states(g[rows], load)  # type: ignore[call-arg]
                 σ_YY = solution.surface.σ_YY
         except SolveError:
             continue

@@ -85,7 +85,7 @@ class Report:
     def text(self) -> str:
         """The page."""
         attributes, data, scene = self._attributes, self._data, self._scene
-        seconds = data[runs.SECONDS.path]
+        seconds, unit = data[runs.SECONDS.path], attributes["half_width"] / attributes["c_s"]
         longest = max(float(seconds.max()), 1e-9)
         content = {
             "title": attributes["title"] or "A sliding punch",
@@ -94,7 +94,7 @@ class Report:
             "warnings": json.loads(attributes["warnings"]),
             "answers": answers(data, scene),
             "reasons": json.loads(attributes["verdict_reasons"]),
-            "starts": [sheet for sheet in (starts_sheet(data),) if sheet.rows],
+            "starts": [sheet for sheet in (starts_sheet(data, unit),) if sheet.rows],
             "sheets": self._sheets,
             "states": states_table(data, self._scaling),
             "curves": curves(data, self._scaling),

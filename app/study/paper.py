@@ -66,6 +66,9 @@ _TERMS = 8
 #: Degree of the displacements that are printed with four digits, and of what both assemblers compute.
 _DEGREE, _ASSEMBLED = 7, 6
 
+#: What that degree is asked for: only how far both assemblers are apart is read off.
+_TOLERANCE = 1e-3
+
 
 @dataclass(frozen=True)
 class Check:
@@ -144,8 +147,9 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         memory = Memory()
         results.append(Computed(scene, memory, compute(scene, memory, progress)))
     methods, checks = _judged(*results)
+    failed = sum(one.attributes["verdict"] != "PASS" for one in results)
+    checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
     good = all(check.good for check in checks)
-    good = good and all(one.attributes["verdict"] == "PASS" for one in results)
     decided = statements_sheet(statements(study.data, study.solid))
     tables = [*_tables(study), methods]
     details = [*_details(study), _displacements(study)]
@@ -218,7 +222,9 @@ def _beside() -> list[Scene]:
     tables = scenes.read(SCENES / "tables4_5.toml")
     motion, output = replace(tables.motion, c=(FAST,)), replace(tables.output, quantities=("sif",))
     for name in ASSEMBLERS:
-        solve = replace(tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name)
+        solve = replace(
+            tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name, tolerance=_TOLERANCE
+        )
         found.append(replace(tables, motion=motion, solve=solve, output=output))
     return found
 

@@ -1,9 +1,13 @@
 """Sheets of panels in inches, and how they become files or text."""
 
+import os
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from io import BytesIO
 from math import ceil
+from multiprocessing import get_context
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
@@ -25,6 +29,9 @@ FORMATS: dict[str, tuple[str, Kind]] = {
 
 #: Formats where none is asked for: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
+
+#: Figures from which on a process of its own draws a format sooner.
+_WORTH_A_PROCESS = 4
 
 #: Least size of a panel in which something can be seen [in].
 _LEAST = 0.35
@@ -196,17 +203,52 @@ def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, byt
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    figures = list(figures)
-    made = {
-        (name, ending): content(figure, ending)
-        for ending in USUAL  # one after the other: matplotlib keeps typeset formulas, not for both
-        for name, figure in figures
-    }
+    made = _in_usual_formats(dict(figures))
     write(
         (folder.target(f"{name}.{ending}", FORMATS[ending][1]), data)
-        for (name, ending), data in made.items()
+        for ending, contents in made.items()
+        for name, data in contents.items()
     )
-    return {name: data for (name, ending), data in made.items() if ending == "png"}
+    return made["png"]
+
+
+def _in_usual_formats(figures: Mapping[str, Figure]) -> dict[str, dict[str, bytes]]:
+    """Contents of figures by format and name, each format on a core of its own where there is one.
+
+    The other process is a copy of this one, so that no figure has to be handed over. It meets neither
+    files nor MPI.
+    """
+    first, *others = USUAL
+    cores = len(os.sched_getaffinity(0))
+    # So many pages are drawn in the time that a process takes.
+    if cores < len(USUAL) or len(figures) < _WORTH_A_PROCESS:
+        return {ending: _contents(figures, ending) for ending in USUAL}
+    made: dict[str, dict[str, bytes]] = {}
+    with ProcessPoolExecutor(len(others), get_context("fork"), _inherit, (figures,)) as pool:
+        drawn = {ending: pool.submit(_inherited_contents, ending) for ending in others}
+        made[first] = _contents(figures, first)
+        for ending, future in drawn.items():
+            try:
+                made[ending] = future.result()
+            except BrokenProcessPool:  # somebody ended it
+                made[ending] = _contents(figures, ending)
+    return made
+
+
+def _contents(figures: Mapping[str, Figure], ending: str) -> dict[str, bytes]:
+    return {name: content(figure, ending) for name, figure in figures.items()}
+
+
+#: The figures of the process that this one is a copy of.
+_inherited: dict[str, Figure] = {}
+
+
+def _inherit(figures: Mapping[str, Figure]) -> None:
+    _inherited.update(figures)
+
+
+def _inherited_contents(ending: str) -> dict[str, bytes]:
+    return _contents(_inherited, ending)
 
 
 def write(files: Iterable[tuple[Target, bytes]]) -> None:

@@ -56,6 +56,7 @@ def interfaces_figure(
     interfaces: Sequence[Interface],
     curves: Sequence[Curve],
     size: Size | None = None,
+    frames: Sequence[tuple[float, float]] = (),
 ) -> Figure:
     """Stresses along interfaces: a row for each stress, a column for each interface.
 
@@ -65,6 +66,8 @@ def interfaces_figure(
         interfaces: of which interfaces.
         curves: of which states.
         size: of the figure.
+        frames: half-width and middle [mm] of each state's contact, from whose punch's axis positions are
+            drawn; over a for none.
     """
     size = size or Size(COLUMN if len(interfaces) == 1 else PAGE)
     methods = {method for row in rows for side in row.sides for method in side}
@@ -80,33 +83,42 @@ def interfaces_figure(
     figure, axes = panels(len(rows), len(interfaces), size, 0.6, room)
     for row, line in zip(axes, rows):
         for axis, interface in zip(row, interfaces):
-            _draw(axis, X, line, interface, curves)
+            _draw(axis, X, line, interface, curves, frames or [(1.0, 0.0)] * len(curves))
         row[0].set_ylabel(line.label)
     for axis in axes[-1]:
-        axis.set_xlabel("position along the interface $X/a$")
+        axis.set_xlabel(f"position along the interface {'$X$ [mm]' if frames else '$X/a$'}")
     lettered(axes.flat, [interface.title for interface in interfaces])
     figure.align_ylabels(axes[:, 0])
     legend.put(figure)
     return figure
 
 
-def _draw(axis: Axes, X: NDArray, row: Row, interface: Interface, curves: Sequence[Curve]) -> None:
+def _draw(
+    axis: Axes, X: NDArray, row: Row, interface: Interface, curves: Sequence[Curve],
+    frames: Sequence[tuple[float, float]],
+) -> None:  # fmt: skip
     half = max(_OVER_A, _OVER_DEPTH * interface.depth)
-    seen = np.abs(X) <= half
-    axis.axvspan(-1.0, 1.0, color="#F2F2F2", linewidth=0.0, zorder=-1)
+    low, high = (
+        min(centre - half * a for a, centre in frames),
+        max(centre + half * a for a, centre in frames),
+    )
+    for a, centre in sorted(set(frames)):
+        axis.axvspan(centre - a, centre + a, color="#F2F2F2", linewidth=0.0, zorder=-1)
     axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
     for side, line in zip(row.sides, _SIDES):
-        for n, curve in enumerate(curves):
+        for n, (curve, (a, centre)) in enumerate(zip(curves, frames)):
             values = {method: found[curve.state, interface.number] for method, found in side.items()}
             drawn = next(iter(values.values()))
-            axis.plot(X[seen], drawn[seen], color=curve.look.colour, linestyle=line)
+            x = centre + a * X
+            seen = (x >= low) & (x <= high)
+            axis.plot(x[seen], drawn[seen], color=curve.look.colour, linestyle=line)
             if len(values) > 1:
                 # Those of one curve stand between those of the others.
                 step = 2.0 * half / _MARKERS
                 wanted = -half + step * (np.arange(_MARKERS) + (n + 0.5) / len(curves))
                 pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
                 axis.plot(
-                    X[pick], values[FEM][pick], curve.look.marker, color=curve.look.colour,
+                    x[pick], values[FEM][pick], curve.look.marker, color=curve.look.colour,
                     markerfacecolor="none",
                 )  # fmt: skip
-    axis.set_xlim(-half, half)
+    axis.set_xlim(low, high)

@@ -25,7 +25,8 @@ WITHIN = {
     method: Quantity(
         f"time/{method}/steady_within", "a/c_s",
         "time from which on that is at most 0.1, 0.01 and 0.001; where it is later than the last of "
-        f"/time/t what is left is taken to fall like 1/t, {told}",
+        "/time/t what is left is taken to fall like 1/t if it does so in the second half of the motion, "
+        f"NaN where that is too short to tell, {told}",
         (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
     for method, told in _HOW.items()

@@ -177,8 +177,8 @@ class SlidingPunch(Punch):
                 space.take(field, forces @ space.last)
             return
         loads = self._tangential([space.last for space in spaces])
-        found, forces = self._answers(loads, [space.refines for space in spaces])
-        for space, field, of_field in zip(spaces, found, forces):
+        solved, reactions = self._answers(loads, [space.refines for space in spaces])
+        for space, field, of_field in zip(spaces, solved, reactions):
             space.take(field, of_field)
 
     def _of_nodes(self, refines: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

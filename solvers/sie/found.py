@@ -186,8 +186,8 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if isinstance(group.pressure, Weighted):
         place = (group.β - group.α) / (group.β + group.α)
         return -group.pressure.σ_YY(place[:, None])[:, 0], place
-    value, place = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
-    return np.array([value]), np.array([place])
+    top, at = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
+    return np.array([top]), np.array([at])
 
 
 def largest(
@@ -205,7 +205,7 @@ def largest(
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    found = [_nearer(pressure, *r[[i - 1, i + 1]]) for i in tops.tolist()]
+    found = [_nearer(pressure, r[i - 1], r[i + 1], places) for i in tops.tolist()]
     if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
         for at in places:
             near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
@@ -213,8 +213,10 @@ def largest(
     return max(found)
 
 
-def _nearer(pressure: Callable[[NDArray], NDArray], low: float, high: float) -> tuple[float, float]:
-    """The largest pressure between two places, and where; a parabola at last."""
+def _nearer(
+    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float]
+) -> tuple[float, float]:
+    """The largest pressure between two places, and where; a parabola at last, if there is no kink."""
     for _ in range(_ROUNDS):
         r = np.linspace(low, high, _BETWEEN)
         p = pressure(r)
@@ -223,6 +225,8 @@ def _nearer(pressure: Callable[[NDArray], NDArray], low: float, high: float) -> 
         low, high = r[i] - step, r[i] + step
         if step < 1e-6:  # next to a kink the largest pressure may have a cusp
             break
+    if any(low <= at <= high for at in kinks):
+        return float(p.max()), float(r[p.argmax()])
     left, middle, right = p[i - 1 : i + 2]
     bend = left - 2.0 * middle + right
     u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0

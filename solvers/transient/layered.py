@@ -167,7 +167,7 @@ class Echoes:
             starts[1::2] += length
             if not len(starts):
                 break
-        return found / (2.0 * pi)
+        return np.asarray(found / (2.0 * pi), dtype=np.complex128)
 
     def _values(self, k: NDArray, s: complex) -> NDArray[np.complex128]:
         """Displacements by tractions less those of the uniform solid, (4, n)."""

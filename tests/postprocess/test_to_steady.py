@@ -15,6 +15,14 @@ def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
     np.testing.assert_allclose(found[1], [t[0], np.log(5.0), np.log(50.0)], rtol=1e-2)
 
 
+def test_what_does_not_fall_like_1_over_t_yet_is_not_told():
+    """Short of its steady lean, past it, or on the way through it: nothing is known of later times."""
+    t = np.linspace(0.1, 8.0, 80)
+    load = np.clip(t / 3.0, 0.0, 1.0)
+    off = np.array([0.6 - 0.02 * t, 0.3 + 0.0 * t, 0.5 - t / 25.0])
+    assert np.isnan(within(t, load, off)).all()
+
+
 def test_where_K_I_cannot_be_told_nothing_is_near():
     nan = np.full((1, 3), np.nan)
     data = {

@@ -150,7 +150,7 @@ class FoundPunches(Punches):
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
         profile = self.at.task.body.profile
         if self.tips.shape[1] or not self.free.all():
-            finite = self.free.all(axis=1) & np.isinf(self.tips).all(axis=1)
+            finite = np.asarray(self.free.all(axis=1) & np.isinf(self.tips).all(axis=1))
             value, place = self._largest if finite.any() else np.zeros((2, len(finite)))
             return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
         if not len(kinks(profile)):

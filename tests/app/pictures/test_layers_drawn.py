@@ -12,6 +12,7 @@ from galinx.app.errors import BadInput
 from galinx.app.pictures import thicknesses
 from galinx.app.pictures.choice import Choice, size
 from galinx.app.results.drawings import names, of_archive
+from galinx.app.results.si import drawn_in_si
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
 
@@ -171,3 +172,24 @@ def test_where_the_equation_has_no_answer_curves_have_a_gap(monkeypatch):
     (line,) = curves(drawn(here, "thicknesses").figure.axes[3])
     assert np.isnan(line.get_ydata()[0]) and set(line.get_ydata()[1:].tolist()) == {3.0}
     assert line.get_xdata() == pytest.approx(np.array(found) / here.scene.body.half_width)
+
+
+def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
+    """Under two loads a cylinder's contact has two widths: over X/a curves could not be compared."""
+    changes = {
+        "punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "50 mm",
+        "punch.load": [2e4, 8e4], "motion.X_over_L": [0.5], "motion.strokes": ["forward"],
+        "friction.mu_c": 0.3, "output.quantities": ["sif", "interfaces"], "output.map": None,
+    }  # fmt: skip
+    result = computed("coating", {"solve.methods": ["sie"]} | changes)
+    data, load = result.data, np.array([2e4, 8e4])
+    h, m = (data[f"states/sie/{name}"] for name in ("half_width", "centre"))
+    axes = drawn(result, "interfaces", **drawn_in_si(data, result.scene)).figure.axes
+    axis = axes[0]
+    X = data["interfaces/X_over_a"]
+    assert "[mm]" in axes[-1].get_xlabel()
+    for state, line in enumerate(curves(axis)):
+        stress = 1e-6 * data["interfaces/sie/sigma_YY"][state, 0] * load[state] / (2.0 * h[state])
+        found = np.interp(line.get_xdata(), 1e3 * (m[state] + h[state] * X), stress)
+        np.testing.assert_allclose(line.get_ydata(), found, rtol=1e-9)
+        assert len(line.get_xdata()) > 50

@@ -290,3 +290,72 @@ def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
     for options in ([], ["--si"]):
         plot.main([str(tmp_path / "a.h5"), *options], standalone_mode=False)
     assert units == [0.0, pytest.approx(27.65)]
+
+
+ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantities": ["sif"]}
+
+
+def test_contacts_of_several_widths_are_compared_in_units():
+    """The pressure under a cylinder falls with speed; over N/(2a), with a of every state, it rose."""
+    result = computed("cylinder", ROUND)
+    h, p = (result.data[f"states/closed_form/{name}"] for name in ("half_width", "largest_pressure"))
+    pressure = 1e-6 * p * result.scene.punch.load / (2.0 * h)
+    axes = drawn(result, "parameters").figure.axes
+    (axis,) = (axis for axis in axes if axis.get_ylabel().startswith("largest contact pressure"))
+    assert r"[\mathrm{MPa}]" in axis.get_ylabel()
+    values = np.concatenate([line.get_ydata() for line in curves(axis)])
+    assert np.isclose(values[:, None], pressure, rtol=1e-14).any(axis=1).all()
+    assert values.max() == pytest.approx(pressure.max(), rel=1e-14)
+    assert all((np.diff(line.get_ydata()) < 0.0).all() for line in curves(axis))
+    assert not any("N/(2a)" in axis.get_ylabel() or "over $a$" in axis.get_ylabel() for axis in axes)
+
+
+@pytest.mark.parametrize("profile", ["parabolic", "wedge", "tilted", "flat"])
+def test_angles_are_of_the_archives_own_punch(profile):
+    """Each panel at the archive's angle has what the archive has, and radii begin at 0."""
+    given = {
+        "parabolic": {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"},
+        "wedge": {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005},
+        "tilted": {"punch.tilt": "0.01 deg"},
+        "flat": {},
+    }[profile]
+    fibres = {"solid.material": "carbon-epoxy", "solid.angle": "30 deg", "motion.c": [0.3]}
+    result = computed("tables4_5", ROUND | fibres | given | {"motion.strokes": ["forward"]})
+    drawing = drawn(result, "angles", size=size("85mm"))
+    g, axes = result.data["states/g"], drawing.figure.axes
+    state = int(np.argmax(np.abs(g)))
+    held = {name: result.data.get(f"states/closed_form/{name}", np.full(len(g), np.nan))[state]
+            for name in ("half_width", "largest_pressure", "K_I_left", "K_I_right")}  # fmt: skip
+    unit = 1e-6 * result.scene.punch.load / (2.0 * held["half_width"])
+    expected = {
+        "half-width [mm]": 1e3 * held["half_width"],
+        "largest pressure [MPa]": unit * held["largest_pressure"],
+        "$K_I$": held["K_I_right"] if profile == "flat" else np.nan,
+    }
+    titles = {axis.get_title(loc="left").partition(")")[2].strip(): axis for axis in axes}
+    shown = {
+        "parabolic": {"half-width [mm]", "largest pressure [MPa]", "largest tension [MPa]"},
+        "wedge": {"half-width [mm]", "largest tension [MPa]"},
+        "tilted": {"half-width [mm]", "largest tension [MPa]", "$K_I$"},
+        "flat": {"$-\\alpha$, $-\\beta$", "$K_I$"},
+    }[profile]
+    assert titles.keys() == {"speed limit [m/s]"} | shown
+    for title, axis in titles.items():
+        assert axis.get_ylim()[0] == 0.0
+        line = axis.lines[0]
+        (value,) = line.get_ydata()[np.isclose(line.get_xdata(), np.deg2rad(30.0))]
+        if np.isfinite(expected.get(title, np.nan)):
+            np.testing.assert_allclose(value, expected[title], rtol=1e-9)
+
+
+def test_the_mesh_of_layers_is_drawn_where_it_is():
+    """A line along the interface, and as many cells as the archive says."""
+    changes = {"solve.methods": ["fem"], "output.quantities": ["sif"], "output.map": None}
+    more = {"motion.X_over_L": [0.5], "motion.strokes": ["forward"]}
+    result = computed("coating", changes | more)
+    drawing = drawn(result, "mesh")
+    assert f"the {int(result.data['run/fem/cells'][0])} cells" in drawing.caption
+    depth = result.scene.layers[0].thickness / result.scene.body.half_width
+    lines = np.concatenate([path.vertices for path in drawing.figure.axes[0].collections[0].get_paths()])
+    assert np.isclose(lines[:, 1], -depth, rtol=1e-12).any()
+    assert all(len(axis.collections[0].get_paths()) > 4 for axis in drawing.figure.axes)

@@ -292,7 +292,7 @@ def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
     ids=["1e-2", "1e-3", "2e-4", "fibres"],
 )
 def test_degrees_converge_under_a_wedge_at_any_tolerance(tolerance, solid, c, mu, output):
-    """Cells at its tip are smaller than the distance from where it is looked at, and rings not steep."""
+    """Cells at its tip are smaller than the nearest distance looked at, and rings not too steep."""
     wedge = 'profile = "wedge"\nslope = 0.0065'
     result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
@@ -354,7 +354,7 @@ def test_the_pressure_at_a_cusp_is_found_by_both_methods():
 def test_every_profile_has_an_archive(changes, tmp_path):
     solve = {"solve.methods": ["closed_form"], "output.quantities": ["sif", "surface", "interior"]}
     result = computed("tables4_5", changes | solve | {"output.points": [[0.2, -0.5]]})
-    assert result.verdict == "not judged"
+    assert result.verdict == "PASS"
     assert (result.data["states/closed_form/half_width"] > 0.0).all()
     σ = result.data["surface/closed_form/sigma_YY"]
     X = result.data["surface/X_over_a"]

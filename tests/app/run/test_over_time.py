@@ -51,8 +51,8 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
         atol=1e-3,
     )
     surface_and_energies_are_told(data)
-    ten, one, tenth = data["time/fem/steady_within"][0]
-    assert tenth > one > ten > 3.0
+    # By t = 3 the pressure leans the other way: when it will be near, no such run can tell.
+    assert np.isnan(data["time/fem/steady_within"]).all()
     assert result.attributes["verdict"] == "PASS"
     assert len(json.loads(result.attributes["comparisons"])) == 7
     assert [drawing.name for drawing in result.drawings()] == [
@@ -62,7 +62,7 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert here("plot", tmp_path / "s.h5", *words).returncode == 0
     assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = here("show", tmp_path / "s.h5").stdout
-    assert "In time, at the end" in shown
+    assert "In time, at the end" in shown and "too short to tell" in shown and "190 (60 µs)" in shown
 
 
 def surface_and_energies_are_told(data):
@@ -135,7 +135,7 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     result = computed("study_in_time", changes)
     data = result.data
     t, ratio = data["time/t"], data["time/ratio"][0]
-    np.testing.assert_array_equal(data["time/direction"], np.where(t < 0.5 + 1e-9, 1.0, -1.0))
+    np.testing.assert_array_equal(data["time/direction"][0], np.where(t < 0.5 + 1e-9, 1.0, -1.0))
     middle = np.argmin(np.abs(t - 0.25))
     assert t[middle] == pytest.approx(0.25)
     assert ratio[middle] == pytest.approx(data["states/g"][1], rel=1e-6)

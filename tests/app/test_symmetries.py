@@ -1,0 +1,84 @@
+"""The mirror image of a scene has the mirror image of its answer, and other units change no number."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from combined import (
+    METHODS,
+    PRESSURE,
+    PROFILE,
+    UNITS,
+    Case,
+    answers,
+    cases,
+    check_same,
+    mirrored,
+    words_of,
+)
+from support import THOROUGH
+
+import galinx
+from galinx.app.scene.read import parse
+from galinx.postprocess.quantities import declared
+from galinx.postprocess.quantities.quantity import ALONG, POINT, STATE
+from galinx.postprocess.quantities.stresses import YIELD
+
+#: Punches with kinks, under which what yields takes seconds to find.
+_SLOW = () if THOROUGH else ("cubic", "cusp", "rounded flat", "table")
+#: By integral equations alone, which takes a moment, and by finite elements.
+EXACT = [
+    case.but(
+        methods=METHODS[case.layered][:1],
+        words=tuple(w for w in words_of(case.solid, "exact") if w != YIELD or case.punch not in _SLOW),
+    )
+    for case in cases(1 if THOROUGH else 5, 1)
+]
+FEM = [
+    case.but(methods=("fem",), tolerance=1e-2)
+    for case in cases(1 if THOROUGH else 11, 2)
+    if case.by_finite_elements
+]
+SOLVED = [pytest.param(case, allowed, id=f"{case}, {case.methods[0]}")
+          for some, allowed in ((EXACT, 1e-6), (FEM, 0.1)) for case in some]  # fmt: skip
+
+
+@lru_cache(maxsize=4)
+def solved(case):
+    """Datasets of the states of a case."""
+    data = answers(galinx.compute(parse(case.text())).data)
+    assert len(data) > 10
+    return data
+
+
+@pytest.mark.parametrize("case, allowed", SOLVED)
+def test_the_mirror_image(case, allowed):
+    """The stroke, the angle of the solid and the profile turned: forward becomes backward."""
+    original, image = solved(case), solved(case.but(mirrored=True))
+    assert set(image) == {mirrored(name)[0] for name in original}
+    for name, values in original.items():
+        other, sign = mirrored(name)
+        along = [i for i, over in enumerate(declared(name).over) if over in (STATE, POINT, ALONG)]
+        check_same(values, sign * np.flip(image[other], along), allowed, name)
+
+
+@pytest.mark.parametrize("case, allowed", SOLVED)
+def test_other_units(case, allowed):
+    """Lengths, moduli and densities times other factors: all dimensionless numbers stay."""
+    original, image = solved(case), solved(case.but(scaled=True))
+    assert set(image) == set(original)
+    for name, values in original.items():
+        check_same(values, image[name] / UNITS[declared(name).unit], min(allowed, 1e-6), name)
+
+
+@pytest.mark.parametrize("punch", [*PROFILE, *(name for name, rows in PRESSURE.items() if rows)])
+def test_a_layer_of_the_same_solid_is_none(punch):
+    """The integral equation of layers, and what follows from it, against that of the uniform solid."""
+    words = tuple(word for word in words_of("isotropic") if word != YIELD)
+    uniform = solved(Case("isotropic", punch, words, ("closed_form",)))
+    layered = solved(Case("isotropic layer", punch, words, ("sie",), tolerance=1e-6))
+    names = {name: name.replace("/closed_form/", "/sie/") for name in uniform if "closed_form" in name}
+    compared = [name for name, other in names.items() if other in layered]
+    assert {name.split("/")[0] for name in compared} >= {"surface", "interior"}
+    for name in compared:
+        check_same(uniform[name], layered[names[name]], 1e-5, name)

@@ -147,7 +147,13 @@ class Case:
 
     @property
     def by_finite_elements(self):
-        """Do these solve it? Over layers their meshes follow no kink, and no edge that may lift."""
+        """Do these solve it?
+
+        Over layers their meshes follow no kink, and no edge that may lift; and no layer is nearly
+        incompressible.
+        """
+        if self.layered and self.solid.startswith("nearly incompressible"):
+            return False
         return not self.layered or self.punch in ("flat", "parabolic", *PRESSURE)
 
     def text(self):

@@ -1,6 +1,7 @@
 """Commands that look at archives: show, check, report, fields."""
 
 import json
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +40,8 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
             states = states_sheet(data, attributes["title"], scaled)
-            unit = attributes["half_width"] / attributes["c_s"]
+            # Archives of friction alone, and of other programs, need not have them.
+            unit = attributes.get("half_width", nan) / attributes.get("c_s", nan)
             friction = inner_sheet(data), loops_sheet(data), sliders_sheet(data)
             sheets = states, *friction, starts_sheet(data, unit), limits_sheet(data, scaled)
             print_sheets([sheet for sheet in sheets if sheet.rows], attributes)

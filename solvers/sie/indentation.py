@@ -19,6 +19,8 @@ from galinx.solvers.solids.solid import Response
 
 #: Places of the tanh-sinh rule, and how far it goes towards the ends.
 _COUNT, _FAR = 400, 2.9
+#: Share of the load next to the ends that the rule may leave.
+_BEYOND = 1e-3
 
 
 def places() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -31,6 +33,8 @@ def places() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def indentation(response: Response, g: NDArray, σ_YY: NDArray, height: Any) -> NDArray[np.float64]:
     """v₀ of the punch's lowest point over N/(2μ), (states,), to about 2e-5 of it.
 
+    NaN where pressures are so singular that the rule does not reach much of the load.
+
     Args:
         response: of a uniform half-plane at its speed.
         g: σ_XY/σ_YY, (states,).
@@ -41,6 +45,7 @@ def indentation(response: Response, g: NDArray, σ_YY: NDArray, height: Any) -> 
     weighted = σ_YY * weights
     # What the rule leaves next to the ends of a sharp punch is in the load, which is 2.
     load = weighted.sum(axis=1)
+    beyond = np.abs(load / -2.0 - 1.0) > _BEYOND
     mean = weighted @ np.log((1.0 + X) / DATUM) / load
     v = -2.0 * (-(response.n + g * response.n12) / np.pi * mean + g * response.q / 2.0)
-    return np.asarray(height - v)
+    return np.where(beyond, np.nan, height - v)

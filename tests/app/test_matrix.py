@@ -43,10 +43,7 @@ def archived(tmp_path_factory):
 
 
 @pytest.mark.parametrize("case", ALL, ids=str)
-def test_both_methods_agree(case, archived, request):
-    if (case.solid, case.punch) == ("nearly incompressible", "cubic"):
-        why = "σ_XX is within the tolerance, and its estimate, 0.17, is not"
-        request.applymarker(pytest.mark.xfail(reason=why, strict=True))
+def test_both_methods_agree(case, archived):
     path, done = archived(case)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     data, compared = answers(galinx.load(path).data), set()
@@ -95,7 +92,8 @@ def test_every_command_reads_it(case, archived):
     assert done.returncode == 0, done.stderr
     assert [one["f"] for one in json.loads(done.stdout)["states"]] == data["states/f"].tolist()
     assert "verdict: " in here("show", name, cwd=folder).stdout
-    places = {"--states": 1, "--surface": len(data["surface/X_over_a"]), "--inside": 4}
+    places = {"--states": 1, "--surface": len(data["surface/X_over_a"])}
+    places |= {"--inside": 4} if "interior" in case.words else {}
     for table, points in places.items():
         done = here("csv", name, table, "--si", cwd=folder)
         assert done.returncode == 0, done.stderr

@@ -34,6 +34,9 @@ def equal(data, other):
     assert data.keys() == other.keys()
     for name in data.keys() - {"run/seconds"}:
         one, two = np.asarray(data[name]), np.asarray(other[name])
+        if name.endswith("residual"):  # what rounding leaves, which depends on what is summed together
+            assert max(one.max(), two.max()) <= 1e-11, name
+            continue
         same = one.tobytes() == two.tobytes() if one.dtype.kind == "f" else np.array_equal(one, two)
         assert same, name
 

@@ -77,7 +77,13 @@ def same_as_alone(changes, loads=LOADS, digits=1e-12):
             size = np.nanmax(np.abs(values), initial=0.0)
             # Errors are of the last digits, measured on samples; the place of a maximum has half of them.
             within = 1e-4 if re.search("estimate|error|position", path) else digits
-            np.testing.assert_allclose(found, values, rtol=within, atol=within * size, err_msg=path)
+            if "residual" in path:  # rounding, and nothing of the load
+                assert (found <= 1e-9).all() and (values <= 1e-9).all(), path
+                continue
+            # Reaches and depths are differences of positions near 1.
+            least = 64.0 * np.finfo(float).eps if re.search("reach|depth", path) else 0.0
+            atol = max(within * size, least)
+            np.testing.assert_allclose(found, values, rtol=within, atol=atol, err_msg=path)
         assert (many.data["states/load"][i * count : (i + 1) * count] == load).all()
     return many
 
@@ -271,8 +277,13 @@ def test_stresses_that_no_load_changes_are_drawn_once(name, curves):
     changes |= {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
     (drawing,) = computed("tables4_5", changes).drawings(figures=("surface",))
     drawn = [line for line in drawing.figure.axes[0].get_lines() if len(line.get_xdata()) > 50]
-    assert len(drawn) == 3 * curves  # left of the contact, in it, and to its right
+    assert len(drawn) == curves
     assert ("the same under every load" in drawing.caption) == (curves == 1)
+
+
+def breaks(line):
+    """Numbers of the points at which a line is broken, its last point left out."""
+    return np.flatnonzero(np.isnan(line.get_xdata()[:-1]))
 
 
 def test_in_si_every_load_has_its_own_unit_and_place():
@@ -287,16 +298,16 @@ def test_in_si_every_load_has_its_own_unit_and_place():
         (surface,) = result.drawings(figures=("surface",), quantities=("sigma_XX",), **si)
         axis = surface.figure.axes[0]
         drawn = [line for line in axis.get_lines() if len(line.get_xdata()) > 20]
-        assert len(drawn) == 9 and "(MPa)" in axis.get_ylabel()
+        assert len(drawn) == 3 and "(MPa)" in axis.get_ylabel()
         assert ("mm" in axis.get_xlabel()) == (name != "flat")
         for i in range(3):
-            under = drawn[3 * i + 1]
+            _, under, *_ = np.split(np.column_stack(drawn[i].get_data()), breaks(drawn[i]))
             X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"][i]
             some = np.abs(X) < 1.0
             places = X if name == "flat" else 1e3 * (m[i] + a[i] * X)
-            np.testing.assert_allclose(under.get_xdata(), places[some], rtol=1e-12)
+            np.testing.assert_allclose(under[1:, 0], places[some], rtol=1e-12)
             in_MPa = 1e-6 * σ[some] * LOADS[i] / (2.0 * a[i])
-            np.testing.assert_allclose(under.get_ydata(), in_MPa, rtol=1e-12)
+            np.testing.assert_allclose(under[1:, 1], in_MPa, rtol=1e-12)
         (inside,) = result.drawings(figures=("inside",), quantities=("von_mises",), states=(0, 2), **si)
         first, last = (axis for axis in inside.figure.axes if axis.get_xlabel())
         width = [np.ptp(axis.get_xlim()) for axis in (first, last)]

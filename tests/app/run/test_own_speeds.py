@@ -88,7 +88,9 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
         assert 0 < journal.states < 24
         told = compute(scene, found, None, journal)
     for path, values in expected.items():
-        if path.startswith(("states/", "surface/")):
+        if path.endswith("residual"):  # what rounding leaves, which depends on what is summed together
+            np.testing.assert_allclose(found[path], values, atol=1e-12, err_msg=path)
+        elif path.startswith(("states/", "surface/")):
             np.testing.assert_array_equal(found[path], values, err_msg=path)
     assert told["comparisons"] == compute(scene, Memory())["comparisons"]
 

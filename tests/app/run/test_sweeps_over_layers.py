@@ -63,7 +63,8 @@ def test_a_dozen_speeds_tell_all_up_to_the_limit(top, below, tolerance, quantiti
     solid = Layered((Layer(0.7, top),), below)
     c = np.linspace(0.0, 0.98, 24) * solid.limit()
     data = sweep(solid, c, 0.4, quantities, tolerance).data
-    assert np.count_nonzero(data["run/fem/factorisations"]) <= 11
+    # Eleven for the fit, and two that measure its error at the ends of the sweep.
+    assert np.count_nonzero(data["run/fem/factorisations"]) <= 13
     check(data, tolerance)
 
 

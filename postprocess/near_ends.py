@@ -44,7 +44,7 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (1e-3, 5e-2), (24, 12), 3
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), (24, 16), 3
 #: Distance over a from an end within which stresses beside it tell what they are at it; singular values
 #: below which terms are one.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12

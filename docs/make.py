@@ -342,7 +342,7 @@ def _dataset(path: str, row: Any) -> tuple[str, ...]:
 
 def _there(row: Any) -> str:
     """What a dataset is there with; nothing where it always is."""
-    from galinx.app.run.methods import METHODS
+    from galinx.app.methods import METHODS
     from galinx.postprocess.quantities.quantity import LOCAL
     from galinx.solvers.friction import LAWS
     from galinx.solvers.parameters import parameters

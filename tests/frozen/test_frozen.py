@@ -1,4 +1,4 @@
-"""Small scenes that together name all that scenes can: where only code moves their archives stay.
+"""Small scenes that together name all that scenes can: where only code moves, archives stay.
 
 They are run with two checkouts, and every dataset of one archive is compared with that of the other. Here
 it is seen to that nothing new is missing among them.

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from row import Row, Verdict, scene
 from scipy.stats import binom
 
 from galinx.app.console.progress import Progress
-from galinx.app.extremes.row import Row, Verdict, scene
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.app.run.methods import make

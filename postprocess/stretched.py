@@ -7,9 +7,9 @@ end farther away. In
 
 it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
 graded from the surface on it has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end besides,
-which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where constants
-change much within h the powers left out fall slowly with the number of functions, and the last of these
-tell what they add to the intensities.
+which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where
+constants change much within h the powers left out fall slowly with the number of functions, and the last
+of these tell what they add to the intensities.
 """
 
 from dataclasses import dataclass
@@ -26,10 +26,12 @@ _FINE = 0.3
 #: Polynomials that tell how well a pressure is resolved, and over graded solids, where what is left falls
 #: like a power of their number.
 _LAST, _LAST_GRADED = 2, 4
+#: What is left there over what these add, measured on layers whose moduli grow three to a hundred times.
+_TAIL = 4.0
 #: Highest power of the distance from an end that stands before polynomials with its logarithms.
 _POWERS = 3
-#: Share of h beyond which these are nearly constant: the larger it is, the more nearly functions depend on
-#: one another.
+#: Share of h beyond which these are nearly constant: the larger it is, the more nearly functions depend
+#: on one another.
 _SHARE = 0.25
 #: Functions of both ends.
 _OF_ENDS = _POWERS * (_POWERS + 1)
@@ -112,7 +114,8 @@ class StretchedPressure(JacobiPressure):
         ends, last = np.array([-1.0, 1.0]), _LAST_GRADED if self.stretch.graded else _LAST
         f = self.stretch.functions(ends, self.stretch.polynomials(self.c.shape[1]))
         added = np.abs(self.c[:, None, -last:] * f[:, -last:]).sum(axis=2)
-        return np.asarray(added.max(axis=1) / np.abs(self.factor(ends)).max(axis=1))
+        share = added.max(axis=1) / np.abs(self.factor(ends)).max(axis=1)
+        return np.asarray((_TAIL if self.stretch.graded else 1.0) * share)
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch) -> StretchedPressure:

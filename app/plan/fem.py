@@ -175,7 +175,9 @@ def _wanted(scene: Scene, mode: str, wanted: Wanted) -> Wanted:
     if scene.layers:
         if scene.body.free:
             return layers.wanted_of_free_ends(wanted)
-        return layers.wanted_of_loads(wanted) if solve.own_pressure else wanted
+        if solve.own_pressure:
+            return layers.wanted_of_loads(wanted)
+        return layers.wanted_of_graded(wanted, scene.solid)
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.

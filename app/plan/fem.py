@@ -177,7 +177,7 @@ def _wanted(scene: Scene, mode: str, wanted: Wanted) -> Wanted:
             return layers.wanted_of_free_ends(wanted)
         if solve.own_pressure:
             return layers.wanted_of_loads(wanted)
-        return layers.wanted_of_graded(wanted, scene.solid)
+        return layers.wanted_of_graded(wanted, scene.solid)  # type: ignore[arg-type]
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.

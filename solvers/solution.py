@@ -7,13 +7,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import under_punch
-from galinx.solvers.layers.in_cells import LayersInCells
-from galinx.solvers.layers.layered import Layered
-from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
-from galinx.solvers.sie.linear import LinearPressure
-from galinx.solvers.solids import Solid
-from galinx.solvers.solids.solid import Response
+from .contact import under_punch
+from .layers.in_cells import LayersInCells
+from .layers.layered import Layered
+from .profiles import Profile, ends_are_found, exponent, half_width, jumps
+from .sie.prescribed_pressure import LinearPressure
+from .solids import Solid
+from .solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ class Body:
         if isinstance(self.solid, Layered):
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
-        from galinx.solvers.sie.found import contacts
+        from .sie.free_contact import contacts
 
         g = np.zeros(np.size(self.load))
         rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
@@ -135,7 +135,7 @@ class Body:
 
     def _at_rest(self, load: float) -> float:
         """Half-width over layers under a load [m]."""
-        from galinx.solvers.layers.found import half_width_at_rest
+        from .layers.free_contact import half_width_at_rest
 
         profile: Any = self.profile
         assert isinstance(self.solid, Layered)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.stretched import Stretch, from_moments
+from galinx.postprocess.pressure import Stretch
+from galinx.postprocess.pressure import stretched_from_moments as from_moments
 from galinx.solvers.layers.contact import Equation, found
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered

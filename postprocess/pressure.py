@@ -15,8 +15,8 @@ end farther away. In
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
 it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
-graded from the surface on it has terms uⁿ logᵐ u, 1 <= m <= n <= 3, of u = d/(d + h/4), d the distance from an end,
-besides, which no polynomial follows; they stand before these.
+graded from the surface on it has terms uⁿ logᵐ u, 1 <= m <= n <= 3, of u = d/(d + h/4),
+d the distance from an end, besides, which no polynomial follows; they stand before these.
 
 The largest contact pressure, and where it is.
 """

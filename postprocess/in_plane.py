@@ -30,13 +30,27 @@ def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
     at, limits = _limits(solution, body)
-    told = np.ones(σ_XX.shape, dtype=bool)
-    for place, reach in _infinite(solution, body, len(σ_XX)):
-        told &= ~(np.abs(X - place[:, None]) <= reach)
-    values = np.where(told, sign * σ_XX, -np.inf)
-    limits = np.where(np.isnan(limits), -np.inf, sign * limits).max(axis=1, initial=-np.inf)
+    infinite = _infinite(solution, body, len(σ_XX))
+    values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
+    limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    return sign * np.maximum(_largest(X, values, pieces), limits)
+    best = np.maximum(values.max(axis=1), limits.max(axis=1, initial=-np.inf))
+    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
+    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
+    between = surface.turns and surface.turns.between
+    if not between:
+        return sign * np.maximum(best, _largest(u, values, pieces))
+    best = np.maximum(best, _largest(u, np.where(np.abs(X) < 1.0, -np.inf, values), pieces))
+    for i, X in enumerate(between.X):
+        values = np.where(_finite(X, infinite), sign * between.σ_XX[:, i], -np.inf)
+        best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
+    return sign * best
+
+
+def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
+    """Which positions, (n,) or (states, n), are off all places of :func:`_infinite`, (states, n)."""
+    each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
+    return np.logical_and.reduce(each)
 
 
 def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -45,8 +59,6 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
     if surface.turns is not None:
         at = np.concatenate([ends, surface.turns.X], axis=1)
         return at, np.concatenate([np.full_like(ends, np.nan), surface.turns.σ[0]], axis=1)
-    if body.pressure:
-        return ends, np.full_like(ends, np.nan)
     exponents = np.column_stack([solution.local.β, solution.local.α])
     return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
 
@@ -64,27 +76,25 @@ def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.fl
     return found
 
 
-def _largest(X: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
+def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
     """Largest of curves, by polynomials through the samples around their highest tops, (states,).
 
     Args:
-        X: positions over a, (n,).
+        u: coordinate in which they are smooth, growing, (n,).
         values: there, -inf where the curve is not told, (states, n).
         pieces: which smooth piece of the curve a sample belongs to, (states, n).
     """
-    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
-    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
     order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
     for column in order.T:
         i = column + 1
-        window = np.clip(i - _THROUGH // 2, 0, len(X) - _THROUGH)[:, None] + np.arange(_THROUGH)
+        window = np.clip(i - _THROUGH // 2, 0, len(u) - _THROUGH)[:, None] + np.arange(_THROUGH)
         # A window that reaches into the next piece is moved back.
         other = pieces[rows, window] != pieces[rows, i[:, None]]
         shift = (other & (window < i[:, None])).sum(axis=1) - (other & (window > i[:, None])).sum(axis=1)
-        window = np.clip(window + shift[:, None], 0, len(X) - 1)
+        window = np.clip(window + shift[:, None], 0, len(u) - 1)
         same = (pieces[rows, window] == pieces[rows, i[:, None]]).all(axis=1)
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.solution import Surface, Turns
+from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.solution import Between, Surface, Turns
 
 #: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
 #: there, and the degree of the polynomial through them.
@@ -153,6 +154,43 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
     σ_XX = in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
     none = np.where(np.isnan(σ_XX), np.nan, 0.0)
     return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
+
+
+#: Steps of log(d/d') between two knots, distances d and d' from them; least distance over the interval.
+_STEP, _LEAST = 0.25, 1e-8
+_BETWEEN = np.arange(np.log(_LEAST), -np.log(_LEAST) + _STEP / 2.0, _STEP)
+
+
+def places_at_knots(pressure: LinearPressure) -> NDArray[np.float64]:
+    """Positions over a at which :func:`turns_at_knots` takes the in-plane stress, (n,).
+
+    Args:
+        pressure: prescribed.
+    """
+    return np.concatenate([pressure.knots, _between_knots(pressure).ravel()])
+
+
+def _between_knots(pressure: LinearPressure) -> NDArray[np.float64]:
+    """Positions over a between neighbouring knots, graded towards both, (intervals, n)."""
+    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(left + width / (1.0 + np.exp(-_BETWEEN)))
+
+
+def turns_at_knots(pressure: LinearPressure, g: NDArray, σ_XX: NDArray) -> Turns:
+    """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
+
+    Args:
+        pressure: prescribed.
+        g: σ_XY/σ_YY, (states,).
+        σ_XX: over N/(2a) at :func:`places_at_knots`, (states, n).
+    """
+    at, X = len(pressure.knots), _between_knots(pressure)
+    jumps = np.isin(np.arange(at), [0, at - 1]) & (pressure.values != 0.0)
+    knots = np.tile(np.where(jumps, np.nan, pressure.knots), (len(g), 1))
+    σ_YY = np.where(jumps, np.nan, pressure.values)
+    σ = np.broadcast_arrays(np.where(jumps, np.nan, σ_XX[:, :at]), σ_YY, g[:, None] * σ_YY)
+    between = Between(X, _BETWEEN, σ_XX[:, at:].reshape(len(g), *X.shape))
+    return Turns(knots, np.array(σ), between)
 
 
 def slopes_towards_ends(

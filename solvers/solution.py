@@ -192,10 +192,35 @@ class Turns:
     Attributes:
         X: the places over a, (states, k).
         σ: σ_XX, σ_YY, σ_XY there, (3, states, k).
+        between: the in-plane stress between them, where samples of the surface are not near enough to
+            them; None where they are.
     """
 
     X: NDArray[np.float64]
     σ: NDArray[np.float64]
+    between: "Between | None" = None
+
+    def of(self, rows: NDArray) -> "Turns":
+        """Turns of some of the states, or of each several times."""
+        between = self.between and Between(
+            self.between.X, self.between.x, self.between.σ_XX[rows]
+        )  # fmt: skip
+        return Turns(self.X[rows], self.σ[:, rows], between)
+
+
+@dataclass(frozen=True)
+class Between:
+    """In-plane stress between neighbouring kinks, towards both of which it has a distance's logarithm.
+
+    Attributes:
+        X: positions over a, in intervals between kinks, (intervals, n).
+        x: logarithm of the ratio of their distances from both kinks, in which stresses are smooth, (n,).
+        σ_XX: there, (states, intervals, n).
+    """
+
+    X: NDArray[np.float64]
+    x: NDArray[np.float64]
+    σ_XX: NDArray[np.float64]
 
 
 @dataclass(frozen=True)

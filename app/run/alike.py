@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.sie.found import Exponents
-from galinx.solvers.solution import Body, Surface, Turns
+from galinx.solvers.solution import Body, Surface
 
 
 def under_loads(states: Callable[..., Any], body: Body, g: NDArray, load: NDArray | None) -> Any:
@@ -134,7 +134,7 @@ class Alike:
         raw, v_X = (
             None if values is None else values[self._of] for values in (found.raw, found.v_X)
         )  # fmt: skip
-        turns = found.turns and Turns(found.turns.X[self._of], found.turns.σ[:, self._of])
+        turns = found.turns and found.turns.of(self._of)
         return Surface(found.places, found.σ_YY[self._of], found.σ_XX[self._of], raw, v_X, turns)
 
     @cached_property

@@ -59,10 +59,7 @@ def test_the_mirror_image(case, allowed):
     for name, values in original.items():
         other, sign = mirrored(name)
         along = [i for i, over in enumerate(declared(name).over) if over in (STATE, POINT, ALONG)]
-        # Its search is not yet the same from both sides: next to kinks it passes over up to 0.3 %.
-        searched = name.endswith(("sigma_XX_max", "sigma_XX_min"))
-        within = max(allowed, 3e-3) if searched else allowed
-        check_same(values, sign * np.flip(image[other], along), within, name)
+        check_same(values, sign * np.flip(image[other], along), allowed, name)
 
 
 @pytest.mark.parametrize("case, allowed", SOLVED)

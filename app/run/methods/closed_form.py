@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.method import Solver
+from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure, LinearPressure
@@ -187,7 +188,9 @@ class OwnPressures(Punches):
     def surface(self) -> Surface:
         places = self.task.places
         σ_YY = np.where(places.under, self._pressure(places.X), np.nan)
-        return Surface(places, np.tile(σ_YY, (len(self.g), 1)), self._over_places.σ_XX(places.X))
+        σ_XX = self._over_places.σ_XX
+        turns = turns_at_knots(self._pressure, self.g, σ_XX(places_at_knots(self._pressure)))
+        return Surface(places, np.tile(σ_YY, (len(self.g), 1)), σ_XX(places.X), turns=turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

@@ -3,7 +3,7 @@
 All is linear in σ_XY/σ_YY: two frictions tell those of all states.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.layers import AtSpeed, Punches
+from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
 from galinx.solvers.layers.contact import Found
 from galinx.solvers.layers.given import COARSE, FINE, Given
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.stack import Stack
 from galinx.solvers.layers.states import Frictions, Speed
 from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.solution import Surface
 
 #: The frictions.
 _NODES = np.array([0.0, 1.0])
@@ -69,8 +71,18 @@ class GivenPressures(Punches):
 
     @cached_property
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        response, X, g = self.at.task.response, self.places.X, self.g[:, None]
+        return self._on_surface(self.places.X, self.at.regular)
+
+    def _on_surface(self, X: NDArray, regular: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY and σ_XX at X, by strains that the layers add there."""
+        response, g = self.at.task.response, self.g[:, None]
         σ = np.tile(self._pressure(X), (2, len(self.g), 1))
         u_X = response.q * σ + (response.n12 + response.m * g) * self._pressure.hilbert(X)
-        u_X = u_X + self._of_both(self.at.regular)
+        u_X = u_X + self._of_both(regular)
         return σ, response.σ_XX(u_X, σ, g * σ)
+
+    @cached_property
+    def surface(self) -> Surface:
+        X = places_at_knots(self._pressure)
+        _, (σ_XX, _) = self._on_surface(X, self.at.regular_at(X))
+        return replace(super().surface, turns=turns_at_knots(self._pressure, self.g, σ_XX))

@@ -124,7 +124,11 @@ class AtSpeed:
     @cached_property
     def regular(self) -> NDArray[np.float64]:
         """Strains μ u,X that the layers add, (2, nodes, n)."""
-        X, kernel = self.task.places.X, self.speed.kernel
+        return self.regular_at(self.task.places.X)
+
+    def regular_at(self, X: NDArray) -> NDArray[np.float64]:
+        """Strains μ u,X that the layers add at positions (n,) on the surface, (2, nodes, n)."""
+        kernel = self.speed.kernel
         by_kernel = self.nodes.both(lambda pressure: pressure.integral(kernel, X))
         return np.asarray(by_kernel[..., 1] + self.nodes.g[:, None] * by_kernel[..., 0])
 

@@ -14,6 +14,7 @@ from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
+from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.interior import TOGETHER
@@ -62,11 +63,15 @@ class PiecesSeen:
         pieces: of the pressure.
         loads: with which these are made.
         words: of output.quantities, that ask for stresses.
+        turns: are stresses at the pressure's knots asked for, too?
     """
 
-    def __init__(self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str]) -> None:
+    def __init__(
+        self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str], turns: bool
+    ) -> None:
         self._task, places = task, task.places
-        on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
+        self._X = np.concatenate([places.X, places_at_knots(_put_in(task))]) if turns else places.X
+        on_surface = np.column_stack([self._X, np.zeros(len(self._X))])
         self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
         below = places.points[: len(places.points) * (BELOW in words)]
         self._inside = np.concatenate(
@@ -79,12 +84,14 @@ class PiecesSeen:
 
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""
-        places = self._task.places
+        places, pressure = self._task.places, _put_in(self._task)
         u_X, v_X = np.einsum("nid,ds->isn", self._on_surface[:, :, 0], _weights(g))
-        σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
-        σ = np.nan_to_num(σ_YY)
+        σ = pressure(self._X)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
-        return Surface(places, σ_YY, σ_XX, None, v_X)
+        count = len(places.X)
+        σ_YY = np.tile(np.where(places.under, σ[:count], np.nan), (len(g), 1))
+        turns = turns_at_knots(pressure, g, σ_XX[:, count:]) if len(self._X) > count else None
+        return Surface(places, σ_YY, σ_XX[:, :count], None, v_X[:, :count], turns)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
@@ -124,13 +131,12 @@ class PiecesLevel:
     @cached_property
     def everywhere(self) -> PiecesSeen:
         """At all places; not after the level's release."""
-        everywhere = gauged(self._task) is self._task
-        return self._gauged if everywhere else self._seen(self._task)
+        return self._seen(self._task, turns=True)
 
-    def _seen(self, task: Task) -> PiecesSeen:
+    def _seen(self, task: Task, turns: bool = False) -> PiecesSeen:
         assert self._loads
         with self._work.clock("recovery"):
-            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
+            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses, turns)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         found, words, places = [], self._work.stresses, gauged(self._task).places

@@ -207,6 +207,11 @@ class Turns:
         )  # fmt: skip
         return Turns(self.X[rows], self.σ[:, rows], between)
 
+    def joined(self, other: "Turns") -> "Turns":
+        """These turns and others of the same states."""
+        σ = np.concatenate([self.σ, other.σ], axis=2)
+        return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
+
 
 @dataclass(frozen=True)
 class Between:

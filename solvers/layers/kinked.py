@@ -16,7 +16,7 @@ from galinx.solvers.layers.contact import Equation, Resolution
 from galinx.solvers.layers.ends import Punch, finest, vanishing
 from galinx.solvers.layers.panelled import PanelledPressure, Panels
 from galinx.solvers.layers.pressure import Pressure
-from galinx.solvers.profiles import jumps
+from galinx.solvers.profiles import cusp, jumps
 from galinx.solvers.sie.ends import Balance
 from galinx.solvers.sie.found import NEXT_TO_TIP
 from galinx.solvers.sie.panels import FreeEnds
@@ -133,7 +133,10 @@ def kinked(
     def slope(r: NDArray) -> NDArray[np.float64]:
         return equation.slope(r) - mean
 
-    alone = FreeEnds(panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q))
+    alone = FreeEnds(
+        panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q),
+        (places, cusp(profile)),
+    )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
     known = on_panels(alone, equation.α, equation.β, longest, places)

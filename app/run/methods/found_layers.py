@@ -4,7 +4,7 @@ Every friction has a contact of its own, and lengths are over its half-width; ke
 those of all of them, over one length.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,15 +13,19 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.layers import AtSpeed, Punches, in_plane
+from galinx.app.run.methods.own_meshes import together
 from galinx.postprocess.largest import largest
+from galinx.postprocess.near_ends import turns_at_ends
 from galinx.solvers.layers.ends import Punch
 from galinx.solvers.layers.found import FoundSpeed
 from galinx.solvers.layers.found_states import Contacts
 from galinx.solvers.layers.inside import Level
 from galinx.solvers.layers.stack import Stack
-from galinx.solvers.profiles import cusp, kinks
+from galinx.solvers.profiles import cusp, jumps, kinks
+from galinx.solvers.sie.collocation import weights_hilbert
 from galinx.solvers.sie.found import Exponents
 from galinx.solvers.sie.found import largest as largest_next_to_kinks
+from galinx.solvers.solution import Surface, Turns
 
 
 def at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAtSpeed":
@@ -93,12 +97,19 @@ class FoundAtSpeed(AtSpeed):
     @cached_property
     def regular(self) -> NDArray[np.float64]:
         X = self.task.places.X
+        return self.nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
 
-        def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
-            by_kernel = pressure.integral(self.speed.scaled(h), X)
-            return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
+    def strain(self, pressure: Any, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
 
-        return self.nodes.of_each(read)
+        Args:
+            pressure: of a contact.
+            g: σ_XY/σ_YY.
+            h: half-width of the contact over the length of all.
+            X: positions over the half-width.
+        """
+        by_kernel = pressure.integral(self.speed.scaled(h), X)
+        return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
 
 
 def _error(level: Level) -> float:
@@ -141,6 +152,35 @@ class FoundPunches(Punches):
         return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
 
     @cached_property
+    def surface(self) -> Surface:
+        profile, found = self.at.task.body.profile, super().surface
+        if jumps(profile) or not len(kinks(profile)):
+            return found
+        ends = turns_at_ends(found, self.local)
+        each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]
+        return replace(found, turns=together(each))
+
+    def _at_kinks(self, i: int) -> Turns:
+        """Stresses of one state under the punch's kinks.
+
+        They are those of its node: with kinks each friction is solved.
+        """
+        node, response, g = int(self._by_nodes[i].argmax()), self.at.task.response, float(self.g[i])
+        pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
+        X, α, β = self._kinks(i), self.edges.α[i], self.edges.β[i]
+        p = pressure.series(X)
+        σ_YY = (1.0 - X) ** α * (1.0 + X) ** β * p
+        H = p * weights_hilbert(α, β, X) + pressure.rest(X, self.at.nodes.near)
+        u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + self.at.strain(pressure, g, h, X)
+        σ = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+        return Turns(X[None], σ[:, None])
+
+    def _kinks(self, i: int) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over a in the contact of one state."""
+        at = (np.array(kinks(self.at.task.body.profile)) - self.centre[i]) / self.half_width[i]
+        return np.asarray(at[np.abs(at) < 1.0])
+
+    @cached_property
     def K_I(self) -> NDArray[np.float64]:
         """At the left and the right end: none at those that are found, by condition, (states, 2)."""
         return np.where(self.free, 0.0, super().K_I)
@@ -156,11 +196,9 @@ class FoundPunches(Punches):
         if not len(kinks(profile)):
             return self._largest
         each = []
-        for i, (m, h) in enumerate(zip(self.centre.tolist(), self.half_width.tolist())):
-            at = [(x - m) / h for x in kinks(profile) if abs(x - m) < h]
-            each.append(
-                largest_next_to_kinks(lambda r: self._pressure(r, i)[0], (at, cusp(profile)))  # noqa: B023
-            )
+        for i in range(len(self.g)):
+            at = self._kinks(i).tolist(), cusp(profile)
+            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at))  # noqa: B023
         value, place = np.array(each).T
         return value, place
 

@@ -60,7 +60,7 @@ class KinkedState:
         u_X = np.array([pressure.limit_at_kink(i, level.displacement.strain) for i in range(len(X))])
         σ_XY = float(level.contact.g[0]) * σ_YY
         under = np.array([self.task.response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
-        return Turns(np.append(ends.X, X[None], axis=1), np.concatenate([ends.σ, under[:, None]], axis=2))
+        return ends.joined(Turns(X[None], under[:, None]))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

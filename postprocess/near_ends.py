@@ -156,41 +156,51 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
     return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
 
 
-#: Steps of log(d/d') between two knots, distances d and d' from them; least distance over the interval.
-_STEP, _LEAST = 0.25, 1e-8
-_BETWEEN = np.arange(np.log(_LEAST), -np.log(_LEAST) + _STEP / 2.0, _STEP)
+#: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
+#: stress is interpolated.
+_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+#: Highest and lowest places among the few next to which the many are looked at.
+_TOPS = 4
 
 
-def places_at_knots(pressure: LinearPressure) -> NDArray[np.float64]:
-    """Positions over a at which :func:`turns_at_knots` takes the in-plane stress, (n,).
-
-    Args:
-        pressure: prescribed.
-    """
-    return np.concatenate([pressure.knots, _between_knots(pressure).ravel()])
-
-
-def _between_knots(pressure: LinearPressure) -> NDArray[np.float64]:
-    """Positions over a between neighbouring knots, graded towards both, (intervals, n)."""
-    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
-    return np.asarray(left + width / (1.0 + np.exp(-_BETWEEN)))
-
-
-def turns_at_knots(pressure: LinearPressure, g: NDArray, σ_XX: NDArray) -> Turns:
+def turns_at_knots(
+    pressure: LinearPressure, g: NDArray, σ_XX: Callable[[NDArray], NDArray[np.float64]]
+) -> Turns:
     """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
 
     Args:
         pressure: prescribed.
         g: σ_XY/σ_YY, (states,).
-        σ_XX: over N/(2a) at :func:`places_at_knots`, (states, n).
+        σ_XX: in-plane stress over N/(2a) at positions on the surface, (states, n).
     """
-    at, X = len(pressure.knots), _between_knots(pressure)
-    jumps = np.isin(np.arange(at), [0, at - 1]) & (pressure.values != 0.0)
-    knots = np.tile(np.where(jumps, np.nan, pressure.knots), (len(g), 1))
-    σ_YY = np.where(jumps, np.nan, pressure.values)
-    σ = np.broadcast_arrays(np.where(jumps, np.nan, σ_XX[:, :at]), σ_YY, g[:, None] * σ_YY)
-    between = Between(X, _BETWEEN, σ_XX[:, at:].reshape(len(g), *X.shape))
-    return Turns(knots, np.array(σ), between)
+    X = np.column_stack([pressure.knots[:-1], _between(pressure, _COARSE)]).ravel()
+    each = σ_XX(np.append(X, 1.0))
+    each[:, [0, -1]] = np.where(pressure.values[[0, -1]] != 0.0, np.nan, each[:, [0, -1]])
+    per = 1 + len(_COARSE)
+    σ = each[:, ::per]
+    σ_YY = np.where(np.isnan(σ), np.nan, pressure.values)
+    knots = np.where(np.isnan(σ), np.nan, pressure.knots)
+    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
+    # A knot belongs to the intervals on both sides of it.
+    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
+    intervals = intervals[(intervals >= 0) & (intervals < len(pressure.knots) - 1)]
+    graded = _between(pressure, _GRADED)[intervals]
+    between = Between(graded, _GRADED, σ_XX(graded.ravel()).reshape(len(g), *graded.shape))
+    return Turns(knots, np.array([σ, σ_YY, g[:, None] * σ_YY]), between)
+
+
+def _between(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
+    """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
+    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(left + width / (1.0 + np.exp(-x)))
+
+
+def _tops(values: NDArray) -> NDArray[np.int64]:
+    """Numbers of the highest places (n,) of curves, (states, n)."""
+    padded = np.pad(np.nan_to_num(values, nan=-np.inf), ((0, 0), (1, 1)), constant_values=-np.inf)
+    inner = padded[:, 1:-1]
+    heights = np.where((inner >= padded[:, :-2]) & (inner >= padded[:, 2:]), inner, -np.inf)
+    return np.unique(np.argsort(-heights, axis=1, kind="stable")[:, :_TOPS])
 
 
 def slopes_towards_ends(

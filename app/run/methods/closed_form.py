@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.method import Solver
-from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
+from galinx.postprocess.near_ends import turns_at_knots
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.linear import GivenPressure, LinearPressure
@@ -189,7 +189,7 @@ class OwnPressures(Punches):
         places = self.task.places
         σ_YY = np.where(places.under, self._pressure(places.X), np.nan)
         σ_XX = self._over_places.σ_XX
-        turns = turns_at_knots(self._pressure, self.g, σ_XX(places_at_knots(self._pressure)))
+        turns = turns_at_knots(self._pressure, self.g, σ_XX)
         return Surface(places, np.tile(σ_YY, (len(self.g), 1)), σ_XX(places.X), turns=turns)
 
     @cached_property

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from galinx.app.plan.task import Task
 from galinx.app.run.methods.layers import AtSpeed, Punches
-from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
+from galinx.postprocess.near_ends import turns_at_knots
 from galinx.solvers.layers.contact import Found
 from galinx.solvers.layers.given import COARSE, FINE, Given
 from galinx.solvers.layers.kernel import Kernel
@@ -73,7 +73,9 @@ class GivenPressures(Punches):
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return self._on_surface(self.places.X, self.at.regular)
 
-    def _on_surface(self, X: NDArray, regular: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _on_surface(
+        self, X: NDArray, regular: NDArray
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_YY and σ_XX at X, by strains that the layers add there."""
         response, g = self.at.task.response, self.g[:, None]
         σ = np.tile(self._pressure(X), (2, len(self.g), 1))
@@ -83,6 +85,8 @@ class GivenPressures(Punches):
 
     @cached_property
     def surface(self) -> Surface:
-        X = places_at_knots(self._pressure)
-        _, (σ_XX, _) = self._on_surface(X, self.at.regular_at(X))
+        def σ_XX(X: NDArray) -> NDArray[np.float64]:
+            _, (now, _) = self._on_surface(X, self.at.regular_at(X))
+            return now
+
         return replace(super().surface, turns=turns_at_knots(self._pressure, self.g, σ_XX))

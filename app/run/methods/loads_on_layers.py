@@ -16,7 +16,7 @@ from galinx.app.run.methods.error import MeasuredError, reached
 from galinx.app.run.methods.gauge import Gauge, StressGauges
 from galinx.app.run.methods.ladder import Ladder
 from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
-from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
+from galinx.postprocess.near_ends import turns_at_knots
 from galinx.solvers.fem.space import Space
 from galinx.solvers.fem.surface import SurfaceSlopes
 from galinx.solvers.fem.traction import LoadedHalfPlane
@@ -138,8 +138,6 @@ class LoadsAtSpeed(PutInAtSpeed):
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
         super().__init__(ladder, error)
         self.displacement = self.level.displaced(ladder.task)
-        knots = places_at_knots(_put_in(ladder.task))
-        self.at_knots = self.level.displaced(replace(ladder.task, places=Places(knots, np.empty((0, 2)))))
 
     def states(self, g: NDArray, load: Any = None) -> "LoadsOnLayers":
         return LoadsOnLayers(self, g, self.task.body.loaded(load))
@@ -156,8 +154,11 @@ class LoadsOnLayers(PutIn):
     @cached_property
     def surface(self) -> Surface:
         g, pressure = self.g, _put_in(self.at.task)
-        at_knots = np.tile(pressure(places_at_knots(pressure)), (len(g), 1))
-        σ_XX = self.at.at_knots.surface(g, weights(g), at_knots).σ_XX
+
+        def σ_XX(X: NDArray) -> NDArray[np.float64]:
+            there = self.at.level.displaced(replace(self.at.task, places=Places(X, np.empty((0, 2)))))
+            return there.surface(g, weights(g), np.tile(pressure(X), (len(g), 1))).σ_XX
+
         found = self.at.displacement.surface(g, weights(g), self.at.level.σ_YY(g))
         return replace(found, turns=turns_at_knots(pressure, g, σ_XX))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +15,7 @@ from galinx.app.run.methods.error import reached
 from galinx.app.run.methods.gauge import Gauge, gauged, of_in_plane, of_inside
 from galinx.app.run.methods.method import Pressure
 from galinx.app.run.methods.put_in import PutIn, PutInAtSpeed
-from galinx.postprocess.near_ends import places_at_knots, turns_at_knots
+from galinx.postprocess.near_ends import turns_at_knots
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.postprocess.yielding.strength import Strength
 from galinx.solvers.fem.interior import TOGETHER
@@ -63,15 +64,11 @@ class PiecesSeen:
         pieces: of the pressure.
         loads: with which these are made.
         words: of output.quantities, that ask for stresses.
-        turns: are stresses at the pressure's knots asked for, too?
     """
 
-    def __init__(
-        self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str], turns: bool
-    ) -> None:
+    def __init__(self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str]) -> None:
         self._task, places = task, task.places
-        self._X = np.concatenate([places.X, places_at_knots(_put_in(task))]) if turns else places.X
-        on_surface = np.column_stack([self._X, np.zeros(len(self._X))])
+        on_surface = np.column_stack([places.X, np.zeros(len(places.X))])
         self._on_surface = pieces.gradients(loads, on_surface[: len(on_surface) * (ON_SURFACE in words)])
         below = places.points[: len(places.points) * (BELOW in words)]
         self._inside = np.concatenate(
@@ -84,14 +81,10 @@ class PiecesSeen:
 
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""
-        places, pressure = self._task.places, _put_in(self._task)
-        u_X, v_X = np.einsum("nid,ds->isn", self._on_surface[:, :, 0], _weights(g))
-        σ = pressure(self._X)
-        σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
-        count = len(places.X)
-        σ_YY = np.tile(np.where(places.under, σ[:count], np.nan), (len(g), 1))
-        turns = turns_at_knots(pressure, g, σ_XX[:, count:]) if len(self._X) > count else None
-        return Surface(places, σ_YY, σ_XX[:, :count], None, v_X[:, :count], turns)
+        places = self._task.places
+        u_X, v_X = np.moveaxis(self._on_surface[:, :, 0], 1, 0)
+        σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
+        return Surface(places, σ_YY, _in_plane(self._task, u_X, places.X, g), None, (v_X @ _weights(g)).T)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
@@ -100,6 +93,12 @@ class PiecesSeen:
     def around(self, g: NDArray) -> NDArray[np.float64]:
         """The same where stresses are looked at for yield, (3, states, k)."""
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._around, _weights(g)))
+
+
+def _in_plane(task: Task, u_X: NDArray, X: NDArray, g: NDArray) -> NDArray[np.float64]:
+    """σ_XX of states on the surface, (states, n), by strains (n, 2) under σ_YY and an equal σ_XY."""
+    σ = _put_in(task)(X)
+    return task.response.σ_XX((u_X @ _weights(g)).T, σ, g[:, None] * σ)
 
 
 def _weights(g: NDArray) -> NDArray[np.float64]:
@@ -131,12 +130,13 @@ class PiecesLevel:
     @cached_property
     def everywhere(self) -> PiecesSeen:
         """At all places; not after the level's release."""
-        return self._seen(self._task, turns=True)
+        everywhere = gauged(self._task) is self._task
+        return self._gauged if everywhere else self._seen(self._task)
 
-    def _seen(self, task: Task, turns: bool = False) -> PiecesSeen:
+    def _seen(self, task: Task) -> PiecesSeen:
         assert self._loads
         with self._work.clock("recovery"):
-            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses, turns)
+            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         found, words, places = [], self._work.stresses, gauged(self._task).places
@@ -154,6 +154,12 @@ class PiecesLevel:
         G = self._pieces.gradients(self._loads, points.reshape(-1, 2))
         G = G.reshape(*points.shape[:2], 2, 2, -1)
         return self._task.response.stresses(G[..., 0] + g[:, None, None, None] * G[..., 1])
+
+    def in_plane(self, X: NDArray, g: NDArray) -> NDArray[np.float64]:
+        """σ_XX of all states at positions on the surface, (states, n)."""
+        assert self._loads
+        G = self._pieces.gradients(self._loads, np.column_stack([X, np.zeros(len(X))]))
+        return _in_plane(self._task, G[:, 0, 0], X, g)
 
     @property
     def mirrored(self) -> bool:
@@ -182,7 +188,9 @@ class OwnPressures(PutIn):
 
     @cached_property
     def surface(self) -> Surface:
-        return self.at.level.everywhere.surface(self.g)
+        level, g = self.at.level, self.g
+        turns = turns_at_knots(_put_in(self.at.task), g, lambda X: level.in_plane(X, g))
+        return replace(level.everywhere.surface(g), turns=turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

@@ -7,6 +7,7 @@
 #   ./run.sh bench scaling             every step on one rank and on two
 #   ./run.sh bench assemblers          matrices by tensor products and by dolfinx
 #   ./run.sh bench accuracy [TABLE]    tables of docs/verification.md, computed again
+#   ./run.sh stress [-o DIR]           extremes of every parameter: do the promises hold?
 #   ./run.sh docs                      build the documentation into site/
 #   ./run.sh [-n RANKS] COMMAND ...    init, plan, run, show, report, ...; --help tells more
 set -euo pipefail
@@ -111,6 +112,11 @@ if [ "${1:-}" = bench ]; then
     shift
   fi
   exec "$python" "$home/benchmarks/$script.py" "$@"
+fi
+
+if [ "${1:-}" = stress ]; then
+  set_up "${packages[@]}"
+  exec "$python" "$home/benchmarks/stress" stress "$@"
 fi
 
 if [ "${1:-}" = docs ]; then

@@ -30,7 +30,7 @@ _FAILURES = (
 _CUT_OFF = 141
 
 #: The script in the tree, and words that it knows besides the commands.
-_SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "docs"]
+_SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "stress", "docs"]
 
 
 class _Commands(click.Group):

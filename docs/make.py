@@ -234,8 +234,8 @@ def scene_page() -> str:
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
     from galinx.postprocess.attributes import ATTRIBUTES
-    from galinx.postprocess.compare import RULES
     from galinx.postprocess.quantities import table
+    from galinx.postprocess.schema import RULES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
@@ -328,8 +328,8 @@ def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
 
 def _dataset(path: str, row: Any) -> tuple[str, ...]:
     """A dataset's row."""
-    from galinx.postprocess.compare import RULES
     from galinx.postprocess.quantities.quantity import ANYWHERE, NUMBER, TEXT, WHOLE
+    from galinx.postprocess.schema import RULES
 
     what = row.about + "; tells states apart" * bool(row.symbol)
     what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
@@ -342,7 +342,7 @@ def _dataset(path: str, row: Any) -> tuple[str, ...]:
 
 def _there(row: Any) -> str:
     """What a dataset is there with; nothing where it always is."""
-    from galinx.app.run.methods import METHODS
+    from galinx.app.methods import METHODS
     from galinx.postprocess.quantities.quantity import LOCAL
     from galinx.solvers.friction import LAWS
     from galinx.solvers.parameters import parameters

@@ -25,7 +25,7 @@ _NAMES = {
     **dict.fromkeys(("MESHES", "MeshKind"), "meshes"),
     **dict.fromkeys(("QUANTITIES", "Quantity"), "postprocess.quantities"),
     **dict.fromkeys(("RULES", "Rule"), "postprocess.compare"),
-    **dict.fromkeys(("METHODS", "MethodKind"), "app.run.methods"),
+    **dict.fromkeys(("METHODS", "MethodKind"), "app.methods"),
     **dict.fromkeys(("choice", "parameter"), "solvers.parameters"),
 }
 

@@ -1,4 +1,4 @@
-"""Commands that compute: run, plan, paper, stress."""
+"""Commands that compute: run, plan, paper."""
 
 import sys
 from pathlib import Path
@@ -150,22 +150,4 @@ def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int
     return errors.GOOD if good else errors.FAILED_VERDICT
 
 
-@click.command()
-@options.folder("stress")
-@click.option("--seed", type=int, default=1, show_default=True, help="Of the random scenes.")
-@click.option(
-    "--scenes", type=click.IntRange(4), default=300, show_default=True, help="Number of random scenes."
-)
-@options.overwrite
-def stress(folder: Path, seed: int, scenes: int, overwrite: bool) -> int:
-    """Try extremes of every parameter, and say whether the promises hold there.
-
-    Example: ./run.sh stress -o stress
-    """
-    from galinx.app.extremes import matrix
-
-    good = matrix.stress(Folder(folder, overwrite, options.inputs()), seed, scenes)
-    return errors.GOOD if good else errors.FAILED_VERDICT
-
-
-COMMANDS: tuple[Any, ...] = (run, plan, paper, stress)
+COMMANDS: tuple[Any, ...] = (run, plan, paper)

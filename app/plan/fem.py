@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.app import ranks
 from galinx.app.errors import BadInput
+from galinx.app.methods import DOLFINX
 from galinx.app.plan import cost, layers
 from galinx.app.plan.sweep import Sweep, swept
 from galinx.app.scene.scene import Scene
@@ -43,9 +44,6 @@ FOLLOWED = "meshes that follow the contact"
 LOADS = "loads over layers"
 #: Modes in which some speeds may tell the others.
 FITTED = ("contact", FOUND)
-
-#: Names of the assemblers: element matrices by tensor products, condensed, and dolfinx's own.
-TENSOR, DOLFINX = "tensor", "dolfinx"
 
 #: Cuts from which half of them, at one degree more, are no worse than all of them.
 _MANY = 8

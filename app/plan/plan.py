@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from galinx.app.methods import METHODS
 from galinx.app.plan.fem import FemPlan, check_assembler, plan_fem
 from galinx.app.plan.limits import (
     check_found,
@@ -21,7 +22,6 @@ from galinx.app.plan.limits import (
 from galinx.app.plan.starts import starts
 from galinx.app.plan.states import enumerate_states, laws_followed, order, seconds_to_integrate
 from galinx.app.plan.task import Plan, Tasks
-from galinx.app.run.methods import METHODS
 from galinx.app.run.slider import check_sliders
 from galinx.app.scene.scene import Scene
 from galinx.app.scene.sense import FRICTIONS, oddities

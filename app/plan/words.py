@@ -1,11 +1,11 @@
 """A plan in words: its steps with their sizes, and what they will cost."""
 
 from galinx.app import ranks
+from galinx.app.methods import DOLFINX, METHODS
 from galinx.app.plan import cost
-from galinx.app.plan.fem import DOLFINX, FOLLOWED, OWN_MESHES, FemPlan, levels, unknowns
+from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan, levels, unknowns
 from galinx.app.plan.sweep import BESIDES, LADDERS
 from galinx.app.plan.task import CHUNK_NUMBERS, Plan
-from galinx.app.run.methods import METHODS
 from galinx.app.scene.excerpt import listed
 from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import stresses

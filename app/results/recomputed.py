@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.app.console.progress import Progress
+from galinx.app.methods import METHODS
 from galinx.app.plan.fem import unknowns
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.judge import Judge
-from galinx.app.run.methods import METHODS
+from galinx.app.run.methods import make
 from galinx.app.run.solve import Work
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
@@ -153,7 +154,7 @@ def _computed(
     """Quantities of some states, speed by speed; nothing where one could not be solved."""
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
-    made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
+    made = {name: make(name, alone, Progress(), Clock()) for name in methods}
     work = Work(alone, data[states.RATIO.path], made, Clock(), np.zeros(plan.states, dtype=bool))
     for task, rows in _tasks(plan, some):
         if f"c = {task.response.c:g}" not in failed:
@@ -260,7 +261,7 @@ def _of_invariants(archive: Archive, plan: Plan, some: NDArray[np.int64]) -> Ite
 def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64]) -> Iterator[str]:
     """v₀ from the pressure of the closed form."""
     looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
-    method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
+    method = make(CLOSED_FORM, looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
     for task, rows in _tasks(looked_at, some):
         load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])

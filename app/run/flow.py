@@ -17,7 +17,7 @@ from galinx.app.plan.task import Plan
 from galinx.app.plan.words import lines
 from galinx.app.run.collector import Collector
 from galinx.app.run.judge import Judge
-from galinx.app.run.methods import METHODS
+from galinx.app.run.methods import make
 from galinx.app.run.over_time import follow
 from galinx.app.run.sinks import Nowhere, Sink
 from galinx.app.run.slider import slide
@@ -108,7 +108,7 @@ def _parts(
     plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
-    methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
+    methods = {name: make(name, plan, progress, clock) for name in plan.methods}
     if ranks.size() > 1 and plan.fem:
         from galinx.app.run.share import same_on_all, shared_out
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.app.methods import METHODS
 from galinx.app.plan.task import Plan, Task
 from galinx.app.run.alike import under_loads
-from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.method import Method, Solver
 from galinx.clock import Clock
 from galinx.postprocess import compare

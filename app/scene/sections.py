@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Any
 
-from galinx.app.run.methods import ASSEMBLERS, METHODS, MODES
+from galinx.app.methods import ASSEMBLERS, METHODS, MODES
 from galinx.app.scene.keys import Key, ModelSection, Section
 from galinx.app.scene.layers import LayerSections
 from galinx.app.scene.materials import LIBRARY

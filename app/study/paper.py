@@ -14,9 +14,9 @@ from galinx.app import ranks
 from galinx.app.console.program import program
 from galinx.app.console.progress import Progress
 from galinx.app.console.terminal import colours, say
+from galinx.app.methods import ASSEMBLERS
 from galinx.app.run.flow import compute
 from galinx.app.run.judge import limits
-from galinx.app.run.methods import ASSEMBLERS
 from galinx.app.run.sinks import Memory
 from galinx.app.scene import read as scenes
 from galinx.app.scene.scene import Scene

@@ -42,7 +42,6 @@ GOOD = {
     "fields": (None, []),
     "fit": (None, []),
     "paper": (None, []),
-    "stress": (None, []),
 }
 BAD_FILES = [
     "missing.toml", "folder", "bad.toml", "empty.toml", "latin.toml", "nested.toml", "digits.toml", "",

@@ -10,7 +10,8 @@ from typing import Any
 from mpi4py import MPI
 
 from galinx.app.console.progress import Progress
-from galinx.app.plan.fem import DOLFINX, TENSOR, FemPlan
+from galinx.app.methods import DOLFINX, TENSOR
+from galinx.app.plan.fem import FemPlan
 from galinx.app.plan.task import Plan
 from galinx.clock import Clock
 from galinx.meshes.cells import check_cells

@@ -2,17 +2,12 @@
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from galinx.app.console.progress import Progress
-from galinx.app.plan.task import Plan, Task
-from galinx.app.scene.scene import Scene
-from galinx.clock import Clock
-from galinx.postprocess.quantities import Quantity
-from galinx.solvers.solution import Body, Solution
+from galinx.app.plan.task import Task
+from galinx.solvers.solution import Solution
 
 #: σ_YY over N/(2a) at positions X over a under the punch.
 Pressure = Callable[[NDArray], NDArray]
@@ -52,23 +47,3 @@ class Method(Protocol):
         Raises:
             SolveError: the equations could not be solved there.
         """
-
-
-@dataclass(frozen=True)
-class MethodKind:
-    """A method that scenes can name.
-
-    Attributes:
-        about: what a plan calls it.
-        made: makes it for a plan.
-        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
-            None: why it gives none at all.
-        loads: do its solvers know states under several loads? Each load has a solver of its own if not.
-        of_layers: is it for layered solids alone? Plans of others do not speak of it.
-    """
-
-    about: str
-    made: Callable[[Plan, Progress, Clock], Method]
-    refusal: Callable[[Scene, Body, Quantity | None], str] = lambda scene, body, quantity: ""
-    loads: bool = False
-    of_layers: bool = False

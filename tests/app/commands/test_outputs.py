@@ -180,7 +180,6 @@ def check_made(place, name, kind: Kind | None):
         (("-x", "own.py", "run", "scene.toml", "--log", "own.py"), "own.py is also"),
         (("run", "/dev/stdin", "-o", "scene.toml", "--overwrite"), "scene.toml is also"),
         (("paper", "-o", "."), "study.h5 exists and is not an archive of galinx"),
-        (("stress", "-o", "."), "stress.h5 exists and is not an archive of galinx"),
         (("run", "fifo"), "cannot read fifo: it is a FIFO"),
         (("plan", "/dev/zero"), "cannot read /dev/zero: it is a device"),
         (("show", "fifo"), "fifo is not a file"),
@@ -192,7 +191,7 @@ def test_what_is_no_place_is_said(made, tmp_path, words, message):
     for one in INPUTS:
         shutil.copy(made[0] / one, tmp_path)
     (tmp_path / "own.py").write_text("import galinx\n", encoding="utf-8")
-    for name in ("study.h5", "stress.h5"):
+    for name in ("study.h5",):
         (tmp_path / name).write_bytes(FOREIGN)
     os.mkfifo(tmp_path / "fifo")
     before = content(tmp_path)

@@ -9,6 +9,7 @@ import pytest
 from support import computed
 
 import galinx
+from galinx.app.methods import METHODS
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.app.plan.words import lines
@@ -17,7 +18,6 @@ from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
 from galinx.app.results.one_state import displacement
 from galinx.app.results.si import drawn_in_si
-from galinx.app.run.methods import METHODS
 from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
 from galinx.solvers.parameters import parameter
 from galinx.solvers.profiles import PROFILES

@@ -2,9 +2,9 @@
 
 import numpy as np
 from mpi4py import MPI
+from row import Row, Verdict, honest, reached, scene, solved
 
 from galinx.app.errors import BadInput
-from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.meshes import MESHES

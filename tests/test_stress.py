@@ -2,14 +2,19 @@ import re
 from dataclasses import replace
 from itertools import islice
 
+import all_kinds
+import friction_law
 import h5py
+import matrix
+import mechanics
 import numpy as np
 import pytest
+import random_scenes
+import resolution
+from all_kinds import Judged
+from random_scenes import Ratios
+from row import Row, Verdict, honest, reached, scene, solved
 
-from galinx.app.extremes import all_kinds, friction_law, matrix, mechanics, random_scenes, resolution
-from galinx.app.extremes.all_kinds import Judged
-from galinx.app.extremes.random_scenes import Ratios
-from galinx.app.extremes.row import Row, Verdict, honest, reached, scene, solved
 from galinx.app.scene.read import parse
 from galinx.postprocess.target import Folder
 from galinx.solvers.profiles import PROFILES

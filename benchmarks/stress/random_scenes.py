@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from row import Row, Verdict, scene
 from scipy.stats import binom
 
 from galinx.app.console.progress import Progress
-from galinx.app.extremes.row import Row, Verdict, scene
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
-from galinx.app.run.methods import METHODS
+from galinx.app.run.methods import make
 from galinx.app.scene.read import parse
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
@@ -170,8 +170,8 @@ def known(asked: Scene) -> Truth:
     plan, g = make_plan(asked), enumerate_states(asked).g
     (task,) = plan.tasks
     with (
-        METHODS[FEM].made(plan, Progress(), Clock()).at(task, g) as elements,
-        METHODS[CLOSED_FORM].made(plan, Progress(), Clock()).at(task, g) as formula,
+        make(FEM, plan, Progress(), Clock()).at(task, g) as elements,
+        make(CLOSED_FORM, plan, Progress(), Clock()).at(task, g) as formula,
     ):
         found: Any = elements.states(g)
         exact: Any = formula.states(g)

@@ -4,12 +4,15 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+import friction_law
+import mechanics
+import resolution
+from all_kinds import all_kinds
+from random_scenes import random_scenes
+from row import Row
+
 from galinx.app import ranks
 from galinx.app.console.progress import Progress
-from galinx.app.extremes import friction_law, mechanics, resolution
-from galinx.app.extremes.all_kinds import all_kinds
-from galinx.app.extremes.random_scenes import random_scenes
-from galinx.app.extremes.row import Row
 from galinx.postprocess.target import ARCHIVE, Folder, Target
 
 #: Every row but the random scenes, cheap ones first.
@@ -65,7 +68,7 @@ def _write(target: Target, rows: list[Row], good: bool) -> None:
                 writer.put(f"{row.name}/{label.replace('/', ' over ')}", values, ("1", row.y_label))
             texts = [f"{'holds' if v.holds else 'FAILS'}: {v.text}" for v in row.verdicts]
             writer.put(f"{row.name}/verdicts", texts, ("none", row.title))
-        writer.finish({"program": "galinx stress", "verdict": "PASS" if good else "FAIL"})
+        writer.finish({"program": "run.sh stress", "verdict": "PASS" if good else "FAIL"})
     console = new_console()
     for row in rows:
         console.print(f"{row.name}: {row.title}")

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from row import Row, Verdict
 
 from galinx.app.errors import BadInput
-from galinx.app.extremes.row import Row, Verdict
 from galinx.app.run.flow import compute
 from galinx.app.run.sinks import Memory
 from galinx.app.scene.read import parse

@@ -2,9 +2,9 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from row import Row, Verdict
 from scipy.integrate import solve_ivp
 
-from galinx.app.extremes.row import Row, Verdict
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.integrate import RK4_STABILITY_LIMIT, runge_kutta
 

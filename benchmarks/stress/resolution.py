@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
+from row import Row, Verdict
 
-from galinx.app.extremes.row import Row, Verdict
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.pressure import contact_recovery, from_moments

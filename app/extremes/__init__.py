@@ -1,1 +1,0 @@
-"""Extremes of every parameter, and whether the promises hold there."""

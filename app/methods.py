@@ -1,0 +1,150 @@
+"""Methods that solve the contact, by the name that scenes use: what each is called, and what it refuses.
+
+Scenes and plans know no more of methods than this; :mod:`galinx.app.run.methods` makes them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from galinx.postprocess.quantities import Quantity, states, strata, stresses, validity, yielding
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
+from galinx.registry import Registry
+from galinx.solvers.profiles import exponent, smooth
+from galinx.solvers.solution import Body
+
+
+@dataclass(frozen=True)
+class MethodKind:
+    """A method that scenes can name.
+
+    Attributes:
+        about: what a plan calls it.
+        made: makes a :class:`galinx.app.run.methods.Method` for a plan, a progress and a clock; None for
+            those of galinx itself, which :func:`galinx.app.run.methods.make` knows.
+        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
+            None: why it gives none at all.
+        loads: do its solvers know states under several loads? Each load has a solver of its own if not.
+        of_layers: is it for layered solids alone? Plans of others do not speak of it.
+    """
+
+    about: str
+    made: Callable[[Any, Any, Any], Any] | None = None
+    refusal: Callable[[Any, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+    loads: bool = False
+    of_layers: bool = False
+
+
+def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    if not body.layered:
+        return "the solid has no layers, and closed_form knows the solution"
+    if body.pressure and quantity in _INTENSITIES_OF_LAYERS:
+        return "the pressure is given"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+
+
+def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
+    """Why von Mises is not told."""
+    asked = any(quantity is invariants[-1] for invariants in stresses.INVARIANTS_INSIDE.values())
+    return "σ_ZZ is not known without solid.stiffness_Z" if asked and not body.solid.knows_σ_ZZ else ""
+
+
+def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
+    """Why a contact whose ends are found has no such quantity, "" where it has."""
+    if not body.found or quantity is None:
+        return ""
+    if quantity.asked_by == stresses.YIELD and not body.finite:
+        return "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
+    if quantity in yielding.FIRST_LOAD.values() and not (exponent(body.profile) or 0.0) > 1.0:
+        return "known where the height is a power of |X|: the contact grows with the load"
+    if quantity.mode == PUNCH or quantity in _OF_SHARP_EDGES:
+        return "the ends of the contact are found"
+    return ""
+
+
+#: What is told of two sharp edges alone.
+_OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
+
+
+def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    if body.layered:
+        return "the solid has layers, and no closed form"
+    if body.found:
+        return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+    if body.pressure:
+        return "the pressure is given" if quantity in _INTENSITIES else ""
+    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
+        return "known below flat punches only"
+    if quantity and not body.flat and quantity is states.K_I_BOTH:
+        return "the two ends differ"
+    if quantity and not body.flat and quantity in validity.STRAINED:
+        return "known of flat punches only"
+    return _without_σ_ZZ(body, quantity)
+
+
+#: What only a punch has.
+_INTENSITIES_OF_LAYERS = (*strata.K_I_LEFT.values(), *strata.K_I_RIGHT.values(), strata.ESTIMATE)
+_INTENSITIES = (
+    states.RESIDUAL[CLOSED_FORM],
+    states.K_I_BOTH,
+    states.K_I_LEFT[CLOSED_FORM],
+    states.K_I_RIGHT[CLOSED_FORM],
+)
+
+
+def _of_layers(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    """Why finite elements do not give a quantity of layers, "" where they do."""
+    if body.solid.nearly_incompressible:
+        return "a solid is nearly incompressible; the integral equation takes such layers"
+    if scene.solve.degree or scene.solve.mesh != "confocal":
+        return "layers have meshes of their own: no mesh, and no degree"
+    if body.found and not (body.free and smooth(body.profile)):
+        return (
+            "over layers meshes follow contacts of smooth punches with two free ends alone; sie takes all"
+        )
+    if quantity is None:
+        return ""
+    if quantity is states.RESIDUAL[FEM]:
+        return "the equation of layers is a method of its own, sie"
+    if quantity is states.INDENTATION:
+        return "the far boundary moves with the load"
+    if body.found and quantity is stresses.RAW_PRESSURE:
+        return "σ_YY itself is that of the nodal forces there"
+    if not body.flat and quantity is states.SLOPE:
+        return "the punch is not flat"
+    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+
+
+def _finite_elements_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    if body.layered:
+        return _of_layers(scene, body, quantity)
+    if body.found and not smooth(body.profile):
+        if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
+            return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
+        if quantity is stresses.RAW_PRESSURE:
+            return "σ_YY itself is that of the nodal forces there"
+    if why := _of_found_ends(body, quantity):
+        return why
+    if quantity is states.RESIDUAL[FEM] and scene.solve.mode == "traction":
+        return "the pressure is put in"
+    if quantity is states.SLOPE and (body.pressure or not body.flat):
+        return "the pressure is given" if body.pressure else "the punch is not flat"
+    return _without_σ_ZZ(body, quantity)
+
+
+METHODS: Registry[MethodKind] = Registry(
+    "method",
+    {
+        CLOSED_FORM: MethodKind("closed form", refusal=_closed_form_refusal, loads=True),
+        SIE: MethodKind("singular integral equation of layers", refusal=_layers_refusal, of_layers=True),
+        FEM: MethodKind("mesh and finite elements", refusal=_finite_elements_refusal, loads=True),
+    },
+    MethodKind,
+)
+
+#: What the finite elements may be given: a punch, or the pressure under it.
+MODES = ("contact", "traction")
+
+#: Assemblers of their matrices: element matrices by tensor products, or dolfinx's own.
+TENSOR, DOLFINX = "tensor", "dolfinx"
+ASSEMBLERS = (TENSOR, DOLFINX)

@@ -45,7 +45,7 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), (24, 16), 3
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), 24, 3
 #: Distance over a from an end within which stresses beside it tell what they are at it; singular values
 #: below which terms are one.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
@@ -73,8 +73,7 @@ def _two_series(
         (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
-    count = _SEEN_AT[0 if at_end else 1]
-    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
     known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
     powers = np.arange(_TERMS_OF_EACH)
 

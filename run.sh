@@ -142,6 +142,6 @@ set_up "${packages[@]}"
 start=(env --block-signal=INT,TERM,HUP "$python" -P -m)
 if [ -n "$ranks" ]; then
   allow_ranks "$ranks"
-  exec "${start[@]}" galinx.app.process.job "$mpirun" "$ranks" "$python" "$@"
+  exec "${start[@]}" galinx.app.job "$mpirun" "$ranks" "$python" "$@"
 fi
 exec "${start[@]}" galinx "$@"

@@ -1,24 +1,51 @@
-"""The command line, and how every failure ends."""
+"""The command line, and how every failure ends.
+
+Models of the user's own: a Python file that registers them, run before anything else.
+"""
 
 import os
+import runpy
 import sys
 import traceback
 from contextlib import suppress
 from pathlib import Path
+from traceback import extract_tb
 from typing import Any, NoReturn
 
 import click
 
 from galinx import __version__
-from galinx.app import errors, ranks
-from galinx.app.commands import begin, compute, draw, export, fit, look, options
-from galinx.app.console.program import as_called, program
-from galinx.app.console.streams import plain_streams
-from galinx.app.errors import BadInput, MachineFailure
-from galinx.app.process import link, stop
-from galinx.app.scene.excerpt import meant, short
 from galinx.postprocess.errors import Occupied, UnreadableArchive, UnwritableArchive
 from galinx.solvers.errors import CompilerError, MeshError, SolveError
+
+from . import errors, process, ranks
+from .commands import begin, compute, look, options
+from .console import as_called, plain_streams, program
+from .errors import BadInput, MachineFailure, meant, short
+
+
+def extend(path: Path) -> None:
+    """Run a file that registers laws, solids, profiles, meshes or quantities.
+
+    Raises:
+        BadInput: it cannot be read, or it fails; the message says where.
+    """
+    try:
+        there = path.is_file()
+    except OSError as error:
+        raise BadInput(f"cannot read {path}: {error.strerror}") from None
+    if not there:
+        raise BadInput(f"cannot read {path}: expected a Python file that registers models")
+    try:
+        runpy.run_path(str(path))
+    except process.Asked:  # the process itself is to end
+        raise
+    except BaseException as error:  # whatever ends the file, sys.exit among it
+        lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]
+        line = f", line {lines[-1]}" if lines else ""
+        said = f": {error}" if str(error) else ""
+        raise BadInput(f"{path} fails: {type(error).__name__}{said}{line}") from error
+
 
 #: Failures whose message says all; others show where they happened.
 _FAILURES = (
@@ -56,13 +83,11 @@ def cli(extensions: tuple[Path, ...]) -> None:
     Exit status: 0 good, 1 verdict FAIL, 2 bad input, 3 failure of program or machine.
     """
     for path in extensions:
-        from galinx.app.extend import extend
-
         extend(path)
 
 
 for _command in (
-    *begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS, *draw.COMMANDS, *export.COMMANDS, *fit.COMMANDS
+    *begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS
 ):  # fmt: skip
     _command.help = as_called(_command.help)
     cli.add_command(_command)
@@ -82,7 +107,7 @@ def _run() -> None:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _stop(message, errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
-        stop.finish(_CUT_OFF)
+        process.finish(_CUT_OFF)
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except ImportError as error:
         _stop(errors.unavailable(error))
@@ -91,7 +116,7 @@ def _run() -> None:
     except Exception as error:
         traceback.print_exc()
         _stop(f"internal failure on rank {ranks.rank()}: {error}")
-    stop.finish(status)
+    process.finish(status)
     sys.exit(status)
 
 
@@ -100,10 +125,10 @@ def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
-    stop.fail(status, message)
+    process.fail(status, message)
     with suppress(OSError):
         sys.stdout.flush()
     sys.stderr.flush()
-    if status == errors.FAILURE and ranks.size() > 1 and not link.is_there():
+    if status == errors.FAILURE and ranks.size() > 1 and not process.is_there():
         ranks.abort(status)
     os._exit(status)

@@ -1,8 +1,14 @@
-"""Failures with an exit status of their own."""
+"""Failures with an exit status of their own.
 
+What a scene says, short enough for a message.
+"""
+
+import reprlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
+from math import log10
 
 
 class BadInput(Exception):
@@ -38,3 +44,48 @@ def unavailable(error: ImportError) -> str:
 
 #: Exit statuses of every command.
 GOOD, FAILED_VERDICT, BAD_INPUT, FAILURE = 0, 1, 2, 3
+
+
+#: Bits of a whole number up to which its digits are shown; Python itself refuses 4300 digits.
+_BITS = 200
+
+
+class _Excerpt(reprlib.Repr):
+    """As Python writes values, cut where they are long or deep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel, self.maxlist, self.maxdict = 3, 6, 6
+        self.maxstring = self.maxother = 80
+
+    def repr_int(self, x: int, level: int) -> str:
+        bits = x.bit_length()
+        return repr(x) if bits <= _BITS else f"a whole number of about {round(bits * log10(2.0))} digits"
+
+
+#: A value for a message.
+excerpt = _Excerpt().repr
+
+
+def listed(texts: list[str], most: int = 8) -> str:
+    """Texts with commas between them, the middle of many left out."""
+    if len(texts) <= most:
+        return ", ".join(texts)
+    return f"{', '.join(texts[: most - 2])}, … {texts[-1]} ({len(texts)} in all)"
+
+
+def short(text: str, most: int = 80) -> str:
+    """A text, cut where it is long."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+def meant(word: str, valid: Iterable[str]) -> str:
+    """What may have been meant, for the end of a message; "" where nothing is near."""
+    known = {name.lower(): name for name in valid}
+    close = get_close_matches(short(word).lower(), known, 1, 0.6)
+    return f"; did you mean {known[close[0]]}?" if close else ""
+
+
+def nearest(key: str, valid: Collection[str]) -> str:
+    """The same, or else all that there is."""
+    return meant(key, valid) or f"; valid: {', '.join(valid)}"

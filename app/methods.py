@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from galinx.postprocess.quantities import Quantity, states, strata, stresses, validity, yielding
+from galinx.postprocess.quantities import Quantity, layers, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
 from galinx.solvers.profiles import exponent, smooth
@@ -83,7 +83,7 @@ def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> s
 
 
 #: What only a punch has.
-_INTENSITIES_OF_LAYERS = (*strata.K_I_LEFT.values(), *strata.K_I_RIGHT.values(), strata.ESTIMATE)
+_INTENSITIES_OF_LAYERS = (*layers.K_I_LEFT.values(), *layers.K_I_RIGHT.values(), layers.ESTIMATE)
 _INTENSITIES = (
     states.RESIDUAL[CLOSED_FORM],
     states.K_I_BOTH,

@@ -26,9 +26,8 @@ from galinx.meshes.kind import Wanted
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.pressure import contact_recovery, from_moments
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 from galinx.solvers.solids.orthotropic import Orthotropic

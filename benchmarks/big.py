@@ -12,11 +12,9 @@ from mpi4py import MPI
 from galinx.clock import Clock
 from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import TAGS
-from galinx.solvers.fem.direct import Factor
-from galinx.solvers.fem.distributed import distribute
-from galinx.solvers.fem.held import hold
-from galinx.solvers.fem.multigrid import Multigrid, available
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.boundary import hold
+from galinx.solvers.fem.linear import Factor, Multigrid, available
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Kolosov's constant of ν = 0.25 in plane strain.

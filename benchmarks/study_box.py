@@ -13,13 +13,12 @@ from mpi4py import MPI
 
 import galinx
 from galinx.meshes import MESHES, Wanted
-from galinx.meshes.cells import check_cells
-from galinx.meshes.gmsh_model import through_gmsh
+from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
+from galinx.meshes.store import through_gmsh
 from galinx.postprocess.pressure import contact_recovery, from_moments
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 

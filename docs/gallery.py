@@ -59,7 +59,7 @@ your own, copy its scene and change it:
 
 def page() -> str:
     """The page: every scene with what it is about, those of ``SHOWN`` with a picture."""
-    from galinx.app.scene.templates import templates
+    from galinx.app.scene.library import templates
 
     known = templates()
     parts = [_HEAD]

@@ -142,7 +142,7 @@ names rows of [Comparisons](#comparisons). Quantities of your own come beside th
 _WHOLE = """\
 ## What is read
 
-Every command reads archives through one door, `postprocess/hdf5/reader.py`. What does not come through
+Every command reads archives through one door, `postprocess/hdf5/archive.py`. What does not come through
 is not shown: one message names the fault, exit status 2.
 
 1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow: numbers,
@@ -187,7 +187,7 @@ def commands_page() -> str:
     import click
 
     from galinx.app.cli import cli
-    from galinx.app.console.program import program
+    from galinx.app.console import program
 
     parts = [_COMMANDS]
     for name, command in cli.commands.items():
@@ -207,7 +207,7 @@ def commands_page() -> str:
 
 def scene_page() -> str:
     """Every section and key of a scene, and the known materials."""
-    from galinx.app.scene.materials import LIBRARY
+    from galinx.app.scene.library import LIBRARY
     from galinx.app.scene.sections import SECTIONS
 
     parts = [_SCENE]
@@ -233,9 +233,8 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
-    from galinx.postprocess.attributes import ATTRIBUTES
     from galinx.postprocess.quantities import table
-    from galinx.postprocess.schema import RULES
+    from galinx.postprocess.schema import ATTRIBUTES, RULES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
@@ -254,7 +253,7 @@ def archive_page() -> str:
 
 def schema_text() -> str:
     """The JSON schema of scenes as ``./run.sh schema`` prints it."""
-    from galinx.app.scene.schema import schema
+    from galinx.app.scene.sections import schema
 
     return json.dumps(schema(), ensure_ascii=False, indent=1) + "\n"
 
@@ -311,8 +310,7 @@ def _section(section: Any) -> list[str]:
 
 def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
     """A key's row; ``or_else`` is what else would do where it is missing."""
-    from galinx.app.scene.keys import REQUIRED
-    from galinx.app.scene.schema import entry
+    from galinx.app.scene.sections import REQUIRED, entry
 
     described = entry(known)
     if known.default is REQUIRED:

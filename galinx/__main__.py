@@ -5,9 +5,8 @@ import sys
 if __name__ == "__main__" and not sys.flags.safe_path:
     del sys.path[0]  # the current folder, where libraries are not to be looked for
 
-from galinx.app import errors
-from galinx.app.process import stop
-from galinx.app.process.begin import begin, refuse
+from galinx.app import errors, process
+from galinx.app.job import begin, refuse
 
 
 def main() -> None:
@@ -19,8 +18,8 @@ def main() -> None:
         run_from_shell()
     except ImportError as error:
         refuse(errors.unavailable(error))
-    except stop.Asked:
-        stop.end(stop.NOTHING)
+    except process.Asked:
+        process.end_stopped(process.NOTHING)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """The chart in which a mesh is drawn and its map to the physical half-plane.
 
 A chart hands the forms its gradient: in a conformal chart ∇u·Rᵀ with a rotation R and no Jacobian.
-What a chart offers is described by :class:`galinx.solvers.fem.chart.Chart`.
+What a chart offers is described by :class:`galinx.solvers.fem.cells.Chart`.
 """
 
 from dataclasses import dataclass

@@ -2,8 +2,8 @@
 
 from math import pi
 
-from galinx.meshes.charts import Confocal
-from galinx.meshes.kind import MESHES, MeshKind
+from .charts import Confocal
+from .kind import MESHES, MeshKind
 
 CONFOCAL = MeshKind(
     "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=2.2,

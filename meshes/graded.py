@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.charts import Confocal, Physical
-from galinx.meshes.kind import MESHES, MeshKind
-from galinx.meshes.rings import Refinement
+from .charts import Confocal, Physical
+from .kind import MESHES, MeshKind
+from .rings import Refinement
 
 #: Width and depth of the study's block over the half-width: l_p/W = 0.01, l_p/H = 0.02, l_p = 2a.
 BOX_WIDTH, BOX_DEPTH = 200.0, 100.0

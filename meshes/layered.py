@@ -3,9 +3,16 @@
 Columns grow outwards from both edges of the punch, rows with depth, and an interface is always between
 two rows. Only inside a square around each edge, of at most half the uppermost layer's thickness, L-shaped
 rings go on towards it: their lines do not run through the whole mesh.
+
+Over which lengths fields change in layers under a punch: what rows and columns have to follow.
+
+Fields of a solid are functions of X + pY. The punch's edges, where these are singular, are seen from a
+depth at the complex distance Σ p H of the solids that lie between; with S the least of its imaginary
+parts, fields change over S along X and over S/|p| along Y. From a place at the side an edge is at least
+as far as the distance times Im p/|p|.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, ceil, log, log10
@@ -13,10 +20,77 @@ from math import asinh, ceil, log, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.charts import Physical
-from galinx.meshes.kind import DEGREES, MeshKind, Wanted
-from galinx.meshes.rings import QuadMesh, tagged
-from galinx.meshes.strata import Strata, between
+from .charts import Physical
+from .kind import DEGREES, MeshKind, Wanted
+from .rings import QuadMesh, tagged
+
+#: Halvings in search of the share with which a number of rows just fits.
+_HALVINGS = 25
+
+
+@dataclass(frozen=True)
+class Strata:
+    """Layers on a substrate.
+
+    Attributes:
+        depths: of the interfaces, rising.
+        roots: p of every solid from the top down, those of the substrate last.
+        changes: length over which each layer's own constants change, infinite where it is uniform; none
+            where all are.
+    """
+
+    depths: tuple[float, ...]
+    roots: tuple[tuple[complex, ...], ...]
+    changes: tuple[float, ...] = ()
+
+    @property
+    def aside(self) -> float:
+        """Least distance of an edge over how far aside it is."""
+        return min(p.imag / abs(p) for roots in self.roots for p in roots)
+
+    def length(self, depth: float) -> float:
+        """Over which fields change along Y just below a depth."""
+        S, top = 0.0, 0.0
+        changes = (*(self.changes or (np.inf,) * len(self.depths)), np.inf)
+        for bottom, roots, change in zip((*self.depths, np.inf), self.roots, changes):
+            if depth < bottom:
+                return min(change, *((S + p.imag * (depth - top)) / abs(p) for p in roots))
+            S += min(p.imag for p in roots) * (bottom - top)
+            top = bottom
+        return S
+
+    def rows(self, first: float, last: float, share: float) -> NDArray[np.float64]:
+        """Depths from the first to before the last: rows no higher than a share of the length there."""
+        lines = [first, *(depth for depth in self.depths if first * (1.0 + 1e-9) < depth < last), last]
+        return np.concatenate([fitted(self.length, *ends, share) for ends in pairwise(lines)])
+
+
+def fitted(
+    length: Callable[[float], float], first: float, last: float, share: float
+) -> NDArray[np.float64]:
+    """From the first to before the last, in as few steps as the share of a length there allows."""
+    count = len(_marched(length, first, last, share))
+    low, high = 0.0, share
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2.0
+        low, high = (
+            (middle, high) if len(_marched(length, first, last, middle)) > count else (low, middle)
+        )
+    return np.array(_marched(length, first, last, high))
+
+
+def _marched(length: Callable[[float], float], first: float, last: float, share: float) -> list[float]:
+    found = [first]
+    while (following := found[-1] + share * length(found[-1])) < last * (1.0 - 1e-9):
+        found.append(following)
+    return found
+
+
+def between(low: float, high: float, growth: float) -> NDArray[np.float64]:
+    """From low to below high, by a factor."""
+    count = max(ceil(log(high / low) / log(growth) - 1e-9), 1) if high > low else 0
+    return low * (high / low) ** (np.arange(count) / max(count, 1))
+
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
 _GROWTH = 4.0
@@ -70,7 +144,7 @@ class OnLayers(MeshKind):
         far_length: over which the layers are seen from far, over a.
         left: 1 at rest, 0 where a wave runs along the substrate with the load.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
-        changes: of :class:`galinx.meshes.strata.Strata`.
+        changes: of :class:`galinx.meshes.layered.Strata`.
         places: positions over a towards which cells are graded, rising from -1 to 1.
     """
 

@@ -1,23 +1,290 @@
-"""How far finite elements and closed form agree, and whether the forces balance."""
+"""How far finite elements and closed form agree, and whether the forces balance.
 
-from collections.abc import Callable, Iterable
+What a comparison is, and by which figure it is judged.
+
+How far finite elements agree with other methods about contacts whose ends are found.
+
+How far finite elements and the integral equation agree over layers, and what each says of itself.
+
+Where nothing is compared: next to the tip of a punch, at which stresses are infinite.
+
+Where a NaN or an infinity is no answer.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess import scale
-from galinx.postprocess.finite import not_finite
-from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities import stresses as at
-from galinx.postprocess.quantities import yielding as to
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, Quantity
-from galinx.postprocess.rule import Comparison, Rule, largest_of
-from galinx.postprocess.rules_of_ends import OF_ENDS, extremes_of
-from galinx.postprocess.rules_of_layers import ON_LAYERS
-from galinx.postprocess.tips import next_to_tips
 from galinx.registry import Registry
 from galinx.solvers.contact import under_punch
+
+from . import stresses
+from .quantities import layers as on_layers
+from .quantities import states as of
+from .quantities import stresses as at
+from .quantities import table
+from .quantities import yielding as to
+from .quantities.quantity import (
+    ANYWHERE,
+    BESIDE,
+    CLOSED_FORM,
+    FEM,
+    NEVER,
+    SIE,
+    Quantity,
+)
+from .quantities.states import LARGEST
+from .quantities.stresses import PRESSURE, SURFACE_X
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One figure of disagreement: its short ``name``, what it says, and the ``value`` (1)."""
+
+    name: str
+    text: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Rule:
+    """How quantities are compared, and what decides the verdict.
+
+    Attributes:
+        text: what the figure says.
+        needs: the quantities that are compared.
+        measure: the figure (1) from datasets by path and the load N per depth [N/m], that of each state
+            where they differ in it; None where there is nothing to say.
+        limit: largest value of a PASS; None where it is no fixed one.
+        tolerances: the same in units of the scene's tolerance.
+        mode: in which it is judged, as of a quantity; "" for each.
+        own_pressure: judged also where the pressure is the user's own.
+    """
+
+    text: str
+    needs: tuple[Quantity, ...]
+    measure: Callable[[dict[str, Any], Any], float | None]
+    limit: float | None = None
+    tolerances: float | None = None
+    mode: str = ""
+    own_pressure: bool = False
+
+    def allowed(self, tolerance: float) -> float | None:
+        """Largest value of a PASS; None where the figure is only told."""
+        return self.limit if self.tolerances is None else self.tolerances * tolerance
+
+
+def largest_of(row: Quantity) -> Callable[[dict[str, Any], Any], float]:
+    """The figure that is the largest of a quantity."""
+    return lambda data, _: float(data[row.path].max())
+
+
+def next_to_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
+    """Which positions on the surface are next to an infinite pressure of the closed form, (states, n).
+
+    Args:
+        data: datasets by path.
+        inside: that pressure is further in than this, over a.
+    """
+    X = data[SURFACE_X.path]
+    if LARGEST[CLOSED_FORM].path not in data or PRESSURE[CLOSED_FORM].path not in data:
+        return np.zeros((1, len(X)), dtype=bool)
+    infinite = np.isnan(data[LARGEST[CLOSED_FORM].path])[:, None]
+    σ_YY = np.where(under_punch(X), data[PRESSURE[CLOSED_FORM].path], 0.0)
+    tips = X[np.abs(σ_YY).argmax(axis=1)][:, None]
+    return infinite & (np.abs(tips) < inside) & ~stresses.off_tips(X, tips)
+
+
+def not_finite(data: dict[str, Any]) -> list[str]:
+    """Paths of datasets with a value that is not finite and that the table of quantities does not allow.
+
+    Args:
+        data: datasets of some states by path, the positions on the surface among them.
+    """
+    known, found = table(), []
+    for path, values in data.items():
+        if np.asarray(values).dtype.kind != "f":
+            continue
+        allowed = known[path].nan_allowed if path in known else NEVER
+        bad = ~np.isfinite(values)
+        if allowed == ANYWHERE:
+            bad = np.isinf(values)
+        elif allowed == BESIDE:
+            bad &= np.isinf(values) | under_punch(data[SURFACE_X.path])
+        if bad.any():
+            found.append(path)
+    return found
+
+
+def _ends(other: str) -> Callable[[dict[str, Any], Any], float]:
+    def measure(data: dict[str, Any], _: Any) -> float:
+        size = data[of.HALF_WIDTH[other].path]
+        off = [data[row[FEM].path] - data[row[other].path] for row in (of.HALF_WIDTH, of.CENTRE)]
+        return float((np.abs(off) / size).max())
+
+    return measure
+
+
+def _largest_pressure(other: str) -> Callable[[dict[str, Any], Any], float | None]:
+    def measure(data: dict[str, Any], _: Any) -> float | None:
+        fem, exact = (data[of.LARGEST[method].path] for method in (FEM, other))
+        off = np.abs(fem / exact - 1.0)
+        return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
+
+    return measure
+
+
+def extremes_of(other: str) -> Callable[[dict[str, Any], Any], float]:
+    """The measure of highest and lowest in-plane stresses, against another method."""
+
+    def measure(data: dict[str, Any], _: Any) -> float:
+        rows = (at.HIGHEST, at.LOWEST) if other == CLOSED_FORM else (on_layers.HIGHEST, on_layers.LOWEST)
+        exact = np.array([data[row[other].path] for row in rows])
+        fem = np.array([data[row[FEM].path] for row in (at.HIGHEST, at.LOWEST)])
+        return float((np.abs(fem - exact) / np.abs(exact).max(axis=0)).max())
+
+    return measure
+
+
+def _rules(other: str, name: str, against: str) -> dict[str, Rule]:
+    def of_both(*rows: dict[str, Any]) -> tuple[Any, ...]:
+        return tuple(row[method] for row in rows for method in (other, FEM))
+
+    return {
+        f"ends{name}": Rule(
+            f"ends of the contact{against}, over its half-width", of_both(of.HALF_WIDTH, of.CENTRE),
+            _ends(other), tolerances=1.0,
+        ),
+        f"largest pressure{name}": Rule(
+            f"largest contact pressure{against}, relative", of_both(of.LARGEST),
+            _largest_pressure(other), tolerances=1.0,
+        ),
+    }  # fmt: skip
+
+
+#: Rules by the name that quantities give.
+OF_ENDS: dict[str, Rule] = {
+    **_rules(CLOSED_FORM, "", ""),
+    **_rules(SIE, " over layers", " against the integral equation"),
+}
+
+
+#: Share of the larger intensity, or of the mean pressure, below which the other is not measured against
+#: itself.
+_VANISHING = 0.1
+
+
+def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
+    """Ends that are found have none."""
+    sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
+    fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
+    if not sie.any():
+        return None
+    size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
+    return float((np.abs(fem - sie) / size).max())
+
+
+def _pressures(data: dict[str, Any]) -> tuple[Any, Any]:
+    under = under_punch(data[at.SURFACE_X.path])
+    return data[at.PRESSURE[FEM].path][:, under], data[on_layers.PRESSURE[SIE].path][:, under]
+
+
+def _found_pressure_of_layers(data: dict[str, Any], _: float) -> float:
+    """Over each state's largest: next to free ends it vanishes."""
+    fem, sie = _pressures(data)
+    return float((np.abs(fem - sie) / np.abs(sie).max(axis=1, keepdims=True)).max())
+
+
+def _pressure_of_layers(data: dict[str, Any], _: float) -> float | None:
+    if of.HALF_WIDTH[SIE].path in data:
+        return None
+    fem, sie = _pressures(data)
+    return float((np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max())
+
+
+def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
+    fem, sie = (data[row.path] for row in (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE]))
+    return (np.abs(fem - sie) / stresses.of_in_plane(sie, data[at.SURFACE_X.path])).max()
+
+
+def _at_interfaces(data: dict[str, Any], _: float) -> float:
+    fem, sie = (np.array([data[row.path] for row in on_layers.INTERFACES[by]]) for by in (FEM, SIE))
+    return float((np.abs(fem - sie) / stresses.of_interfaces(sie)).max())
+
+
+def _inside_layers(data: dict[str, Any], _: float) -> float:
+    rows = at.STRESSES_INSIDE[FEM], on_layers.STRESSES_INSIDE[SIE]
+    fem, sie = ([data[row.path] for row in some] for some in rows)
+    places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
+    off = stresses.largest(one - other for one, other in zip(fem, sie))
+    return float((off / stresses.of_inside(sie, *places)).max())
+
+
+def _estimate(row: Quantity, what: str) -> Rule:
+    text = f"estimated error of {what}, relative"
+    return Rule(text, (row,), largest_of(row), tolerances=1.0, own_pressure=True)
+
+
+#: Rules by the name that quantities give.
+ON_LAYERS: dict[str, Rule] = {
+    "K_I of layers": Rule(
+        "K_I at both ends against the integral equation, relative",
+        (*(side[FEM] for side in (of.K_I_LEFT, of.K_I_RIGHT)),
+         *(side[SIE] for side in (on_layers.K_I_LEFT, on_layers.K_I_RIGHT))),
+        _intensities_of_layers, tolerances=1.0,
+    ),
+    "sigma_YY of layers": Rule(
+        "σ_YY against the integral equation, over itself or a tenth of the mean",
+        (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
+        tolerances=1.0,
+    ),
+    # As under punches on uniform solids whose ends are found.
+    "sigma_YY of found ends over layers": Rule(
+        "σ_YY of contacts whose ends are found against the integral equation, over the largest",
+        (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X, of.LARGEST[SIE]),
+        _found_pressure_of_layers, tolerances=10.0,
+    ),
+    "sigma_XX of layers": Rule(
+        "σ_XX against the integral equation, over itself or the largest",
+        (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
+        tolerances=1.0, own_pressure=True,
+    ),
+    "extremes of sigma_XX over layers": Rule(
+        "highest and lowest σ_XX against the integral equation, over the larger of them",
+        (at.HIGHEST[FEM], at.LOWEST[FEM], on_layers.HIGHEST[SIE], on_layers.LOWEST[SIE]),
+        extremes_of(SIE), tolerances=1.0, own_pressure=True,
+    ),
+    "estimate of the integral equation": Rule(
+        "estimated error of the integral equation over layers, relative",
+        (on_layers.ESTIMATE,), largest_of(on_layers.ESTIMATE), tolerances=1.0,
+    ),
+    "stresses at interfaces": Rule(
+        "stresses at interfaces against the integral equation, over the largest along each",
+        (*on_layers.INTERFACES[FEM], *on_layers.INTERFACES[SIE]), _at_interfaces, tolerances=1.0,
+        own_pressure=True,
+    ),
+    "stresses inside layers": Rule(
+        "stresses inside against the integral equation, over themselves or the largest",
+        (*at.STRESSES_INSIDE[FEM], *on_layers.STRESSES_INSIDE[SIE], at.INSIDE_X, at.INSIDE_Y),
+        _inside_layers,
+        tolerances=1.0, own_pressure=True,
+    ),
+    "estimate at interfaces, fem": _estimate(
+        on_layers.ESTIMATE_AT_INTERFACES[FEM], "stresses at interfaces by finite elements"
+    ),
+    "estimate at interfaces, sie": _estimate(
+        on_layers.ESTIMATE_AT_INTERFACES[SIE], "stresses at interfaces by the integral equation"
+    ),
+    "estimate of sigma_XX, sie": _estimate(
+        on_layers.ESTIMATE_IN_PLANE[SIE], "σ_XX of the integral equation over layers"
+    ),
+    "estimate inside, sie": _estimate(
+        on_layers.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
+    ),
+}  # fmt: skip
 
 
 def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
@@ -92,15 +359,15 @@ def _found_pressure(data: dict[str, Any], _: float) -> float:
 def _in_plane(data: dict[str, Any], _: float) -> float:
     """Next to a tip inside the contact nothing is compared; edges stand for themselves."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
-    off = np.abs(fem - exact) / scale.of_in_plane(exact, data[at.SURFACE_X.path])
-    return np.where(next_to_tips(data, 1.0 - scale.NEAR_TIP), 0.0, off).max()
+    off = np.abs(fem - exact) / stresses.of_in_plane(exact, data[at.SURFACE_X.path])
+    return np.where(next_to_tips(data, 1.0 - stresses.NEAR_TIP), 0.0, off).max()
 
 
 def _inside(data: dict[str, Any], _: float) -> float:
     fem, exact = ([data[row.path] for row in at.STRESSES_INSIDE[method]] for method in (FEM, CLOSED_FORM))
     places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    off = scale.largest(one - other for one, other in zip(fem, exact))
-    return (off / scale.of_inside(exact, *places)).max()
+    off = stresses.largest(one - other for one, other in zip(fem, exact))
+    return (off / stresses.of_inside(exact, *places)).max()
 
 
 def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
@@ -133,7 +400,6 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
 _NO_REACH = 1e-300
 
 #: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
-_VANISHING = 0.1
 
 #: The rule by which every quantity is judged.
 FINITE = "finite"

@@ -8,8 +8,25 @@ v₀ follows from the load. A half-plane has no length, so what is then left of 
 where b are two functions of s alone. By the local analysis of the ends they are (1 - s)^β (1 + s)^α times
 smooth ones, α and β the exponents of a flat punch; shapes whose slopes are Chebyshev polynomials give the
 moments of b, and thereby these. B = 0 is solved for m and h of any profile under any load, by quadrature.
+
+Pressure and slopes next to the free ends and the cusps of a contact, from a little farther away.
+
+By the local analysis they are smooth functions there, one of them times a power of the distance.
+
+The highest and the lowest in-plane stress on the surface, free ends and kinks included.
+
+The curve is known at samples. Between those next to its tops it is a polynomial of the confocal
+coordinate, in which it is smooth up to a free end; at the end itself, and at kinks, it is a limit. Places
+next to sharp edges and tips, where it is infinite, do not count.
+
+The pressure of a contact with free ends and kinks, from its nodal forces alone.
+
+Its moments converge slowly where it has a logarithm. Cells are small and many there instead, so that the
+piecewise polynomial that has the nodal forces is as good as they are; towards the ends it falls as the
+local analysis says.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -18,9 +35,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from galinx.postprocess.pressure import jacobi_in_chebyshev, jacobi_norms
+from galinx.solvers.contact import under_punch
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import check_reach, kinks
+from galinx.solvers.profiles import check_reach, jumps, kinks
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
+from galinx.solvers.solution import Between, Surface, Turns
+
+from .pressure import (
+    density_of_forces,
+    facets_of,
+    jacobi_in_chebyshev,
+    jacobi_norms,
+    lagrange,
+    reference_nodes,
+)
+from .stresses import NEAR, NEAR_TIP
 
 #: Shapes: of two the factors would be known, the third says how good they are.
 SHAPES = 3
@@ -225,3 +254,454 @@ def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
             s.append(points)
             weights.append(w * left * right)
     return np.concatenate(s), np.concatenate(weights)
+
+
+#: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
+#: there, and the degree of the polynomial through them.
+_LOOKED_AT, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
+
+
+def places_at_end(gap: float) -> NDArray[np.float64]:
+    """Distances over a from an end at which the pressure tells how it falls to it, growing.
+
+    Args:
+        gap: distance of the nearest kink, or of the other end.
+    """
+    near, far = (share * min(gap, 1.0) for share in _LOOKED_AT)
+    t = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES))
+    return (near + far) / 2.0 + (far - near) / 2.0 * t
+
+
+def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> NDArray[np.float64]:
+    """A pressure d^a times a smooth function, nearer to the end than where it is known.
+
+    Args:
+        d: distances that are wanted, over a.
+        known: those of :func:`places_at_end`.
+        σ_YY: at these.
+        exponent: a, at the free end.
+    """
+    smooth = np.polynomial.Chebyshev.fit(known, σ_YY / known**exponent, _DEGREE)
+    return d**exponent * smooth(d)
+
+
+#: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
+#: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
+#: there, even in the root of d; terms of each of the two series.
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), 24, 3
+#: Distance over a from an end within which stresses beside it tell what they are at it; singular values
+#: below which terms are one.
+_BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
+#: Powers of the distance, over d^a, with which solids graded from the surface on add logarithms.
+_LOGS = (1.0, 2.0)
+#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more
+#: than it is elsewhere.
+_CLEARED = 0.1
+
+
+def _two_series(
+    gap: float, seen: tuple[float, float], exponent: float, at_end: bool = False
+) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
+    """Where A(d) + d^a B(d) is to be known, and what it is by what it is there.
+
+    Args:
+        gap: that distances are over.
+        seen: the nearest and the farthest.
+        exponent: a.
+        at_end: are there what solids graded from the surface on add, d^(a + 1) log d and d^(a + 2) log d,
+            and what is left of an intensity, d^(a - 1), the last of the terms?
+
+    Returns:
+        Distances (m,), the terms at other distances, of (n,) (n, terms), and what gives their amplitudes,
+        (terms, m).
+    """
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
+    known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
+    powers = np.arange(_TERMS_OF_EACH)
+
+    def terms(d: NDArray) -> NDArray[np.float64]:
+        x = d / high**2
+        found = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        if not at_end:
+            return found
+        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
+        more[:, :-1] *= np.log(x)[:, None]
+        return np.concatenate([found, more], axis=1)
+
+    return known, terms, np.asarray(np.linalg.pinv(terms(known)), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Series:
+    """A(d) + d^a B(d), A and B smooth, from what it is at some distances d.
+
+    Attributes:
+        known: these distances over a, (m,).
+        terms: the two series' terms at other distances, of (n,) (n, terms).
+        amplitudes: what gives the terms' amplitudes by values at these, (terms, m).
+    """
+
+    known: NDArray[np.float64]
+    terms: Callable[[NDArray], NDArray]
+    amplitudes: NDArray[np.float64]
+
+    def by_known(self, d: NDArray) -> NDArray[np.float64]:
+        """What multiplies values at the known distances to give those at others, (n, m)."""
+        return np.asarray(self.terms(d) @ self.amplitudes)
+
+    def through(self, values: NDArray) -> Callable[[NDArray], NDArray]:
+        """The sum by distance, from its values at the known ones, (m,)."""
+        return lambda d: self.by_known(d) @ values
+
+
+def towards_cusp(gap: float, exponent: float) -> Series:
+    """Pressure or slopes next to a kink under which they have a cusp.
+
+    Args:
+        gap: distance of the next kink or end, over a.
+        exponent: of the distance from the kink, in (0, 1).
+    """
+    return Series(*_two_series(gap, _SEEN_AT_CUSP, exponent))
+
+
+def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[np.float64]:
+    """σ_XX at the ends of contacts by the limit from beside them, NaN at sharp ones, (states, 2).
+
+    Args:
+        X: positions over a, (n,).
+        σ_XX: there, (states, n).
+        exponents: of the pressure at the left and the right end, (states, 2).
+    """
+    found = np.full(exponents.shape, np.nan)
+    for i, side in enumerate((-1.0, 1.0)):
+        d = side * X - 1.0
+        beside = (d > 0.0) & (d < _BESIDE_END)
+        for row in np.flatnonzero(exponents[:, i] > 0.0):
+            a = exponents[row, i]
+            x = d[beside] / _BESIDE_END
+            terms = np.column_stack([np.ones_like(x), x, x**a, x ** (1.0 + a)])
+            found[row, i] = np.linalg.lstsq(terms, σ_XX[row, beside], rcond=_NO_DIGIT)[0][0]
+    return found
+
+
+def turns_at_ends(surface: Surface, local: Any) -> Turns:
+    """Stresses of states at both ends, NaN at sharp ones.
+
+    Args:
+        surface: of the states.
+        local: exponents α at X = a and β at X = -a, (states,).
+    """
+    exponents = np.column_stack([local.β, local.α])
+    σ_XX = in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
+    none = np.where(np.isnan(σ_XX), np.nan, 0.0)
+    return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
+
+
+#: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
+#: stress is interpolated.
+_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+#: Highest and lowest places among the few next to which the many are looked at.
+_TOPS = 4
+
+
+def turns_at_knots(
+    pressure: LinearPressure, g: NDArray, σ_XX: Callable[[NDArray], NDArray[np.float64]]
+) -> Turns:
+    """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
+
+    Args:
+        pressure: prescribed.
+        g: σ_XY/σ_YY, (states,).
+        σ_XX: in-plane stress over N/(2a) at positions on the surface, (states, n).
+    """
+    X = np.column_stack([pressure.knots[:-1], _between_knots(pressure, _COARSE)]).ravel()
+    each = σ_XX(np.append(X, 1.0))
+    each[:, [0, -1]] = np.where(pressure.values[[0, -1]] != 0.0, np.nan, each[:, [0, -1]])
+    per = 1 + len(_COARSE)
+    σ = each[:, ::per]
+    σ_YY = np.where(np.isnan(σ), np.nan, pressure.values)
+    knots = np.where(np.isnan(σ), np.nan, pressure.knots)
+    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
+    # A knot belongs to the intervals on both sides of it.
+    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
+    intervals = intervals[(intervals >= 0) & (intervals < len(pressure.knots) - 1)]
+    graded = _between_knots(pressure, _GRADED)[intervals]
+    between = Between(graded, _GRADED, σ_XX(graded.ravel()).reshape(len(g), *graded.shape))
+    return Turns(knots, np.array([σ, σ_YY, g[:, None] * σ_YY]), between)
+
+
+def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
+    """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
+    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(left + width / (1.0 + np.exp(-x)))
+
+
+def _tops(values: NDArray) -> NDArray[np.int64]:
+    """Numbers of the highest places (n,) of curves, (states, n)."""
+    padded = np.pad(np.nan_to_num(values, nan=-np.inf), ((0, 0), (1, 1)), constant_values=-np.inf)
+    inner = padded[:, 1:-1]
+    heights = np.where((inner >= padded[:, :-2]) & (inner >= padded[:, 2:]), inner, -np.inf)
+    return np.unique(np.argsort(-heights, axis=1, kind="stable")[:, :_TOPS])
+
+
+def slopes_towards_ends(
+    X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How displacement gradients next to free ends follow from those a little farther away.
+
+    Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
+    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end
+    does not have, is taken away up to ``_CLEARED``.
+
+    Args:
+        X: positions that are wanted, over a, (n,).
+        gaps: distances of the left and the right end from the nearest kink, over a.
+        exponents: a, at the left and at the right end.
+
+    Returns:
+        Positions (m,) at which gradients are to be known, and what multiplies these, (n, m).
+    """
+    places, rows = [X], [np.eye(len(X))]
+    for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
+        for side in (-1.0, 1.0):
+            d = side * (X - end)
+            length = min(gap, 1.0)
+            near, cleared = ((d > 0.0) & (d < share * length) for share in (_SEEN[0], _CLEARED))
+            if cleared.any():
+                known, terms, amplitudes = _two_series(gap, _SEEN, a, at_end=True)
+                rows[0][near] = 0.0
+                more = np.zeros((len(X), len(known)))
+                more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
+                more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
+                places.append(end + side * known)
+                rows.append(more)
+    return np.concatenate(places), np.concatenate(rows, axis=1)
+
+
+#: Tops of the samples that are looked at more nearly; samples that a polynomial goes through; places
+#: between the neighbours of a top.
+_TOPS, _THROUGH, _BETWEEN = 3, 8, 65
+
+
+def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
+    """The highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
+
+    Args:
+        solution: of one method, see :class:`galinx.solvers.solution.Solution`.
+        body: what slides over what.
+        sign: which of the two.
+    """
+    surface = solution.surface
+    X, σ_XX = surface.places.X, surface.σ_XX
+    at, limits = _limits(solution, body)
+    infinite = _infinite(solution, body, len(σ_XX))
+    values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
+    limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
+    pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
+    best = np.maximum(values.max(axis=1), limits.max(axis=1, initial=-np.inf))
+    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
+    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
+    between = surface.turns and surface.turns.between
+    if not between:
+        return sign * np.maximum(best, _largest(u, values, pieces))
+    best = np.maximum(best, _largest(u, np.where(np.abs(X) < 1.0, -np.inf, values), pieces))
+    for i, X in enumerate(between.X):
+        values = np.where(_finite(X, infinite), sign * between.σ_XX[:, i], -np.inf)
+        best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
+    return sign * best
+
+
+def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
+    """Which positions, (n,) or (states, n), are off all places of :func:`_infinite`, (states, n)."""
+    each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
+    return np.logical_and.reduce(each)
+
+
+def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Both ends and kinks, where the curve may turn, and its limits there or NaN, (states, k) each."""
+    surface, ends = solution.surface, np.tile([-1.0, 1.0], (len(solution.g), 1))
+    if surface.turns is not None:
+        at = np.concatenate([ends, surface.turns.X], axis=1)
+        return at, np.concatenate([np.full_like(ends, np.nan), surface.turns.σ[0]], axis=1)
+    exponents = np.column_stack([solution.local.β, solution.local.α])
+    return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
+
+
+def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.float64], float]]:
+    """Where stresses are infinite, NaN for nowhere, (states,) each; and within which distance of it."""
+    if body.pressure:
+        sharp = np.tile(body.pressure.values[[0, -1]] != 0.0, (states, 1))
+    else:
+        sharp = np.column_stack([solution.local.β, solution.local.α]) < 0.0
+    found = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
+    if body.found and jumps(body.profile):
+        for kink in kinks(body.profile):
+            found.append(((kink - solution.centre) / solution.half_width, NEAR_TIP))
+    return found
+
+
+def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
+    """Largest of curves, by polynomials through the samples around their highest tops, (states,).
+
+    Args:
+        u: coordinate in which they are smooth, growing, (n,).
+        values: there, -inf where the curve is not told, (states, n).
+        pieces: which smooth piece of the curve a sample belongs to, (states, n).
+    """
+    rows, best = np.arange(len(values))[:, None], values.max(axis=1)
+    inner = values[:, 1:-1]
+    top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
+    order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
+    for column in order.T:
+        i = column + 1
+        window = np.clip(i - _THROUGH // 2, 0, len(u) - _THROUGH)[:, None] + np.arange(_THROUGH)
+        # A window that reaches into the next piece is moved back.
+        other = pieces[rows, window] != pieces[rows, i[:, None]]
+        shift = (other & (window < i[:, None])).sum(axis=1) - (other & (window > i[:, None])).sum(axis=1)
+        window = np.clip(window + shift[:, None], 0, len(u) - 1)
+        same = (pieces[rows, window] == pieces[rows, i[:, None]]).all(axis=1)
+        usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
+        usable &= top[rows[:, 0], column]
+        if usable.any():
+            some = usable.nonzero()[0]
+            found = _between(u, values[some[:, None], window[some]], window[some], i[some])
+            best[some] = np.maximum(best[some], found)
+    return best
+
+
+def _between(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray[np.float64]:
+    """Largest value of polynomials between the neighbours of the samples ``i``, (m,)."""
+    nodes = u[window]
+    low, high = (np.clip(u[np.clip(i + k, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for k in (-1, 1))
+    at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _BETWEEN)
+    curve = np.zeros_like(at)
+    for k in range(nodes.shape[1]):
+        others = np.delete(nodes, k, axis=1)
+        factors = (at[:, :, None] - others[:, None]) / (nodes[:, k, None, None] - others[:, None])
+        curve += values[:, k, None] * factors.prod(axis=-1)
+    k = np.clip(curve.argmax(axis=1), 1, _BETWEEN - 2)[:, None]
+    left, middle, right = (np.take_along_axis(curve, k + step, 1)[:, 0] for step in (-1, 0, 1))
+    bend = left - 2.0 * middle + right
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = middle - (right - left) ** 2 / (8.0 * bend)
+    inside = (bend < 0.0) & (np.abs(right - left) <= -2.0 * bend)
+    return np.where(inside, vertex, curve.max(axis=1))
+
+
+#: Most tops that are looked at more nearly; places at a time; steps between them that are small enough.
+_KINKED_TOPS, _PLACES_AT_A_TIME, _STEP = 4, 41, 2e-5
+
+
+def gaps_of(kinks: NDArray) -> tuple[float, float]:
+    """Distances of the left and the right end from the nearest kink, or from one another."""
+    return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
+
+
+class KinkedPressure:
+    """σ_YY over N/(2a) of one state.
+
+    Args:
+        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
+        degree: polynomial degree p.
+        chart: the mesh's chart, see :class:`galinx.solvers.fem.cells.Chart`.
+        forces: consistent nodal forces over N/2, (F p + 1,).
+        kinks: places of the kinks over a, in their order.
+        exponents: of the pressure at the left and the right end, positive.
+        cusp: exponent of the distance from a kink with which the pressure leaves its value there, if it
+            is below 1; 0 for none.
+    """
+
+    def __init__(
+        self,
+        s: NDArray,
+        degree: int,
+        chart: Any,
+        forces: NDArray,
+        kinks: NDArray,
+        exponents: tuple[float, float],
+        cusp: float = 0.0,
+    ) -> None:
+        facets = facets_of(s, degree)
+        self._chart, self.kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
+        self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
+        self._nodes = reference_nodes(s, facets)
+        self._density = density_of_forces(s, facets, forces)[facets]
+        self._known = [places_at_end(gap) for gap in gaps_of(kinks)]
+        self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:
+        """Positions over a between which it is a polynomial but for the chart's stretch."""
+        return np.asarray(self._chart.surface_position(self._start[1:]))
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """At positions over a, (n,); NaN beside the contact."""
+        found, inside = np.full(len(r), np.nan), under_punch(r)
+        found[inside] = self._piecewise(r[inside])
+        ends = zip((1.0 + r, 1.0 - r), self._known, self._there, self._exponents)
+        for d, known, values, exponent in ends:
+            near = (d > 0.0) & (d < known[0])
+            found[near] = towards_end(d[near], known, values, exponent)
+        for number, at in enumerate(self.kinks if self._cusp else ()):
+            for side in (-1.0, 1.0):
+                series, d = self._series(number, side), side * (r - at)
+                near = (d >= 0.0) & (d < series.known.min())
+                if near.any():
+                    found[near] = series.through(self._piecewise(at + side * series.known))(d[near])
+        return found
+
+    def largest(self) -> tuple[float, float]:
+        """Largest pressure over N/(2a), and its place over a: nearer and nearer to the best nodes."""
+        nodes = self._start[:, None] + self._length[:, None] * self._nodes
+        r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
+        r = r[under_punch(r)]
+        p = -self.σ_YY(r)
+        tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+        tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
+        found = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
+        if self._cusp:
+            found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
+        return max(found)
+
+    def _nearer(self, low: float, high: float) -> tuple[float, float]:
+        step = 1.0
+        while step > _STEP:
+            # Next to a kink it may have a cusp, which is no place that a grid would meet.
+            r = np.linspace(low, high, _PLACES_AT_A_TIME)
+            r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
+            p = -self.σ_YY(r)
+            i, step = int(p.argmax()), (high - low) / (_PLACES_AT_A_TIME - 1)
+            low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
+        return float(p[i]), float(r[i])
+
+    def at_kink(self, number: int) -> float:
+        """σ_YY over N/(2a) at a kink."""
+        return self.limit_at_kink(number, self._piecewise)
+
+    def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
+        """A stress or strain at a kink, by the limit from both sides where it has a cusp there.
+
+        Args:
+            number: of the kink.
+            values: at positions over a, (n,).
+        """
+        at = self.kinks[number]
+        if not self._cusp:
+            return float(values(np.array([at]))[0])
+        both = [(side, self._series(number, side)) for side in (-1.0, 1.0)]
+        limits = [series.through(values(at + side * series.known))(np.zeros(1)) for side, series in both]
+        return float(np.mean(limits))
+
+    def _series(self, number: int, side: float) -> Series:
+        """Of the pressure on one side of a kink."""
+        ends = np.concatenate([[-1.0], self.kinks, [1.0]])
+        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
+        return towards_cusp(float(gap), self._cusp)
+
+    def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
+        at = self._chart.surface_coordinate(r)
+        facet = np.clip(np.searchsorted(self._start, at, side="right") - 1, 0, len(self._start) - 1)
+        values = lagrange(self._nodes, (at - self._start[facet]) / self._length[facet])
+        density = np.einsum("qi,qi->q", values, self._density[facet])
+        return np.asarray(density / self._chart.surface_stretch(at))

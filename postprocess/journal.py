@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx import files, sealed
-from galinx.postprocess.compare import Comparison
-from galinx.postprocess.disk import refused
-from galinx.postprocess.errors import ArchiveInUse, LeftOver
+
+from .compare import Comparison
+from .errors import ArchiveInUse, LeftOver, refused
 
 _SUFFIX = ".part"
 #: Name of the file that tells which archive a run was about to publish.

@@ -4,10 +4,10 @@ from typing import Any
 
 import xarray
 
-from galinx.postprocess.apart import parameters
-from galinx.postprocess.quantities import Quantity, of_states, table
-from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
+from .quantities import Quantity, of_states, table
+from .quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, POINT, STATE
+from .quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
+from .tables import parameters
 
 #: Names of dimensions, and of the positions along them.
 _DIMENSIONS = {

@@ -1,11 +1,24 @@
-"""What is read off contact forces that change in time: centre of the pressure, and K_I at both ends."""
+"""What is read off contact forces that change in time: centre of the pressure, and K_I at both ends.
 
+How far two methods agree on starts from rest; their rules are among those of all comparisons.
+
+How far a start from rest is from steady motion, and when it is near.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
+
+from .compare import RULES, Rule
+from .quantities import over_time as of
+from .quantities import over_time as rows
+from .quantities.over_time import SHARES
+from .quantities.quantity import FEM, SIE
 
 #: Moments of the pressure that elements tell, over their degree: what they are tested with has to be held
 #: by them, too. And how many fewer polynomials the smooth factor has: a wave that runs little faster than
@@ -32,7 +45,7 @@ class Told:
     K_right: NDArray[np.float64]
 
 
-def told(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> Told:
+def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> Told:
     """What consistent nodal forces of σ_YY say; tested with smooth functions they give its moments.
 
     Args:
@@ -74,3 +87,134 @@ def _squares(α: float, β: float, count: int) -> NDArray[np.float64]:
     first = gammaln(α + 1.0) + gammaln(β + 1.0)
     rest = gammaln(j + α + 1.0) + gammaln(j + β + 1.0) - gammaln(j + 1.0) - gammaln(j) - np.log(2.0 * j)
     return np.concatenate([[first], rest])
+
+
+#: Rules by name: of both methods, and of finite elements.
+BOTH, OF_FEM = "over time", "estimate over time"
+
+#: Centre of the pressure over a that is as good as none.
+_NO_LEAN = 1e-2
+#: Indentation over N/(2μ) that is as good as none.
+_NO_SINKING = 1e-2
+
+#: What both methods tell.
+TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
+
+
+def largest_change(
+    found: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray, lean: ArrayLike = 0.0
+) -> float:
+    """How far v₀, centre, K_I left and right (starts, times) are apart, over the largest of a start.
+
+    The centre is multiplied by the load: where there is hardly any, it says hardly anything. K_I is over
+    that of the stronger end, and left out where it is NaN.
+
+    Args:
+        found, expected: of both methods.
+        load: share of N, (times,).
+        lean: centre of steady motion, (starts, times), which counts among those of which the largest is
+            taken.
+    """
+    off, sizes = [], []
+    for n, (one, other) in enumerate(zip(found, expected)):
+        share = load if n == 1 else np.ones_like(load)
+        off.append(np.abs((one - other) * share).max(axis=-1))
+        sizes.append(np.abs(other * share).max(axis=-1))
+    sizes[0] = np.maximum(sizes[0], _NO_SINKING)
+    sizes[1] = np.maximum(np.maximum(sizes[1], _NO_LEAN), np.abs(np.atleast_1d(lean)).max(axis=-1))
+    sizes[2] = sizes[3] = np.maximum(sizes[2], sizes[3])
+    return float(np.nanmax(np.array(off) / np.array(sizes)))
+
+
+def _both(data: Mapping[str, Any], _: Any) -> float:
+    """Up to where the integral equation knows them."""
+    known = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
+    if not known.any():
+        return np.inf
+    fem, sie = ([data[row[method].path][:, known] for row in TOLD] for method in (FEM, SIE))
+    return largest_change(fem, sie, data[rows.LOAD.path][known], lean_of_steady(data)[:, known])
+
+
+def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Centre of steady motion where friction changes, 0 elsewhere, (starts, times).
+
+    Friction that changes faster than waves run has a steady lean that the pressure never comes to.
+    """
+    changing = np.ptp(data[rows.RATIOS.path], axis=-1) > 0.0
+    return np.asarray(np.where(changing[:, None], data[rows.CENTRES.path], 0.0))
+
+
+def _estimate(data: Mapping[str, Any], _: Any) -> float:
+    return float(data[rows.ESTIMATE.path].max())
+
+
+RULES.register(
+    BOTH,
+    Rule(
+        "v₀, centre times load and K_I over time against the integral equation, over the largest",
+        (rows.LOAD, rows.RATIOS, rows.CENTRES, *(row[method] for row in TOLD for method in (FEM, SIE))),
+        _both, tolerances=1.0,
+    ),
+)  # fmt: skip
+RULES.register(
+    OF_FEM,
+    Rule("estimated error over time, over the largest", (rows.ESTIMATE,), _estimate, tolerances=1.0),
+)
+
+
+#: How much the distance times the time may change over the second half of a motion that comes to steady
+#: motion like 1/t.
+_ALIKE = 0.1
+
+
+def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
+    """Largest difference of K_I over that of steady motion, and of the centre over a, (starts, times).
+
+    Args:
+        data: datasets of starts from rest by path.
+        method: of solution.
+    """
+    K, centre = data[rows.STEADY_K_I.path][:, None], data[rows.STEADY_CENTRE.path][:, None]
+    of_K = [np.abs(data[row[method].path] / K - 1.0) for row in (rows.K_I_LEFT, rows.K_I_RIGHT)]
+    return np.asarray(np.max([*of_K, np.abs(data[rows.CENTRE[method].path] - centre)], axis=0))
+
+
+def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
+    """Times from which on starts are within ``SHARES`` of steady motion, (starts, shares).
+
+    Where that is later than the last time what is left is taken to fall like 1/t from there on, t from
+    when the load was half, if it does so to a tenth in the second half of that time; else it is NaN:
+    too little of the motion is known.
+
+    Args:
+        t: times over a/c_s, (times,).
+        load: over N, (times,).
+        off: how far they are, (starts, times).
+    """
+    lacks, steps = np.concatenate([[1.0], 1.0 - load]), np.diff(t, prepend=0.0)
+    begun = float(steps @ (lacks[1:] + lacks[:-1])) / 2.0
+    found = np.empty((len(off), len(SHARES)))
+    tail, since = t >= (begun + t[-1]) / 2.0, t - begun
+    for i, one in enumerate(off):
+        left = since[tail] * one[tail]
+        like = np.isfinite(left).all() and np.ptp(left) <= _ALIKE * left[-1]
+        for n, share in enumerate(SHARES):
+            far = np.flatnonzero(one > share)
+            last = int(far[-1]) if len(far) else -1
+            if last == len(t) - 1:
+                found[i, n] = begun + left[-1] / share if like else np.nan
+            elif last < 0:
+                found[i, n] = t[0]
+            else:
+                a, b = one[last], one[last + 1]
+                found[i, n] = t[last] + (t[last + 1] - t[last]) * (a - share) / (a - b)
+    return found
+
+
+def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDArray[np.float64]]:
+    """Datasets of a method by path: how far at the end, and when near."""
+    off = from_steady(data, method)
+    off = np.where(np.isnan(off), np.inf, off)  # where K_I cannot be told, nothing is known to be near
+    times, load = data[rows.TIMES.path], data[rows.LOAD.path]
+    found = {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
+    return {path: np.where(np.isfinite(values), values, np.nan) for path, values in found.items()}

@@ -6,11 +6,24 @@ uses the exponents of the local edge analysis; the exponents reported for the fi
 fitted from the raw pressure, which uses none.
 
 All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
+
+Pressures that change fast towards the ends of the contact, as over thin layers, from moments.
+
+Without its weight such a pressure varies over a length h next to the ends, and over the distance from the
+end farther away. In
+
+    ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
+
+it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
+graded from the surface on it has terms d log d, d² log d and d² log² d of the distance d from an end
+besides, which no polynomial follows; they stand before these.
+
+The largest contact pressure, and where it is.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +32,7 @@ from scipy.linalg import solveh_banded
 from scipy.special import gammaln, roots_legendre
 
 from galinx.solvers.contact import under_punch
+from galinx.solvers.layers.panelled import Panels
 
 #: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
 #: truncation or another profile adds, and the highest say how well they are resolved.
@@ -184,7 +198,7 @@ def contact_recovery(
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: the mesh's chart, see :class:`galinx.solvers.fem.chart.Chart`.
+        chart: the mesh's chart, see :class:`galinx.solvers.fem.cells.Chart`.
         r: positions X/a of the raw pressure.
         farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
             two at least: the innermost cannot follow the singularity and disturb their neighbours,
@@ -254,3 +268,144 @@ def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
     """Values at t of the Lagrange polynomials of the nodes, all in [0, 1]: (len(t), len(nodes))."""
     at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
     return at_t @ np.linalg.inv(at_nodes)
+
+
+#: Positions at which it is looked for, rounds nearer to it, by how much nearer in each, and how near.
+_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+_ROUNDS, _NEARER, _NEAREST = 6, 8.0, 1e-4
+#: Most tops that are looked at more nearly, and three places around each.
+_TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
+
+
+def largest(
+    pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value and its place over a, (states,) each, of a pressure that is smooth.
+
+    Args:
+        pressure: of all states at positions (n,), (states, n).
+        of_state: of one, by its number.
+    """
+    p = pressure(_LOOKED_AT)
+    inner = p[:, 1:-1]
+    top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
+    best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
+    values, places = zip(*(_nearer(of_state, i) for i in best.T))
+    first, rows = np.argmax(values, axis=0), np.arange(len(p))
+    return np.array(values)[first, rows], np.array(places)[first, rows]
+
+
+def _nearer(
+    of_state: Callable[[int, NDArray], NDArray], i: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value and its place between the neighbours of a position of each state, (states,) each."""
+    places = _LOOKED_AT[i[:, None] + [-1, 0, 1]]
+    for _ in range(_ROUNDS):
+        three = np.stack([of_state(k, x) for k, x in enumerate(places)])
+        half = (places[:, 2] - places[:, 0]) / 2.0
+        divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
+        bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
+        round_ = (bend < 0.0) & (top > places[:, 0]) & (top < places[:, 2])
+        top = np.where(round_, top, places[np.arange(len(i)), three.argmax(axis=1)])
+        to_left, to_middle = top - places[:, 0], top - places[:, 1]
+        value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
+        half = np.maximum(half / _NEARER, _NEAREST)
+        places = np.clip(top, -1.0 + 2.0 * half, 1.0 - 2.0 * half)[:, None] + half[:, None] * _THREE
+    return value, top
+
+
+#: Longest panel of the rule for products of polynomials, over 1 and over h.
+_FINE = 0.3
+#: Polynomials that tell how well a pressure is resolved.
+_LAST = 2
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Functions that follow a pressure without its weight.
+
+    Attributes:
+        h: length over a.
+        graded: is the solid graded from the surface on?
+    """
+
+    h: float
+    graded: bool = False
+
+    def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
+        """ζ."""
+        r = np.asarray(r, dtype=float)
+        found = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
+        return np.asarray(np.clip(found / np.arcsinh(2.0 / self.h), -1.0, 1.0))
+
+    def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """So many polynomials of ζ, after what belongs to the ends, (len(r), functions)."""
+        if not self.graded:
+            return chebyshev(self(r), count)
+        return np.asarray(self.of_ends(r, count) @ _to_orthonormal(self, count))
+
+    def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """What belongs to the ends, then polynomials: nearly dependent."""
+        found = []
+        for d in ((1.0 - r) / 2.0, (1.0 + r) / 2.0):
+            d = np.clip(d, 0.0, 1.0)
+            log = np.log(np.maximum(d, np.finfo(float).tiny))
+            found += [d * log, d**2 * log, d**2 * log**2]
+        return np.column_stack([*found, chebyshev(self(r), count)])
+
+    def polynomials(self, functions: int) -> int:
+        """How many of these functions are polynomials."""
+        return functions - 6 * self.graded
+
+
+@cache
+def _to_orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
+
+    Moments are taken with these: the functions themselves depend on one another so nearly that what
+    rounds their moments would be seen in the pressure.
+    """
+    rule = _rule(-0.5, -0.5, stretch)
+    f = stretch.of_ends(rule.t, count) * np.sqrt(rule.weights)[:, None]
+    return np.asarray(np.linalg.inv(np.linalg.qr(f, mode="r")))
+
+
+@dataclass(frozen=True)
+class StretchedPressure(JacobiPressure):
+    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r) of several states, f of :class:`Stretch`."""
+
+    stretch: Stretch = Stretch(1.0)
+
+    def factor(self, r: NDArray) -> NDArray[np.float64]:
+        count = self.stretch.polynomials(self.c.shape[1])
+        return np.asarray(self.c @ self.stretch.functions(r, count).T)
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """The last polynomials' share, relative to the largest of the factor at the ends, (states,)."""
+        last = np.abs(self.c[:, -_LAST:]).sum(axis=1)
+        return np.asarray(last / np.abs(self.factor(np.array([-1.0, 1.0]))).max(axis=1))
+
+
+def stretched_from_moments(
+    moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch
+) -> StretchedPressure:
+    """Pressure that has the given moments ∫ σ_YY f_k dr, (states, moments)."""
+    c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
+    for i, one in enumerate(moments):
+        weights = _rule(float(α[i]), float(β[i]), stretch).weights
+        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, one)
+    return StretchedPressure(α, β, c, stretch)
+
+
+def _rule(α: float, β: float, stretch: Stretch) -> Panels:
+    """For products of functions under the weight of these exponents; all have the same points."""
+    return Panels(α, β, _FINE * min(1.0, stretch.h))
+
+
+@lru_cache(maxsize=8)
+def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """So many functions at the points of the rule, (points, count)."""
+    return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))

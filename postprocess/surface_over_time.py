@@ -1,4 +1,7 @@
-"""Stresses along the surface over time: what is told of them, and how well."""
+"""Stresses along the surface over time: what is told of them, and how well.
+
+Where energy goes over time: do works and energies balance, and do both methods tell the same works?
+"""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,18 +9,77 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.compare import RULES, Rule
-from galinx.postprocess.energy_over_time import off_until_turn
-from galinx.postprocess.quantities import surface_over_time as rows
-from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.quantities.work_over_time import LEFT, RIGHT
 from galinx.solvers.contact import from_edge
 from galinx.solvers.transient.punch import ON_SURFACE
+
+from .compare import RULES, Rule
+from .quantities import over_time as energy
+from .quantities import over_time as rows
+from .quantities.over_time import LEFT, OF_FRICTION, OF_LOAD, RIGHT
+from .quantities.quantity import FEM, SIE, Quantity
+
+#: Rules by name.
+WORKS, BALANCE = "works over time", "energy over time"
+
+_DONE = OF_LOAD[FEM], OF_FRICTION[FEM], energy.CARRIED
+_HELD = energy.STRAIN, energy.KINETIC, energy.RADIATED
+
+
+def left_over(data: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Work that is nowhere to be found, over the largest work of a motion, (motions, times)."""
+    done, held = (sum(data[row.path] for row in some) for some in (_DONE, _HELD))
+    return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
+
+
+def _balance(data: Mapping[str, Any], _: Any) -> float:
+    return float(np.abs(left_over(data)).max())
+
+
+def _works(data: Mapping[str, Any], _: Any) -> float | None:
+    return off_until_turn(data, (OF_LOAD, OF_FRICTION))
+
+
+def off_until_turn(data: Mapping[str, Any], rows: tuple[dict[str, Quantity], ...]) -> float | None:
+    """How far both methods' histories are apart up to the first turn, over the largest of a motion.
+
+    Args:
+        data: datasets by path.
+        rows: histories by method, (motions, times) each.
+
+    Returns:
+        None where the integral equation knows none of them.
+    """
+    fem, sie = (np.array([data[row[method].path] for row in rows]) for method in (FEM, SIE))
+    known = np.isfinite(sie).all(axis=(0, 1))
+    if not known.any():
+        return None
+    off, size = (np.abs(of[..., known]).max(axis=(0, 2)) for of in (fem - sie, sie))
+    return float((off / size).max())
+
+
+RULES.register(
+    WORKS,
+    Rule(
+        "works of load and friction over time against the integral equation, over the largest",
+        tuple(row[method] for row in (OF_LOAD, OF_FRICTION) for method in (FEM, SIE)), _works,
+        tolerances=1.0,
+    ),
+)  # fmt: skip
+RULES.register(
+    BALANCE,
+    Rule(
+        "work without its energy over time, over the largest work",
+        (*_DONE, *_HELD),
+        _balance,
+        tolerances=1.0,
+    ),
+)
+
 
 #: Distance over a from the edges, where stresses are infinite, further than which they are compared.
 NEAR = 0.01
 #: What is compared; friction's stress is the pressure's by a factor.
-TOLD = rows.IN_PLANE, rows.PRESSURE
+TOLD = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
 
 
 def largest_change(found: Any, expected: Any) -> float:
@@ -37,17 +99,25 @@ def largest_change(found: Any, expected: Any) -> float:
 def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict[str, NDArray]:
     """The estimated error of a motion that two solutions tell, none where they tell no stresses."""
     of_both = [[of[row[FEM].path] for row in TOLD] for of in (before, now) if TOLD[0][FEM].path in of]
-    return {rows.ESTIMATE.path: np.array(largest_change(*of_both))} if len(of_both) == 2 else {}
+    return {rows.SURFACE_ESTIMATE.path: np.array(largest_change(*of_both))} if len(of_both) == 2 else {}
 
 
 def named(method: str, stresses: NDArray) -> dict[str, NDArray]:
     """Datasets of a method's σ_XX, σ_YY and σ_XY, (3, times, places)."""
-    return dict(zip((row[method].path for row in (rows.IN_PLANE, rows.PRESSURE, rows.SHEAR)), stresses))
+    return dict(
+        zip(
+            (
+                row[method].path
+                for row in (rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR)
+            ),
+            stresses,
+        )
+    )
 
 
 def where(t: NDArray) -> dict[str, NDArray]:
     """Datasets of the times and places at which they are told."""
-    return {rows.TIMES.path: t, rows.PLACES.path: ON_SURFACE}
+    return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float | None:
@@ -59,7 +129,7 @@ def _both(data: Mapping[str, Any], _: Any) -> float | None:
 
 
 def _estimate(data: Mapping[str, Any], _: Any) -> float:
-    return float(data[rows.ESTIMATE.path].max())
+    return float(data[rows.SURFACE_ESTIMATE.path].max())
 
 
 def _beside(data: Mapping[str, Any], _: Any) -> float | None:
@@ -84,7 +154,7 @@ RULES.register(
     OF_FEM,
     Rule(
         "estimated error of σ_XX and σ_YY along the surface over time, over the largest further than "
-        "0.01 a from the edges", (rows.ESTIMATE,), _estimate, tolerances=1.0,
+        "0.01 a from the edges", (rows.SURFACE_ESTIMATE,), _estimate, tolerances=1.0,
     ),
 )  # fmt: skip
 RULES.register(

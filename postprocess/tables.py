@@ -1,19 +1,96 @@
-"""Tables as text."""
+"""Tables as text.
+
+What tells an archive's states apart.
+
+How quantities are told: as archived, or scaled.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from galinx.postprocess.apart import parameters
-from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.quantities import Quantity, over_time, runs, slider, to_steady, validity, yielding
-from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities import strata as layers
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
-from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
+from .figures.style import plain
+from .quantities import (
+    Quantity,
+    layers,
+    over_time,
+    runs,
+    states,
+    table,
+    validity,
+    yielding,
+)
+from .quantities import states as of
+from .quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
+from .quantities.states import LOAD, MOTION, POSITION, SPEED
+
+
+def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
+    """What tells an archive's states apart, by its dataset's path, slowest first.
+
+    Args:
+        data: datasets by path.
+    """
+    known = {path: row for path, row in table().items() if row.symbol and path in data}
+    first, last = [SPEED.path, *({LOAD.path} & known.keys())], [MOTION.path, POSITION.path]
+    own = [path for path in known if path not in (*first, *last)]
+    return {path: known[path] for path in (*first, *own, *last)}
+
+
+class Scaled(NamedTuple):
+    """What a quantity is called where it is told, its unit, and how its numbers are told.
+
+    They are multiplied by the factor, then the offset is added: one number, or one of each state,
+    (states,), where contacts of states differ.
+    """
+
+    name: str
+    unit: str
+    factor: Any
+    offset: Any = 0.0
+
+    @property
+    def head(self) -> str:
+        """Of a column."""
+        return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
+
+    def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
+        """Numbers as they are told.
+
+        Args:
+            values: as archived, (states, …).
+            states: numbers of their states, where these are not all.
+        """
+        if np.ndim(self.factor):
+            factor, offset = (
+                np.broadcast_to(one, self.factor.shape)[states].reshape(-1, *(1,) * (values.ndim - 1))
+                for one in (self.factor, self.offset)
+            )
+            return values * factor + offset
+        return values if self.factor == 1.0 else self.factor * values
+
+
+#: How a quantity of some name is told; None where it is not, since another becomes the same.
+Scaling = Callable[[Quantity, str], Scaled | None]
+
+
+def as_archived(row: Quantity, name: str) -> Scaled:
+    """In its own unit."""
+    return Scaled(name, row.unit, 1.0)
+
+
+#: Numbers of states that are lengths over the half-width.
+LENGTHS = (
+    *validity.STRAINED,
+    *states.LARGEST_X.values(),
+    *(where for _, where in validity.TENSION.values()),
+    *(row for rows in yielding.OVER_HALF_WIDTH for row in rows.values()),
+)
+
 
 #: States that a table shows at most, and inner variables of a law.
 LIMIT, _VARIABLES = 24, 6
@@ -228,15 +305,15 @@ _OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
     ("stiffness (N/m²)", runs.LOOP_STIFFNESS, lambda values: values[0]),
 )
 _OF_SLIDERS = (
-    ("period (s)", slider.PERIOD), ("slip per cycle (m)", slider.SLIP),
-    ("peak (m/s)", slider.PEAK), ("least (m/s)", slider.LEAST),
+    ("period (s)", runs.PERIOD), ("slip per cycle (m)", runs.SLIP),
+    ("peak (m/s)", runs.PEAK), ("least (m/s)", runs.LEAST),
 )  # fmt: skip
 
 
 def sliders_sheet(data: dict[str, Any]) -> Sheet:
     """Stick-slip of the first sliders, one for each law."""
     columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
-    outcomes = map(str, data[slider.OUTCOME.path]) if columns else []
+    outcomes = map(str, data[runs.OUTCOME.path]) if columns else []
     rows = [
         [str(n), outcome, *("" if isnan(value) else f"{value:.6g}" for value in values)]
         for n, (outcome, values) in enumerate(zip(outcomes, zip(*columns)))
@@ -262,7 +339,7 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
     ways = ["-+"[way > 0.0] + "X" for way in data[over_time.DIRECTION.path][:LIMIT, -1]]
     by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
     last = [data[row[method].path][:LIMIT, -1] for row in by_method]
-    off, near = data[to_steady.OFF[method].path], data[to_steady.WITHIN[method].path][:, 1]
+    off, near = data[over_time.OFF[method].path], data[over_time.WITHIN[method].path][:, 1]
     columns = [values[:LIMIT].tolist() for values in (c, g, *last, steady, 100.0 * off)]
     end = data[over_time.TIMES.path][-1]
     rows = [
@@ -273,7 +350,7 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
             _when(seen, end, unit),
             _rounded(by_formula, unit),
         ]
-        for way, *row, far, seen, by_formula in zip(ways, *columns, near, data[to_steady.APPROACH.path])
+        for way, *row, far, seen, by_formula in zip(ways, *columns, near, data[over_time.APPROACH.path])
     ]
     heads = ["way", "c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady"]
     heads += ["off (%)", "within 1 % from", "by formula"]

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from galinx import files
-from galinx.postprocess.disk import refused
-from galinx.postprocess.errors import Occupied, UnwritableArchive
+
+from .errors import Occupied, UnwritableArchive, refused
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import validity as of
-from galinx.postprocess.quantities.states import RATIO, SPEED
+from .quantities import validity as of
+from .quantities.states import RATIO, SPEED
 
 #: Wave crossings in a stroke below which a steady state is not reached.
 FEW = 30.0

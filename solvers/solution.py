@@ -7,13 +7,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import under_punch
-from galinx.solvers.layers.in_cells import LayersInCells
-from galinx.solvers.layers.layered import Layered
-from galinx.solvers.profiles import Profile, ends_are_found, exponent, half_width, jumps
-from galinx.solvers.sie.linear import LinearPressure
-from galinx.solvers.solids import Solid
-from galinx.solvers.solids.solid import Response
+from .contact import under_punch
+from .layers.in_cells import LayersInCells
+from .layers.layered import Layered
+from .profiles import Profile, ends_are_found, exponent, half_width, jumps
+from .sie.prescribed_pressure import LinearPressure
+from .solids import Solid
+from .solids.solid import Response
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ class Body:
         if isinstance(self.solid, Layered):
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
-        from galinx.solvers.sie.found import contacts
+        from .sie.free_contact import contacts
 
         g = np.zeros(np.size(self.load))
         rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
@@ -135,7 +135,7 @@ class Body:
 
     def _at_rest(self, load: float) -> float:
         """Half-width over layers under a load [m]."""
-        from galinx.solvers.layers.found import half_width_at_rest
+        from .layers.free_contact import half_width_at_rest
 
         profile: Any = self.profile
         assert isinstance(self.solid, Layered)
@@ -226,6 +226,17 @@ class Between:
     X: NDArray[np.float64]
     x: NDArray[np.float64]
     σ_XX: NDArray[np.float64]
+
+
+def together(each: list[Turns]) -> Turns | None:
+    """Turns of one state each as those of all, as many places as the state with most; None of none."""
+    if not each:
+        return None
+    most = max(one.X.shape[1] for one in each)
+    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
+    for i, one in enumerate(each):
+        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
+    return Turns(X, σ)
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from galinx.postprocess.quantities import WORDS, declared
+from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, TEXT
-from galinx.postprocess.quantities.slider import SLIDER
-from galinx.postprocess.quantities.strata import AT_INTERFACES
+from galinx.postprocess.quantities.runs import SLIDER
 from galinx.postprocess.quantities.stresses import BELOW, YIELD
 from galinx.solvers.parameters import parameters
 from galinx.solvers.profiles import PROFILES

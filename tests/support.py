@@ -79,7 +79,7 @@ def here(*arguments, cwd=HOME, **variables):
 def called(*words):
     """The status of ``galinx WORDS`` in this process, which is left as it was."""
     from galinx.app.cli import run_from_shell
-    from galinx.app.process.stop import SIGNALS
+    from galinx.app.process import SIGNALS
 
     handlers = {number: signal.getsignal(number) for number in SIGNALS}
     try:
@@ -157,8 +157,7 @@ def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
 
     from galinx.meshes import MESHES
     from galinx.meshes.rings import TAGS
-    from galinx.solvers.fem.distributed import distribute
-    from galinx.solvers.fem.space import Space
+    from galinx.solvers.fem.space import Space, distribute
 
     comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
     piece = kind.build(refinement, 1, comm.rank, comm.size)

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 
-from galinx.postprocess.hdf5 import seal
+from galinx.postprocess.hdf5 import archive
 
 
 def archived(result, folder):
@@ -21,7 +21,7 @@ def opened(path, sealed=True):
     with h5py.File(path, "r+") as file:
         yield file
     if sealed:
-        seal.put(path)
+        archive.put(path)
 
 
 def value(name, found, at=0):

@@ -81,7 +81,7 @@ def test_what_is_installed_works_elsewhere(names_and_site):
     _, site = names_and_site
     script = (
         "import galinx, galinx.app.cli\n"
-        "from galinx.app.scene.materials import LIBRARY\n"
+        "from galinx.app.scene.library import LIBRARY\n"
         "from galinx.app.study.published import published\n"
         "result = galinx.compute(galinx.template('tables4_5', {'solve.methods': ['closed_form']}))\n"
         "result.save('tables.h5'), result.report('tables.html')\n"

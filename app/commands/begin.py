@@ -1,4 +1,7 @@
-"""Commands to begin with: init, materials, schema."""
+"""Commands to begin with: init, materials, schema.
+
+Commands for measurements: fit.
+"""
 
 import json
 from pathlib import Path
@@ -6,12 +9,12 @@ from typing import Any
 
 import click
 
-from galinx.app import errors, ranks
-from galinx.app.commands import options
-from galinx.app.console.program import program
-from galinx.app.console.terminal import say
-from galinx.app.errors import BadInput
-from galinx.postprocess.target import Target
+from galinx.postprocess.target import SECTION, Folder, Target
+
+from .. import errors, ranks
+from ..console import program, say
+from ..errors import BadInput
+from . import options
 
 
 @click.command()
@@ -23,8 +26,8 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
 
     Example: ./run.sh init own_material -o mine.toml
     """
-    from galinx.app.scene.excerpt import nearest, short
-    from galinx.app.scene.templates import templates
+    from ..errors import nearest, short
+    from ..scene.library import templates
 
     known = templates()
     if not ranks.is_root():
@@ -48,7 +51,7 @@ def materials() -> int:
 
     Example: ./run.sh materials
     """
-    from galinx.app.scene.materials import LIBRARY
+    from ..scene.library import LIBRARY
 
     if ranks.is_root():
         for name, material in LIBRARY.items():
@@ -66,11 +69,58 @@ def schema() -> int:
 
     Example: ./run.sh schema > scene.schema.json
     """
-    from galinx.app.scene.schema import schema as made
+    from ..scene.sections import schema as made
 
     if ranks.is_root():
         print(json.dumps(made(), ensure_ascii=False, indent=1))
     return errors.GOOD
 
 
-COMMANDS: tuple[Any, ...] = (init, materials, schema)
+@click.command()
+@click.argument("law")
+@click.argument("data", type=options.FILE)
+@click.option(
+    "--fix", multiple=True, metavar="KEY=VALUE", help="A parameter that is known; may be repeated."
+)
+@click.option(
+    "--start", multiple=True, metavar="KEY=VALUE", help="What the search begins with; may be repeated."
+)
+@click.option("--speed", default="", metavar="SPEED", help="Of a table of slips, as '1 mm/s'.")
+@click.option(
+    "--rows", type=click.IntRange(1, 20), default=3, show_default=True,
+    help="Of a law's table, as the springs of Maxwell slip.",
+)  # fmt: skip
+@options.folder("fit")
+@options.overwrite
+def fit(
+    law: str, data: Path, fix: tuple[str, ...], start: tuple[str, ...], speed: str, rows: int,
+    folder: Path, overwrite: bool,
+) -> int:  # fmt: skip
+    """Find the parameters of the friction law LAW from measured friction DATA.
+
+    DATA is a table of comma-separated values. Its first line names the columns, units in brackets: "slip
+    [mm],f" for one stroke from rest, or "time [s],position [mm],f" for any motion. f is friction over
+    load. The section [friction] of a scene and a figure with the residuals are written into a folder.
+
+    Example: ./run.sh fit dahl scenes/slip.csv -o fit
+    """
+    from galinx.postprocess.figures.canvas import save
+
+    from ..results.fitted import figure, fitted, section
+
+    if not ranks.is_root():
+        return errors.GOOD
+    to = Folder(folder, overwrite, options.inputs(data))
+    target = to.target("friction.toml", SECTION)
+    measured, found = fitted(law, data, list(fix), list(start), speed, rows)
+    text = section(law, data, measured, found)
+    target.write(text.encode())
+    save([("fit", figure(measured, found))], to)
+    print(text, end="")
+    print(f"section: {folder / 'friction.toml'}")
+    print(f"figure: {folder / 'fit.pdf'}")
+    print(f"next: put the section into a scene, then {program()} run SCENE.toml")
+    return errors.GOOD
+
+
+COMMANDS: tuple[Any, ...] = (init, materials, schema, fit)

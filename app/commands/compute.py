@@ -7,16 +7,14 @@ from typing import Any
 import click
 
 from galinx import __version__
-from galinx.app import errors, ranks
-from galinx.app.commands import options
-from galinx.app.console.program import program
-from galinx.app.console.progress import Progress
-from galinx.app.console.terminal import print_summary, print_times, say
-from galinx.app.errors import BadInput
-from galinx.app.process import stop
 from galinx.clock import Clock, age
 from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
+
+from .. import errors, process, ranks
+from ..console import Progress, print_summary, print_times, program, say
+from ..errors import BadInput
+from . import options
 
 
 @click.command()
@@ -34,8 +32,8 @@ def run(
 
     Example: ./run.sh -n 2 run scenes/tables4_5.toml -o tables.h5
     """
-    from galinx.app.plan.plan import make_plan
-    from galinx.app.run.flow import compute
+    from ..plan.plan import make_plan
+    from ..run.flow import compute
 
     clock = Clock("start and end", age())
     path = output or Path(scene.stem + ".h5")
@@ -46,7 +44,7 @@ def run(
     if not ranks.is_root():
         compute(checked)
         return errors.GOOD
-    from galinx.postprocess.hdf5.reader import read
+    from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
 
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
@@ -64,28 +62,29 @@ def run(
 
 def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
     """The scene with its changes, whose reader only those who change something pay for."""
-    from galinx.app.scene.read import read
+    from ..scene.read import read
 
     if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
         raise BadInput(f"only one of several ranks could read {path}; expected a file")
     if not (changes or unset):
         return read(path)
-    from galinx.app.scene.changes import from_words
+    from ..scene.changes import from_words
 
     return read(path, from_words(changes, unset))
 
 
 def _archived(scene: Any, target: Target, journal: Any, progress: Progress, clock: Clock) -> str:
     """Compute a scene into its archive, keeping finished parts on the way; the verdict."""
-    from galinx.app.run.flow import compute
     from galinx.postprocess.hdf5 import archive
+
+    from ..run.flow import compute
 
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
-            with stop.leaving(lambda: _left(journal), "what is finished is kept, go on with --resume"):
+            with process.leaving(lambda: _left(journal), "what is finished is kept, go on with --resume"):
                 with clock("other"):
                     attributes = compute(scene, writer, progress, journal, clock)
-                stop.too_late()
+                process.too_late()
             progress.say("checking the archive")
             with clock("archive"):
                 writer.finish(attributes, journal.about_to_publish)
@@ -118,8 +117,7 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from galinx.app.plan.plan import make_plan
-    from galinx.app.plan.words import expense, lines
+    from ..plan.plan import expense, lines, make_plan
 
     checked = _read(scene, changes, unset)
     planned = make_plan(checked)
@@ -143,7 +141,7 @@ def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int
 
     Example: ./run.sh paper -o results
     """
-    from galinx.app.study.paper import reproduce
+    from ..study.paper import reproduce
 
     with progress:
         good = reproduce(Folder(folder, overwrite, options.inputs()), progress, quiet)

@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 
-from galinx.app.console.progress import Progress
-from galinx.app.errors import BadInput
-from galinx.app.scene.excerpt import short
 from galinx.postprocess.target import LOG, Target
+
+from ..console import Progress
+from ..errors import BadInput, short
 
 #: Bytes that file systems allow a name.
 _LONGEST = 255

@@ -1,18 +1,30 @@
-"""What a user wants drawn, and how large: options of plot, checked against what an archive has."""
+"""What a user wants drawn, and how large: options of plot, checked against what an archive has.
+
+Pictures as files: which formats, where to, and what is said of them.
+
+A picture of an archive, and what pictures ask of archives.
+"""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.scene.excerpt import nearest, short
+from galinx.postprocess.figures import canvas, maps
 from galinx.postprocess.figures.canvas import Size
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.figures.maps import Film
+from galinx.postprocess.quantities import Quantity, table
+from galinx.postprocess.quantities.quantity import TEXT
 from galinx.postprocess.quantities.states import SPEED
+from galinx.postprocess.target import Folder, Kind, Target
+
+from ..errors import BadInput, nearest, short
 
 _INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
 _LENGTH = r"(\d+(?:\.\d*)?|\.\d+)\s*(in|cm|mm|pt)"
@@ -141,3 +153,192 @@ def one_of(what: str, word: str, known: Collection[str]) -> str:
     if word in known:
         return word
     raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, known)}")
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure.
+
+    Attributes:
+        name: for files.
+        caption: what it shows, what to see in it, and what it leaves out; plain text.
+        figure: it.
+        pixels: a page should hold it as such.
+        left_out: which states it does not show and how to get them; nothing where it shows all.
+    """
+
+    name: str
+    caption: str
+    figure: Figure
+    pixels: bool = False
+    left_out: str = ""
+
+    @property
+    def told(self) -> str:
+        """Caption and what is left out."""
+        return f"{self.caption} {self.left_out}".strip()
+
+
+def there(data: Mapping[str, Any], *rows: Quantity) -> bool:
+    """Does an archive hold all of these?"""
+    return all(row.path in data for row in rows)
+
+
+def by_method(
+    data: Mapping[str, Any], over: tuple[str, ...], method: str = ""
+) -> dict[str, dict[str, Quantity]]:
+    """An archive's numbers over some dimensions, by name and method.
+
+    Args:
+        data: the archive's.
+        over: dimensions.
+        method: that is wanted alone, if any.
+    """
+    found: dict[str, dict[str, Quantity]] = {}
+    for path, row in table().items():
+        told = path in data and row.over == over and row.type != TEXT and not row.symbol
+        if told and method in ("", row.method):
+            found.setdefault(path.rpartition("/")[2], {})[row.method] = row
+    return found
+
+
+#: Dots per inch that a file may have.
+_DPI = range(30, 2401)
+
+
+class Written(NamedTuple):
+    """A file that was written.
+
+    Attributes:
+        path: its name.
+        noun: what it is.
+        left_out: which states it does not show and how to get them.
+    """
+
+    path: Path
+    noun: str
+    left_out: str
+
+
+@dataclass(frozen=True)
+class Files:
+    """Where pictures go.
+
+    Attributes:
+        to: a folder, or a file whose ending is its format.
+        name: what the names of files in a folder begin with; with nothing they are the figures' own.
+        formats: endings, chosen by themselves if none are given.
+        dpi: dots per inch, 0 for the usual ones.
+        overwrite: files of any kind are replaced.
+        inputs: files that are read, and never replaced.
+    """
+
+    to: Path
+    name: str = ""
+    formats: tuple[str, ...] = ()
+    dpi: int = 0
+    overwrite: bool = False
+    inputs: tuple[Path, ...] = ()
+
+    @property
+    def one(self) -> str:
+        """The ending of a single file, nothing for a folder."""
+        ending = self.to.suffix.removeprefix(".").lower()
+        return "" if self.to.is_dir() or not ending.isalnum() or len(ending) > 4 else ending
+
+    def check(self, names: Sequence[str]) -> None:
+        """Refuse what cannot be written before anything is drawn.
+
+        Args:
+            names: of the figures.
+
+        Raises:
+            BadInput: a format, or a file for several figures; the message says what to do.
+        """
+        if self.dpi and self.dpi not in _DPI:
+            raise BadInput(f"--dpi: found {self.dpi}, expected {_DPI[0]} to {_DPI[-1]}")
+        for name in names:
+            known, option = _formats(name), f"-o {self.to}" if self.one else "--format"
+            for ending in (self.one,) if self.one else self.formats:
+                if ending not in known:
+                    raise BadInput(
+                        f"{option}: found {ending!r} for the {_noun(name)} {name}, expected "
+                        f"{', '.join(known)}{' or a folder' * bool(self.one)}{_converted(ending)}"
+                    )
+                if ending in maps.FORMATS and not maps.can(ending):
+                    raise BadInput(
+                        f"{option}: {ending} needs ffmpeg, which is not installed; gif does not"
+                    )
+        if self.one and self.formats not in ((), (self.one,)):
+            raise BadInput(f"--format {','.join(self.formats)} is not the ending of {self.to}; give one")
+        if self.one and len(names) != 1:
+            raise BadInput(
+                f"-o {self.to} is one file, found {len(names)} figures; choose one by --figure: "
+                f"{', '.join(names)}; or name a folder"
+            )
+
+    def endings(self, name: str) -> tuple[str, ...]:
+        """Formats of a figure."""
+        usual = ("mp4" if maps.can("mp4") else "gif",) if name == FILM else canvas.USUAL
+        return (self.one,) if self.one else self.formats or usual
+
+    def target(self, name: str, ending: str, folder: Folder | None) -> Target:
+        """A figure's file.
+
+        Raises:
+            Occupied: something is there that may not be replaced.
+        """
+        if folder is None:
+            return Target(self.to, _formats(name)[ending], self.overwrite, self.inputs)
+        return folder.target(f"{self.name}_{name}.{ending}".removeprefix("_"), _formats(name)[ending])
+
+    def write(
+        self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
+    ) -> list[Written]:
+        """Write all figures and the film, if one is wanted; none where one of them cannot be written."""
+        folder = None if self.one else Folder(self.to, self.overwrite, self.inputs)
+        files, said = [], []
+        for name, left_out, content in self._contents(drawings, made):
+            for ending in self.endings(name):
+                target = self.target(name, ending, folder)
+                files.append((target, content(ending)))
+                said.append(Written(target.path, _noun(name), left_out))
+        canvas.write(files)
+        return said
+
+    def _contents(
+        self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
+    ) -> Iterator[tuple[str, str, Callable[[str], bytes]]]:
+        """Of each picture its name, what it leaves out, and what makes a file of an ending."""
+        for drawing in drawings:
+            yield (
+                drawing.name,
+                drawing.left_out,
+                partial(canvas.content, drawing.figure, dpi=self.dpi or canvas.DPI),
+            )
+        if made:
+            moving, left_out = made()
+            yield FILM, left_out, partial(maps.content, moving, dpi=self.dpi or maps.DPI)
+
+
+#: The picture that moves.
+FILM = "film"
+
+
+def _formats(name: str) -> dict[str, Kind]:
+    if name == FILM:
+        return maps.FORMATS
+    return {ending: kind for ending, (_, kind) in canvas.FORMATS.items()}
+
+
+def _noun(name: str) -> str:
+    return "film" if name == FILM else "figure"
+
+
+def _converted(ending: str) -> str:
+    vector = ending in ("eps", "ps", "emf")
+    return f"; convert a {'pdf' if vector else 'png'} for {ending}" if vector or ending in _PIXELS else ""
+
+
+#: Formats that other programs make of PNG.
+_PIXELS = ("jpg", "jpeg", "tif", "tiff", "bmp")

@@ -5,25 +5,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.pictures import inside, surface
-from galinx.app.pictures.choice import Choice
-from galinx.app.pictures.friction import Loops
-from galinx.app.pictures.told import PLACE, STROKE, Told, not_shown
-from galinx.app.scene.scene import Scene
-from galinx.postprocess.figures.film import Film, strokes_film
-from galinx.postprocess.figures.maps import Map
+from galinx.postprocess.figures.maps import Film, Map, strokes_film
 from galinx.postprocess.figures.surface import Stress
 from galinx.postprocess.quantities.states import FRICTION
 from galinx.postprocess.quantities.stresses import SURFACE_X
+
+from ..errors import BadInput
+from ..scene.scene import Scene
+from . import surface
+from .choice import Choice
+from .friction import Loops
+from .state_labels import PLACE, STROKE, Told, not_shown
 
 #: Pictures that move.
 _FRAMES = 4
 
 
-def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
+def has_film(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
     """Are there enough states along the strokes, and something to show of them?"""
-    shown = surface.quantities(data, choice.method) or inside.has_map(data, choice.method)
+    shown = surface.quantities(data, choice.method) or surface.has_map(data, choice.method)
     return bool(shown) and len(_frames(Told(data, scene), choice)) >= _FRAMES
 
 
@@ -52,7 +52,7 @@ def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]
         [f"{told.label(int(i), [STROKE, PLACE])}, $f = {f[i]:.2f}$" for i in frames],
         data.get(SURFACE_X.path, np.empty(0)),
         stresses,
-        inside.Fields(data, scene, Choice()).grid() if fields else None,
+        surface.Fields(data, scene, Choice()).grid() if fields else None,
         fields,
         choice.size,
     )
@@ -67,10 +67,10 @@ def _shown(
     if known and set(choice.quantities) <= set(known):
         return [
             Stress(stress.label, {method: values[frames]})
-            for stress in surface.stresses(data, choice)
+            for stress in surface.stresses_of(data, choice)
             for method, values in list(stress.values.items())[:1]
         ], []
-    fields = inside.Fields(data, scene, choice)
+    fields = surface.Fields(data, scene, choice)
     names = choice.quantities or ("sigma_XX", "von_mises")
     made = []
     for name in names:

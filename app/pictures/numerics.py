@@ -5,16 +5,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.pictures.choice import Choice
-from galinx.app.pictures.drawing import Drawing, there
-from galinx.app.pictures.told import C, Told, spread
-from galinx.app.plan.fem import FOLLOWED
-from galinx.app.plan.plan import make_plan
-from galinx.app.scene.scene import Scene
-from galinx.meshes.cells import edges, nodes
-from galinx.postprocess.figures.lines import degrees_figure
-from galinx.postprocess.figures.mesh import mesh_figure
+from galinx.meshes.kind import edges, nodes
+from galinx.postprocess.figures.curves import degrees_figure
+from galinx.postprocess.figures.sketches import mesh_figure
 from galinx.postprocess.quantities import Quantity, runs, states
+
+from ..plan.fem import FOLLOWED
+from ..plan.plan import make_plan
+from ..scene.scene import Scene
+from .choice import Choice, Drawing, there
+from .state_labels import C, Told, spread
 
 #: Speeds that can be told apart.
 _SPEEDS = 6

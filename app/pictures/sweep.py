@@ -1,25 +1,47 @@
-"""Single numbers of states over what a scene sweeps."""
+"""Single numbers of states over what a scene sweeps.
+
+What the angle of an archive's solid does: its speed limit, edges or contacts; closed form.
+
+What the thickness of an archive's uppermost layer does: K_I, and stresses at its lower face.
+"""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.pictures.choice import Choice, noun, one_of
-from galinx.app.pictures.drawing import Drawing, by_method
-from galinx.app.pictures.told import PLACE, C, N, Told, not_shown, spread
-from galinx.app.results.si import contacts_of_states, in_si
-from galinx.app.scene.scene import Scene
-from galinx.postprocess.figures.curves import Line, Panel, Parameter, curves_figure
-from galinx.postprocess.figures.typeset import plain, unit
-from galinx.postprocess.quantities import Quantity, column, validity
+from galinx.postprocess.figures.curves import (
+    Line,
+    Panel,
+    Parameter,
+    PolarPanel,
+    curves_figure,
+    polar_figure,
+)
+from galinx.postprocess.figures.style import number, plain, unit
+from galinx.postprocess.quantities import Quantity, column, states, validity
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
-from galinx.postprocess.scaling import as_archived
+from galinx.postprocess.stresses import NEAR
+from galinx.postprocess.tables import as_archived
+from galinx.solvers.errors import SolveError
+from galinx.solvers.layers.layered import Layered
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.free_contact import contacts
+from galinx.solvers.solution import Body, Places
+
+from ..errors import BadInput
+from ..plan.plan import interface_grid, surface_grid
+from ..plan.task import Task
+from ..results.si import contacts_of_states, in_si
+from ..run.methods import on_layers
+from ..scene.scene import Scene
+from .choice import Choice, Drawing, by_method, noun, one_of
+from .state_labels import PLACE, C, N, Told, not_shown, spread
 
 #: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
 _VALUES, _CURVES, _PANELS = 3, 6, 12
@@ -102,7 +124,7 @@ class Sweep:
         return np.concatenate([states for _, states in self.groups])
 
 
-def has(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
+def has_parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
     """Is something swept that changes something, or wanted?"""
     told = Told(data, scene)
     if choice.x or choice.y or choice.by:
@@ -277,3 +299,184 @@ def _proportional(one: NDArray, other: NDArray) -> bool:
         return False
     one, other = one / sizes[0], other / sizes[1]
     return any(np.allclose(one, sign * other, rtol=0.0, atol=_SAME) for sign in (1.0, -1.0))
+
+
+#: Angles that are drawn [°]; a half turn leaves a solid as it is.
+_ANGLES = np.arange(0.0, 181.0, 3.0)
+
+
+def has_angles(scene: Scene) -> bool:
+    """Has the scene's solid an angle?"""
+    return any(field.name == "angle" for field in fields(scene.solid))  # type: ignore[arg-type]
+
+
+def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
+    """The scene's solid, turned, under the steepest friction and at the fastest speed of the archive."""
+    g = data[states.RATIO.path]
+    steepest = float(g[np.argmax(np.abs(g))])
+    V = float(data[states.SPEED.path].max()) * scene.solid.c_s
+    turned: list[Any] = [replace(scene.solid, angle=angle) for angle in _ANGLES.tolist()]  # type: ignore[type-var]
+    limits = np.array([solid.limit() * solid.c_s for solid in turned])
+    panels = [PolarPanel("speed limit [m/s]", {"": limits})]
+    bodies = [replace(scene.body, solid=solid) for solid in turned]
+    if scene.body.found:
+        panels += _of_contacts(bodies, V, steepest)
+        what = (
+            "half-width, largest pressure and tension on the surface of the contact under "
+            f"{number(scene.punch.load)} N/m"
+        )
+    else:
+        panels += _of_edges(bodies, V, steepest)
+        what = "how strong the pressure's singularity is at either end"
+        what += ", and K_I, the same at both" * scene.body.flat
+    around = np.concatenate([_ANGLES, _ANGLES[1:] + 180.0])
+    twice = [
+        PolarPanel(
+            panel.title,
+            {label: np.concatenate([values, values[1:]]) for label, values in panel.curves.items()},
+        )
+        for panel in panels
+    ]
+    caption = (
+        f"The solid turned under the punch, closed form at {number(V)} m/s and σ_XY/σ_YY = "
+        f"{number(steepest)}: over the angle from X to its first axis the speed of the wave along its "
+        f"surface, {what}. "
+        "The grey line is the angle of the archive; where there is no curve the solid's limit is slower."
+    )
+    now = float(scene.solid.angle)  # type: ignore[attr-defined]
+    return Drawing("angles", caption, polar_figure(around, twice, now, choice.size))
+
+
+def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
+    """-α and -β of sharp edges, and K_I of a flat punch."""
+    flat = [_at(body, V, lambda response, body: FlatPunch(response, g)) for body in bodies]
+    left, right = (
+        np.array([np.nan if punch is None else -getattr(punch, name) for punch in flat])
+        for name in ("β", "α")
+    )
+    panels = [
+        PolarPanel(
+            "$-\\alpha$, $-\\beta$", {"$-\\alpha$, at $X = a$": right, "$-\\beta$, at $X = -a$": left}
+        )
+    ]
+    if bodies[0].flat:
+        K_I = np.array([np.nan if punch is None else punch.K_I for punch in flat])
+        panels.append(PolarPanel("$K_I$", {"": K_I}))
+    return panels
+
+
+def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
+    """Half-width, largest pressure and tension, and intensities of an end that is sharp."""
+
+    def numbers(response: Any, body: Body) -> list[float]:
+        found = contacts(response, np.array([g]), body.profile, body.compression)
+        h = float(found.of("half_width")[0])
+        unit = 1e-6 * body.load / (2.0 * h)
+        X = surface_grid()
+        if not body.free:  # beside a sharp edge it is infinite
+            X = X[np.abs(np.abs(X) - 1.0) >= NEAR]
+        tension = float(found.σ_XX(X).max())
+        return [1e3 * h, unit * float(found.largest()[0][0]), unit * tension, *found.of("K_I")[0]]
+
+    rows = [_at(body, V, numbers) for body in bodies]
+    h, pressure, tension, left, right = np.array([row or [np.nan] * 5 for row in rows]).T
+    titles = {"half-width [mm]": h, "largest pressure [MPa]": pressure, "largest tension [MPa]": tension}
+    panels = [
+        PolarPanel(title, {"": values}) for title, values in titles.items() if np.isfinite(values).any()
+    ]
+    if np.nan_to_num([left, right]).any():
+        ends = {"at $X = a$": right, "at $X = -a$": left}
+        panels.append(
+            PolarPanel("$K_I$", {label: values for label, values in ends.items() if values.any()})
+        )
+    return panels
+
+
+def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:
+    """Of a body at a speed [m/s]; None at the limit and beyond, and where there is no contact."""
+    c = V / body.solid.c_s
+    if c >= body.solid.limit():
+        return None
+    with suppress(SolveError):
+        return of(body.solid.response(c), body)
+    return None
+
+
+#: Thicknesses over that of the archive: from the first to the last, so many.
+_FIRST, _LAST, _COUNT = 0.1, 10.0, 17
+#: The thinnest layer over a that is drawn: thinner ones take the equation many seconds.
+_THINNEST = 0.05
+#: Relative accuracy: more than a figure shows.
+_TOLERANCE = 1e-4
+#: Panels, in their order.
+_SHOWN = (
+    "$K_I$ at $X = -a$",
+    "$K_I$ at $X = a$",
+    r"largest $-\sigma_{YY}/(N/2a)$ below the layer",
+    r"largest shear traction $|\sigma_{XY}|/(N/2a)$ there",
+    r"largest $\sigma_{XX}/(N/2a)$ in the layer",
+    r"largest $\sigma_{XX}/(N/2a)$ below the layer",
+)
+
+
+def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
+    """Has a punch with two sharp edges been solved over uniform layers by the integral equation?"""
+    solved = any(path.startswith(f"states/{SIE}/") for path in data)
+    sharp = not (scene.body.found or scene.solve.own_pressure)
+    least = _THINNEST * scene.body.half_width
+    # Graded ones take a second or two a thickness.
+    quick = all(layer.bottom is None and layer.thickness >= least for layer in scene.layers)
+    return solved and sharp and bool(scene.layers) and quick
+
+
+def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
+    """The uppermost layer thinner and thicker, under the steepest friction and at the fastest speed."""
+    assert isinstance(scene.solid, Layered)
+    g = data[states.RATIO.path]
+    steepest = float(g[np.argmax(np.abs(g))])
+    c = float(data[states.SPEED.path].max())
+    top, a = scene.solid.layers[0].thickness, scene.body.half_width
+    H = np.geomspace(max(_FIRST * top, _THINNEST * a), _LAST * top, _COUNT)
+    found = np.full((_COUNT, len(_SHOWN)), np.nan)
+    for row, thickness in zip(found, H.tolist()):
+        body = _with_top(scene.body, thickness)
+        with suppress(SolveError):
+            if c < body.solid.limit():
+                row[:] = _at_thickness(body, c, steepest)
+    titles: tuple[str, ...] = _SHOWN
+    if choice.in_si:
+        found[:, 2:] *= 1e-6 * scene.body.stress
+        titles = tuple(title.replace("/(N/2a)$", "$ [MPa]") for title in _SHOWN)
+    panels = [Panel(title, [Line("", H / a, values)]) for title, values in zip(titles, found.T)]
+    over = Parameter("thickness of the uppermost layer over $a$", ("thickness [mm]", 1e3 * a), top / a)
+    caption = (
+        "The uppermost layer thinner and thicker, by the integral equation at "
+        f"{number(c * scene.solid.c_s)} m/s and σ_XY/σ_YY = {number(steepest)}: K_I at both ends, and "
+        "the largest stresses along the layer's lower face: pressure, the shear that it has to bear, and "
+        "σ_XX in the layer and in what is below. The grey line is the archive's; where there is no curve "
+        "the limit is slower than the punch, or the equation has no answer."
+    )
+    return Drawing("thicknesses", caption, curves_figure(panels, over, size=choice.size))
+
+
+def _with_top(body: Body, thickness: float) -> Body:
+    solid = body.solid
+    assert isinstance(solid, Layered)
+    top, *others = solid.layers
+    return replace(body, solid=replace(solid, layers=(replace(top, thickness=thickness), *others)))
+
+
+def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:
+    """What is drawn at one thickness.
+
+    Raises:
+        SolveError: the equation has no answer.
+    """
+    depths, along = interface_grid(body)
+    places = Places(np.empty(0), np.empty((0, 2)), interfaces=depths[:1], along=along)
+    response = body.response(c)
+    task = Task(0, body, response, places, (), ())
+    stack = response.stack(body.half_width)  # type: ignore[attr-defined]
+    punch = on_layers.sharp_at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
+    σ_YY, σ_XY, above, below = punch.interfaces[:, 0, 0]
+    return np.array([*punch.K_I[0], -σ_YY.min(), np.abs(σ_XY).max(), above.max(), below.max()])

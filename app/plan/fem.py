@@ -1,36 +1,193 @@
-"""What finite elements of a scene need: mesh, degrees, solver, memory."""
+"""What finite elements of a scene need: mesh, degrees, solver, memory.
+
+What finite elements over layers need: meshes along interfaces, and how pressures are read off them.
+
+Which scenes have so many speeds that a few of them tell the others.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app import ranks
-from galinx.app.errors import BadInput
-from galinx.app.methods import DOLFINX
-from galinx.app.plan import cost, layers
-from galinx.app.plan.sweep import Sweep, swept
-from galinx.app.scene.scene import Scene
 from galinx.meshes import MESHES, MeshKind, Wanted
-from galinx.meshes.layered import OnLayers
+from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
+from galinx.postprocess.pressure import Stretch
 from galinx.postprocess.quantities.quantity import FEM, FOUND
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.layered import Layered
+from galinx.solvers.layers.layered import Layered, LayeredResponse
 from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.found import contacts
+from galinx.solvers.sie.free_contact import contacts
+from galinx.solvers.solids import Solid
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Places
+
+from .. import ranks
+from ..errors import BadInput
+from ..methods import DOLFINX
+from ..scene.scene import Scene
+from . import cost
+
+#: How far apart a surface's fields may live so that cells are drawn together for both.
+_APART = 0.8
+#: Where less is left to the speed of a wave along the substrate no far boundary is far enough.
+_LEAST_LEFT = 1e-6
+#: Distance over a from a free end within which stresses are continued from farther away.
+_NEAR_FREE_END = 1e-2
+
+
+@dataclass(frozen=True)
+class Tests:
+    """By what a pressure over layers is read off nodal forces.
+
+    Attributes:
+        stretch: variable in which it is smooth.
+        count: moments at the first degree; each degree more takes more, so that what they leave shows in
+            the measured error.
+    """
+
+    stretch: Stretch
+    count: int
+
+    @property
+    def a_degree(self) -> int:
+        """Moments more for each degree more; those over graded solids depend on one another nearly."""
+        return 1 if self.stretch.graded else 2
+
+
+def tests_of(solid: Solid, kind: MeshKind, wanted: Wanted) -> Tests | None:
+    """What a pressure over layers is read off by; None where there are none."""
+    if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
+        return None
+    graded = solid.layers[0].bottom is not None
+    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
+
+
+def wanted_of_free_ends_on_layers(wanted: Wanted) -> Wanted:
+    """What a mesh has to be good for where stresses at the ends are finite.
+
+    The parts that are added up until no intensity is left have one each.
+    """
+    if wanted.nearest is None:
+        return wanted
+    return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END))
+
+
+def wanted_of_loads(wanted: Wanted) -> Wanted:
+    """What a mesh has to be good for under a pressure that is put in, stresses next to whose knots are
+    continued from farther away."""
+    if wanted.nearest is None:
+        return wanted
+    return replace(wanted, nearest=max(wanted.nearest, NEAR))
+
+
+def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
+    """The kind of mesh of layered solids, at some speeds.
+
+    Args:
+        depths: of the interfaces over a.
+        responses: of the half-plane, one a speed.
+        places: over a towards which cells are graded.
+    """
+    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Fields that live far apart have no middle.
+    apart = max(response.spread for response in responses) > _APART
+    return on_layers(
+        depths.tolist(),
+        drawn_together=float(np.min(roots)),
+        wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
+        far_length=max(response.far_field.length for response in responses),
+        left=max(min(response.left_below for response in responses), _LEAST_LEFT),
+        roots=_roots(responses),
+        changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
+        places=tuple(places),
+    )
+
+
+def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
+    """p of every solid at the lowest and the highest speed, where they are farthest apart."""
+    by_speed = sorted(responses, key=lambda response: response.c)
+    each = [response.roots for response in (by_speed[0], by_speed[-1])]
+    return tuple(one + other for one, other in zip(*each))
+
+
+#: Different speeds from which a fit through some of them is sooner there than all of them: it takes about
+#: a dozen, four of these with all that measures an error.
+LEAST = 16
+
+#: Speeds at which the discretisation's error is measured, how many are solved besides as a rule, and
+#: the most that are solved.
+LADDERS, BESIDES, MOST = 4, 7, 24
+
+#: Values of σ_XY/σ_YY up to which punches are sampled at these, and at no others.
+_FEW = 8
+
+#: Change of an inverse contraction over that of c² below which it tells speeds no better apart.
+_FLAT = 1e-3
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Speeds of which some are solved, the others fitted.
+
+    Attributes:
+        z: the speeds in the variable of the fit, in the order of the plan, (speeds,).
+        g: all values of σ_XY/σ_YY where they are few, else the smallest and the largest.
+        few: are they?
+    """
+
+    z: NDArray[np.float64]
+    g: NDArray[np.float64]
+    few: bool
+
+
+def swept(wanted: str, responses: Sequence[Response], g: NDArray) -> Sweep | None:
+    """The sweep of some speeds, None where each is to be solved.
+
+    Args:
+        wanted: ``"auto"`` or ``"every"``.
+        responses: of the half-plane, one a speed.
+        g: all values of σ_XY/σ_YY.
+    """
+    if wanted == "every" or len({response.c for response in responses}) < LEAST:
+        return None
+    values = np.unique(g)
+    few = len(values) <= _FEW
+    return Sweep(variable(responses), values if few else values[[0, -1]], few)
+
+
+def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
+    """In which variable results are smoothest: they are analytic in c², and so is it.
+
+    What the fields are analytic in, and the mesh where it follows them, contracts with a root of the
+    distance to the slowest wave in the solid. So all is smooth in the contraction up to that speed, and
+    in c² not. Its inverse spreads speeds near the limit; where it does not tell them apart c² has to do.
+
+    Along layers waves of all lengths run, each with a speed of its own from the limit on: no pole is
+    there, but the end of a branch, which the logarithm of the distance from it sends to infinity.
+    """
+    if isinstance(responses[0], LayeredResponse):
+        return np.array([-np.log(response.margin) for response in responses])
+    square = np.array([response.c**2 for response in responses])
+    inverse = np.array([1.0 / response.contraction.imag for response in responses])
+    order = np.argsort(square, kind="stable")
+    steps, changes = np.diff(square[order]), np.diff(inverse[order])
+    # Between speeds that hardly differ rounding may be all that is seen.
+    seen = steps > 1e-6 * max(square.max(), np.finfo(float).tiny)
+    tells = seen.any() and np.ptp(square) > 1e-4 and np.all(changes[seen] > _FLAT * steps[seen])
+    return inverse if tells else square
+
 
 #: Distance over a from a punch edge that no mesh resolves: rounding of positions.
 _NEAREST = 1e-12
 
 #: Distance over a from a free end within which cells need not be finer: stresses vary like its root.
-_NEAR_FREE_END = 1e-2
 
 #: What plans call the mode in which every state has a mesh of its own, graded towards kinks of the punch.
 OWN_MESHES = "own meshes"
@@ -91,7 +248,7 @@ class FemPlan:
     shared_speeds: bool
     sharp: float = -0.5
     drawn: QuadMesh | None = None
-    tests: layers.Tests | None = None
+    tests: Tests | None = None
     sweep: Sweep | None = None
     shapes: int = 0
 
@@ -140,7 +297,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     if isinstance(scene.solid, Layered):
         depths = scene.solid.depths / scene.body.half_width
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
-        kind, name = layers.kind_of(depths, responses, knots), "layered"
+        kind, name = kind_of(depths, responses, knots), "layered"
     _check_degree_and_solver(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
@@ -163,7 +320,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
         wanted=wanted, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
-        tests=layers.tests_of(scene.solid, kind, wanted),
+        tests=tests_of(scene.solid, kind, wanted),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
         shapes=_shapes(scene, responses, g) if mode == FOUND else 0,
     )  # fmt: skip
@@ -174,8 +331,8 @@ def _wanted(scene: Scene, mode: str, wanted: Wanted) -> Wanted:
     solve = scene.solve
     if scene.layers:
         if scene.body.free:
-            return layers.wanted_of_free_ends(wanted)
-        return layers.wanted_of_loads(wanted) if solve.own_pressure else wanted
+            return wanted_of_free_ends_on_layers(wanted)
+        return wanted_of_loads(wanted) if solve.own_pressure else wanted
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.

@@ -1,38 +1,478 @@
-"""Which work a scene needs, derived from the outputs it asks for."""
+"""Which work a scene needs, derived from the outputs it asks for.
 
-from collections.abc import Callable, Iterable, Iterator
+Where a scene asks for what has no answer, or for one that will cost accuracy.
+
+A plan in words: its steps with their sizes, and what they will cost.
+"""
+
+import json
+from bisect import bisect_left
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
+from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
-from galinx.app.methods import METHODS
-from galinx.app.plan.fem import FemPlan, check_assembler, plan_fem
-from galinx.app.plan.limits import (
-    check_found,
-    check_layers,
-    check_mode,
-    check_places,
-    check_pressure,
-    check_size,
-    check_speeds,
-    check_states,
-    warnings_of,
-    warnings_of_size,
+from galinx.meshes import MESHES, store
+from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
+from galinx.postprocess.quantities.quantity import (
+    ALONE,
+    CLOSED_FORM,
+    FEM,
+    FRICTION_ALONE,
+    INTENSITIES,
+    LOCAL,
+    SIE,
+    SWEPT,
 )
-from galinx.app.plan.starts import starts
-from galinx.app.plan.states import enumerate_states, laws_followed, order, seconds_to_integrate
-from galinx.app.plan.task import Plan, Tasks
-from galinx.app.run.slider import check_sliders
-from galinx.app.scene.scene import Scene
-from galinx.app.scene.sense import FRICTIONS, oddities
-from galinx.meshes import store
-from galinx.postprocess.quantities import QUANTITIES, Quantity, stresses
-from galinx.postprocess.quantities import strata as layers
-from galinx.postprocess.quantities.quantity import ALONE, LOCAL, SWEPT
-from galinx.postprocess.yielding.strength import places as yield_places
+from galinx.postprocess.yielding import places as yield_places
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.profiles import kinks
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
 from galinx.solvers.solution import Body, Places
+from galinx.texts import counted
+
+from .. import ranks
+from ..errors import BadInput, listed
+from ..methods import DOLFINX, METHODS
+from ..run.slider import check_sliders
+from ..scene.scene import FRICTIONS, Scene, oddities
+from . import cost
+from .fem import (
+    BESIDES,
+    FOLLOWED,
+    LADDERS,
+    OWN_MESHES,
+    FemPlan,
+    check_assembler,
+    levels,
+    plan_fem,
+    unknowns,
+)
+from .over_time import starts
+from .states import enumerate_states, laws_followed, order, seconds_to_integrate
+from .task import CHUNK_NUMBERS, Plan, Tasks
+
+#: Share of the distance of walls up to which points inside are asked for; and distance over a up to which
+#: meshes without walls reach.
+_INNER, _OUTERMOST = 0.6, 1e6
+
+#: Knots of a pressure over layers at most, and how near to one another, over a.
+_KNOTS, _APART = 12, 0.02
+
+#: Narrowest piece of a pressure, over a, within which positions have digits enough.
+_NARROWEST = 1e-9
+
+
+def check_size(body: Body, methods: Collection[str]) -> None:
+    """Are stresses, strains and displacements numbers that a computer can hold?
+
+    Raises:
+        BadInput: one is not.
+    """
+    least, most = np.finfo(float).tiny, np.finfo(float).max
+    told = {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement} if methods else {}
+    if wrong := [f"{value:g} {unit}" for unit, value in told.items() if not least <= value <= most]:
+        raise BadInput(
+            f"punch: load {body.load:g} N/m on the half-width {body.half_width:g} m makes "
+            f"{listed(wrong)}, expected numbers from {least:.0e} to {most:.0e}"
+        )
+
+
+def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
+    """Warnings about speeds.
+
+    Raises:
+        BadInput: finite elements are asked for where their form is indefinite, or any solution where a
+            wave in the solid is not faster.
+    """
+    # Beyond its limit a solid stays: of a million speeds some twenty are looked at.
+    ordered = sorted(speeds)
+    first = bisect_left(ordered, True, key=lambda c: _margin(scene, c) <= 0.0)
+    almost = bisect_left(ordered[:first], True, key=lambda c: _margin(scene, c / 0.99) <= 0.0)
+    formal = bisect_left(ordered, True, lo=first, key=lambda c: _margin(scene, c) == -inf)
+    near, beyond, none = (
+        [f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:], ordered[formal:])
+    )
+    c_R = scene.solid.limit() if beyond or near else 0.0
+    name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
+    limit = f"the {name} c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
+    if beyond and scene.layers:
+        raise BadInput(
+            f"motion: c = {listed(beyond)} is not below {limit}: a wave along the layers is not faster "
+            "than the punch; take lower speeds"
+        )
+    if fem and beyond:
+        raise BadInput(
+            f"motion: c = {listed(beyond)} is not below {limit}: the finite element form is indefinite "
+            'there and does not converge; take lower speeds, or methods = ["closed_form"]'
+        )
+    if none:
+        raise BadInput(
+            f"motion: c = {listed(none)} is not below {limit}, and some wave inside the solid is not "
+            "faster: nothing decays with depth there; take lower speeds"
+        )
+    warnings = []
+    if beyond:
+        warnings.append(f"c = {listed(beyond)} is not below {limit}: the closed form is formal there")
+    if near:
+        warnings.append(
+            f"c = {listed(near)} is within 1 % of {limit}: displacements grow without bound and errors "
+            "with them"
+        )
+    return warnings
+
+
+def _margin(scene: Scene, c: float) -> float:
+    """Of the response at a speed; minus infinity where a wave in the solid is not faster."""
+    try:
+        return scene.solid.response(c).margin
+    except ValueError:
+        return -inf
+
+
+def check_states(states: int) -> None:
+    """Is there room for the friction of all states?
+
+    Raises:
+        BadInput: there is none.
+    """
+    needed, free = cost.bytes_of_states(states), cost.free_memory()
+    if needed > free:
+        raise BadInput(
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs about "
+            f"{needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free: shorten them, "
+            "or make several scenes"
+        )
+
+
+def check_mode(scene: Scene, body: Body) -> None:
+    """Is there a pressure that could be put in?
+
+    Raises:
+        BadInput: there is none.
+    """
+    if scene.solve.mode == "traction" and not scene.solve.own_pressure and not body.flat:
+        raise BadInput(
+            'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
+            'give solve.pressure, or take mode = "contact"'
+        )
+
+
+def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
+    """Can anything find the ends of the contact?
+
+    Raises:
+        BadInput: nothing can, or a pressure is given that would need them.
+    """
+    if not body.found:
+        return
+    about = f"found a {body.profile.words()}, whose contact ends where the pressure says"
+    if scene.solve.mode == "traction":
+        raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
+    if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
+        raise BadInput(
+            f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
+            'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
+        )
+
+
+def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
+    """Is what is asked of layers known?
+
+    Raises:
+        BadInput: something is not; the message has all of it.
+    """
+    if not body.layered:
+        return
+    known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
+    faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
+    if scene.solve.mode == "traction" and not scene.solve.own_pressure:
+        faults.append(
+            'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
+        )
+    if "fem" in scene.solve.methods:
+        faults += _of_meshes(scene)
+    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS and not faults:
+        about = f" with a {body.profile.words()}" * body.found
+        faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
+    if faults:
+        raise BadInput(
+            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are all "
+            'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones '
+            'by ["fem"] too, with the quantities friction, sif, surface, interior and interfaces'
+        )
+
+
+def _of_meshes(scene: Scene) -> Iterator[str]:
+    """Keys that say how a half-plane's mesh is, of which layers have their own."""
+    keys = {"mesh": (scene.solve.mesh, "confocal"), "degree": (scene.solve.degree, None)}
+    for key, (value, default) in keys.items():
+        if value != default:
+            yield f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
+
+
+def check_pressure(scene: Scene, body: Body) -> None:
+    """Can finite elements put in a pressure of the user's own?
+
+    Raises:
+        BadInput: they cannot.
+    """
+    if body.pressure is None:
+        return
+    if body.layered:
+        _check_knots(body.pressure.knots)
+        return
+    kind = MESHES[scene.solve.mesh]
+    if kind.walls or not kind.rings:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own, expected "confocal" or '
+            '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
+            "and has no walls"
+        )
+    if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
+        raise BadInput(
+            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own and '
+            f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
+            "differ so much in size that with an unknown pressure rounding spoils the matrix"
+        )
+    width = float(np.diff(body.pressure.knots).min())
+    if width < _NARROWEST:
+        raise BadInput(
+            f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
+            f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
+        )
+
+
+def _check_knots(knots: NDArray) -> None:
+    """Can cells along interfaces be graded towards all of them?"""
+    width = float(np.diff(knots).min())
+    if len(knots) > _KNOTS or width < _APART:
+        raise BadInput(
+            f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, expected "
+            f"at most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose cells are "
+            'graded towards each; take methods = ["sie"]'
+        )
+
+
+def check_places(scene: Scene, places: Places) -> None:
+    """Can finite elements tell the stresses inside there?
+
+    Raises:
+        BadInput: they cannot.
+    """
+    asked = np.concatenate([places.points, places.around])
+    if not len(asked):
+        return
+    key = "output.points" if len(places.points) else "output.quantities"
+    far = float(np.abs(asked).max())
+    limit = inner(scene)
+    if far > limit:
+        raise BadInput(
+            f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
+    if scene.solid.nearly_incompressible:
+        raise BadInput(
+            f"{key}: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
+            'finite elements; use methods = ["closed_form"]'
+        )
+
+
+def inner(scene: Scene) -> float:
+    """Distance over a up to which finite elements tell fields inside: well inside walls, if there are."""
+    walls = MESHES[scene.solve.mesh].walls
+    return _INNER * walls if walls else _OUTERMOST
+
+
+def warnings_of_size(numbers: int) -> Iterator[str]:
+    """What does not fit into memory, of the numbers of the states that are treated together."""
+    needed, free = cost.bytes_of_chunk(numbers), cost.free_memory()
+    if needed > free:
+        yield (
+            f"the stresses of a single state need about {needed / 1e9:.2g} GB, of which this machine has "
+            f"{free / 1e9:.2g} GB free: ask for fewer points"
+        )
+
+
+def warnings_of(fem: FemPlan) -> Iterator[str]:
+    """What finite elements will not reach, or not fit into."""
+    cut_off = fem.kind.truncation(fem.wanted)
+    if cut_off > fem.tolerance:
+        yield (
+            f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
+            f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
+        )
+    needed, free = fem.memory, cost.free_memory()
+    if needed > free:
+        yield (
+            f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
+            f"{free / 1e9:.2g} GB free: use fewer cuts, a larger tolerance, or more machines"
+        )
+
+
+#: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
+_SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
+#: Ladders that finding the ends of a contact over layers takes, with that of the contact itself.
+_MESHES_A_CONTACT = 3.0
+
+
+def lines(scene: Scene, plan: Plan) -> list[str]:
+    """The plan in words, one step a line."""
+    law, integrator = scene.friction.law.about, scene.friction.integrator
+    result = [f"friction: {counted(plan.states, 'state')}, {law}, integrator {integrator}"]
+    if scene.slider:
+        count = scene.friction.count * len(scene.punch.loads)
+        result.append(f"slider: {counted(count, 'motion')} of {scene.slider.duration:g} s")
+    if plan.starts:
+        result += plan.starts.words(scene.solid)  # type: ignore[arg-type]
+    for name in plan.methods:
+        if name != FEM:
+            result.append(f"{METHODS[name].about}: {counted(plan.states, 'state')}")
+    if plan.fem:
+        result += _fem_lines(scene, plan, plan.fem)
+    if plan.asks(stresses.ON_SURFACE):
+        result.append(f"stresses on the surface: {plan.states} x {len(plan.places.X)} points")
+    if plan.asks(stresses.BELOW):
+        result.append(f"stresses inside: {plan.states} x {len(plan.places.points)} points")
+    return result
+
+
+def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
+    if fem.mode == OWN_MESHES:
+        return [
+            f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
+            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error asks "
+            "for; where their contacts end is found once a speed"
+        ]
+    if fem.mode == FOLLOWED:
+        return [
+            f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
+            f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
+            "error asks for"
+        ]
+    pattern = fem.pattern
+    cells = len(pattern.cells) * fem.cuts**2
+    result = [f"mesh: {fem.mesh}, {cells} quadrilaterals, shared by all speeds"]
+    pressure = " and those of a pressure" * scene.solid.nearly_incompressible
+    others = "one of a higher degree measures" if fem.fixed else "two of lower degree measure"
+    by = ", assembled by dolfinx" * (fem.assembler == DOLFINX)
+    solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"
+    speeds: dict[int, list[str]] = {}
+    for task, degree in zip(plan.tasks, fem.degrees):
+        speeds.setdefault(degree, []).append(f"{task.response.c:g}")
+    if fem.sweep:
+        c, degree = [task.response.c for task in plan.tasks], max(fem.degrees)
+        result.append(
+            f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
+            f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; so many are "
+            f"solved as a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these "
+            f"{solver} serves all states, at {LADDERS} {others} its error"
+        )
+        speeds = {}
+    result += [
+        f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
+        f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; at each speed {solver} serves "
+        f"all states, {others} its error"
+        for degree, some in speeds.items()
+    ]
+    if ranks.size() > 1:
+        how = "each takes whole speeds" if fem.shared_speeds else "together on one mesh"
+        result.append(f"ranks: {ranks.size()}, {how}")
+    return result
+
+
+def expense(plan: Plan) -> str:
+    """Estimated time and memory of a plan, and the size of its archive."""
+    together = plan.chunk * plan.numbers
+    positions = sum(len(values) for values in plan.positions.values())
+    numbers = plan.states * (plan.numbers + len(plan.quantities)) + positions
+    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(plan.quantities)))}"
+    if not plan.fem:
+        seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
+            plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
+        )  # fmt: skip
+        seconds += _in_time(plan) + _equations(plan)
+        memory = cost.bytes_without_fem(plan.states, together)
+        return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
+    fem = plan.fem
+    speeds = _seconds_of_levels(fem, plan.different) / ranks.size()
+    states = cost.STATE * plan.states + plan.integrated
+    sharing = 1 if fem.shared_speeds else ranks.size()
+    inside = _inside(plan) * sharing / ranks.size()
+    most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
+    numbers = max(CHUNK_NUMBERS, together)
+    memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
+    parts = {
+        "start": cost.START,
+        "starts from rest": _in_time(plan),
+        "finite elements": speeds,
+        "states": states,
+        "stresses inside": inside,
+        "integral equations": _equations(plan),
+    }
+    told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
+    total = sum(parts.values())
+    return f"about {total:.2g} s ({told}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+
+
+def _in_time(plan: Plan) -> float:
+    """Seconds of starts from rest."""
+    return plan.starts.seconds(plan.body.solid) if plan.starts else 0.0  # type: ignore[arg-type]
+
+
+def _equations(plan: Plan) -> float:
+    """Seconds of contacts over layers whose integral equations are solved one by one."""
+    body = plan.body
+    if not (body.found and isinstance(body.solid, Layered) and SIE in plan.methods):
+        return 0.0
+    kinked = bool(len(kinks(body.profile)))
+    if not kinked and body.free:
+        return 0.0  # of a few frictions, which tell all others
+    graded = body.solid.layers[0].bottom is not None
+    return cost.seconds_of_equations(plan.states, kinked, graded)
+
+
+def _inside(plan: Plan) -> float:
+    """Seconds for stresses inside, those to archive them among them."""
+    shape = len(plan.places.points), len(plan.tasks), plan.different
+    pieces = len(plan.body.pressure.knots) - 1 if plan.body.pressure else 0
+    by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
+    seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)
+    if not plan.fem:
+        return seconds  # the law for states knows of all their numbers
+    return seconds + cost.seconds_to_archive(plan.states * plan.numbers_inside)
+
+
+def _levels(fem: FemPlan) -> list[tuple[int, int]]:
+    """Degrees and cuts that speeds are solved with, all that are."""
+    if fem.sweep:
+        degree = max(fem.degrees)
+        ladder = levels(degree, fem.cuts, fem.fixed)
+        return LADDERS * ladder + BESIDES * [(degree, fem.cuts)]
+    return [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
+
+
+def _seconds_of_levels(fem: FemPlan, states: int) -> float:
+    """Seconds of the levels of every speed, one after the other."""
+    mesh, direct = fem.pattern, fem.solver == "direct"
+    if fem.mode == OWN_MESHES:
+        return _SECONDS_OF_OWN_MESH * states + _SECONDS_OF_ENDS * len(fem.degrees)
+    found = sum(
+        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
+        for p, k in _levels(fem)
+    )
+    return found * (_MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FOLLOWED else 1.0)
+
+
+def _size(count: float) -> str:
+    """Bytes for a reader."""
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= 0.1 * size:
+            return f"{count / size:.2g} {unit}"
+    return f"{count / 1e3:.2g} kB"
+
 
 #: What words of output.quantities ask for, where a plan says so.
 _PLACES = {

@@ -1,27 +1,97 @@
-"""The states a scene asks for: every combination of its lists, in the order they are archived."""
+"""The states a scene asks for: every combination of its lists, in the order they are archived.
+
+Which state is which: the product of speeds, loads, laws and places, in the order of archives.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite, nan
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.plan import cost
-from galinx.app.plan.order import Order
-from galinx.app.scene.excerpt import listed
-from galinx.app.scene.scene import Scene
-from galinx.app.scene.sense import oddities
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, Integrator, closely
-from galinx.solvers.friction.motion import last_cycle
-from galinx.solvers.friction.strokes import Stroke, Work, follow, works
+from galinx.solvers.friction.motion import Stroke, Work, follow, last_cycle, works
 from galinx.solvers.solids.solid import Solid
+
+from ..errors import BadInput, listed
+from ..scene.scene import Scene, oddities
+from . import cost
+
+
+@dataclass(frozen=True)
+class Order:
+    """States by speed, load, law and place on the strokes, the last fastest.
+
+    Attributes:
+        given: speeds over c_s that strokes have which have none of their own.
+        loads: [N/m].
+        laws: their number.
+        own: speeds over c_s of the states along all strokes, NaN where that is the given one, (places,).
+    """
+
+    given: tuple[float, ...]
+    loads: tuple[float, ...]
+    laws: int
+    own: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.given) * self.states
+
+    @property
+    def states(self) -> int:
+        """At each given speed."""
+        return len(self.loads) * self.laws * len(self.own)
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Numbers of speeds, loads, laws and places."""
+        return len(self.given), len(self.loads), self.laws, len(self.own)
+
+    @property
+    def c(self) -> NDArray[np.float64]:
+        """Speed of every state over c_s, (states,)."""
+        speeds = np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
+        return np.repeat(speeds, self.shape[1] * self.laws, axis=0).ravel()
+
+    @cached_property
+    def speeds(self) -> tuple[float, ...]:
+        """All speeds over c_s, each once, as states meet them first."""
+        if self._given_alone:
+            return self.given
+        met = np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
+        return tuple(dict.fromkeys(met.ravel().tolist()))
+
+    @property
+    def _given_alone(self) -> bool:
+        return bool(np.isnan(self.own).all())
+
+    def runs(self) -> Iterator[tuple[slice, ...]]:
+        """Numbers of the states of every speed, as runs of states that follow one another."""
+        if self._given_alone:
+            for i in range(len(self.given)):
+                yield (slice(i * self.states, (i + 1) * self.states),)
+            return
+        # A state's speed is the same under every load and law: few places tell all.
+        c = self.c
+        first = np.flatnonzero(np.diff(c, prepend=np.nan))
+        by_speed: dict[float, list[slice]] = {}
+        for start, stop in zip(first.tolist(), [*first[1:].tolist(), len(c)]):
+            by_speed.setdefault(float(c[start]), []).append(slice(start, stop))
+        for speed in self.speeds:
+            yield tuple(by_speed[speed])
+
+    def load(self, rows: slice) -> NDArray[np.float64]:
+        """Load of some states [N/m]."""
+        per_load = self.laws * len(self.own)
+        return np.array(self.loads)[np.arange(rows.start, rows.stop) // per_load % len(self.loads)]
+
 
 #: Positions on a stroke at which loops are archived, and the most loops that are.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000

@@ -7,16 +7,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import FOLLOWED, OWN_MESHES, FemPlan
-from galinx.app.plan.order import Order
-from galinx.app.plan.over_time import Starts
-from galinx.app.plan.states import States
 from galinx.postprocess.compare import FINITE, RULES
-from galinx.postprocess.quantities import Quantity, stresses
-from galinx.postprocess.quantities import strata as layers
+from galinx.postprocess.quantities import Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places
+
+from .fem import FOLLOWED, OWN_MESHES, FemPlan
+from .over_time import Starts
+from .states import Order, States
 
 #: Floating-point numbers that the states of a chunk may have at once.
 CHUNK_NUMBERS = 1_200_000

@@ -1,29 +1,313 @@
-"""Does an archive say what its own scene and numbers say? Asked of one that fits the schema."""
+"""Does an archive say what its own scene and numbers say? Asked of one that fits the schema.
+
+What is cheap to compute once more of an archive, whatever method its numbers came from.
+
+Closed forms and the local analysis of all states, or of some spread over many; integral equations of
+layers at the slowest and the fastest speed; indentations and contacts of finite elements against these;
+sizes of linear systems; what was warned of. Not computed again are stresses inside and on the surface by
+finite elements, which are held against what was compared, their estimates, and motions in time.
+"""
 
 import json
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx import __version__
-from galinx.app.plan.judged_over_time import IN_TIME
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states, order
-from galinx.app.plan.task import Plan
-from galinx.app.results import recomputed
-from galinx.app.run.judge import Judge
-from galinx.app.run.told import of_scene
-from galinx.app.scene import read as scenes
-from galinx.app.scene.scene import Scene
+from galinx.clock import Clock
 from galinx.postprocess import compare
-from galinx.postprocess.finite import not_finite
-from galinx.postprocess.hdf5 import reader
-from galinx.postprocess.quantities import runs, table
-from galinx.postprocess.quantities.quantity import NEVER, STATE
+from galinx.postprocess.compare import not_finite
+from galinx.postprocess.hdf5 import archive as reader
+from galinx.postprocess.hdf5.archive import Archive
+from galinx.postprocess.quantities import QUANTITIES, Quantity, runs, states, stresses, table, yielding
+from galinx.postprocess.quantities.quantity import (
+    ALONE,
+    CLOSED_FORM,
+    FEM,
+    FOUND,
+    LOCAL,
+    NEVER,
+    SIE,
+    STATE,
+)
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
+from galinx.solvers.errors import SolveError
+from galinx.solvers.profiles import smooth
+from galinx.solvers.sie.residual import indentation, places
+from galinx.solvers.solution import Places
+
+from ..console import Progress
+from ..methods import METHODS
+from ..plan.fem import unknowns
+from ..plan.over_time import IN_TIME
+from ..plan.plan import make_plan
+from ..plan.states import enumerate_states, order
+from ..plan.task import Plan, Task
+from ..run.flow import Judge, of_scene
+from ..run.methods import make
+from ..run.solve import Work
+from ..scene import read as scenes
+from ..scene.scene import Scene
+
+#: States that are computed again: under flat punches, smooth ones and ones with kinks, over layers, and
+#: where the largest stress is looked for; and numbers of them.
+_FLAT, _SMOOTH, _KINKED, _LAYERED, _YIELD, _NUMBERS = 2000, 24, 6, 4, 3, 1_000_000
+#: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
+#: apart which were solved with other frictions beside them.
+_SAME_AGAIN, _PLACE, _TOLERANCES = 1e-6, 1e-3, 10.0
+#: Relative difference of indentations: at a tip the rule that integrates the pressure has few digits.
+_INDENTATION = 1e-3
+#: Relative difference of finite elements and closed forms; comparisons say more.
+_FROM_EXACT = 1e-2
+#: Modes in which all speeds have one mesh.
+_ONE_MESH = ("contact", "traction", FOUND)
+
+
+def recomputed_faults(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
+    """What is not as it is computed again, one sentence each.
+
+    Args:
+        archive: fits the schema.
+        scene, plan: the archive's.
+    """
+    data = archive.data
+    yield from _of_warnings(data, archive.attributes["warnings"], scene, plan)
+    if runs.RECORD["c"].path in data and not len(data[runs.FAILURES.path]):
+        yield from _of_record(data, plan)
+    for methods, some, quantities in _asked(plan):
+        for rows, found in _computed(plan, data, methods, some, quantities):
+            yield from _different(archive, rows, found, plan)
+    yield from _of_finite_elements(archive, scene, plan)
+
+
+def _of_warnings(data: Mapping[str, Any], warnings: str, scene: Scene, plan: Plan) -> Iterator[str]:
+    """Sentences are the same but for numbers, which follow the order in which states were solved."""
+    if not plan.methods:
+        return
+    judge = Judge(scene, ())
+    judge.validity.see(data)
+    told = [_without_numbers(text) for text in json.loads(warnings)]
+    for text in judge.validity.words():
+        if _without_numbers(text) not in told:
+            yield f'warnings does not have "{text}"'
+
+
+def _without_numbers(text: str) -> str:
+    return re.sub(r"[-−]?\d[\d.]*(e[-+]?\d+)?|states?\b", "", text)
+
+
+def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
+    """Speeds, cells and unknowns of finite elements."""
+    fem, c = plan.fem, plan.tasks.order.speeds
+    assert fem
+    record = {name: data[row.path] for name, row in runs.RECORD.items()}
+    if not np.allclose(record["c"], c, rtol=1e-12, atol=0.0):
+        yield f"{runs.RECORD['c'].path} holds other speeds than its scene has"
+    if fem.mode in _ONE_MESH:
+        cells = len(fem.pattern.cells) * fem.cuts**2
+        sizes = [unknowns(fem.pattern, fem.cuts * degree) for degree in record["degree"].tolist()]
+        if np.any(record["cells"] != cells):
+            yield f"{runs.RECORD['cells'].path}: found {record['cells'][0]}, its scene's mesh has {cells}"
+        if record["unknowns"].tolist() != sizes:
+            yield (
+                f"{runs.RECORD['unknowns'].path}: found {record['unknowns'].tolist()}, meshes of the "
+                f"degrees in {runs.RECORD['degree'].path} have {sizes}"
+            )
+
+
+def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
+    """What is computed again: methods, states and quantities."""
+    count, most_of_all = plan.states, _FLAT if plan.body.flat else _most(plan)
+    for method in (CLOSED_FORM, SIE):
+        if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
+            continue
+        # Residuals may be rounding alone; comparisons have them.
+        own = [
+            quantity
+            for quantity in plan.quantities
+            if quantity.of and quantity.method == method and quantity.mode != ALONE
+        ]
+        if method == CLOSED_FORM:
+            own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
+        methods = (method,) if method in plan.methods else ()
+        largest = [quantity for quantity in own if quantity.asked_by == stresses.YIELD]
+        others = [quantity for quantity in own if quantity not in largest]
+        numbers = sum(int(np.prod(plan.shape(quantity))) for quantity in others)
+        most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
+        if method == SIE:
+            most = _LAYERED
+        for quantities, few in ((others, most), (largest, _YIELD)):
+            if quantities:
+                yield methods, _spread(count, few), quantities
+
+
+def _most(plan: Plan) -> int:
+    """States at most whose closed form takes its time."""
+    return _SMOOTH if smooth(plan.body.profile) else _KINKED
+
+
+def _spread(count: int, most: int) -> NDArray[np.int64]:
+    """At most so many states, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+
+
+def _tasks(plan: Plan, some: NDArray[np.int64]) -> Iterator[tuple[Task, NDArray[np.int64]]]:
+    """Speeds of some states, and which these are."""
+    order = plan.tasks.order
+    for i, (c, slices) in enumerate(zip(order.speeds, order.runs())):
+        own = np.concatenate([some[(some >= run.start) & (some < run.stop)] for run in slices])
+        if len(own):
+            yield Task(i, plan.body, plan.body.response(c), plan.places, slices, order.loads), own
+
+
+def _computed(
+    plan: Plan,
+    data: Mapping[str, Any],
+    methods: Sequence[str],
+    some: NDArray[np.int64],
+    quantities: Sequence[Quantity],
+) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
+    """Quantities of some states, speed by speed; nothing where one could not be solved."""
+    failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
+    alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
+    made = {name: make(name, alone, Progress(), Clock()) for name in methods}
+    work = Work(alone, data[states.RATIO.path], made, Clock(), np.zeros(plan.states, dtype=bool))
+    for task, rows in _tasks(plan, some):
+        if f"c = {task.response.c:g}" not in failed:
+            yield rows, work.of_states(task, rows)
+
+
+def _different(
+    archive: Archive, rows: NDArray[np.int64], found: Mapping[str, NDArray], plan: Plan
+) -> Iterator[str]:
+    """What an archive holds is not what it is computed as."""
+    for path, values in found.items():
+        held = _held(archive, path, rows)
+        with np.errstate(invalid="ignore"):
+            finite = np.where(np.isfinite(values), np.abs(values), 0.0)
+            axes = tuple(range(1, values.ndim))
+            size = np.maximum(finite, 0.0 if values.ndim == 1 else finite.max(axis=axes, keepdims=True))
+            allowed = _TOLERANCES * plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
+            near = np.abs(held - values) <= allowed * size + _PLACE * _is_place(path)
+        alike = near | (held == values) | (np.isnan(held) & np.isnan(values))
+        if not alike.all():
+            i = int(np.flatnonzero(~alike.reshape(len(rows), -1).all(axis=1))[0])
+            yield f"{path} is not what is computed of state {rows[i]}"
+
+
+def _near(held: NDArray, exact: NDArray, share: float) -> bool:
+    return bool(np.allclose(held, exact, rtol=share, atol=0.0, equal_nan=True))
+
+
+def _held(archive: Archive, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """What an archive has of some states."""
+    if path in archive.data:
+        return np.asarray(archive.data[path][rows])
+    return np.concatenate([archive.rows(slice(row, row + 1), [path])[path] for row in rows.tolist()])
+
+
+def _is_place(path: str) -> bool:
+    """Is it where something is largest? It may lie anywhere where that is flat."""
+    return path.endswith(("_position", "_over_a", "_X", "_Y"))
+
+
+def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
+    """Finite elements against the closed form, whether or not the scene asks for that."""
+    data, fem, body = archive.data, plan.fem, plan.body
+    if not fem or body.layered:
+        return
+    some = _spread(plan.states, _most(plan))
+    yield from _of_invariants(archive, plan, some)
+    slow = body.solid.limit() > max(plan.tasks.order.speeds)
+    if (
+        archive.attributes["verdict"] == "FAIL"
+        or METHODS[CLOSED_FORM].refusal(scene, body, None)
+        or not slow
+    ):
+        return
+    if states.INDENTATION.path in data and fem.terms and not body.pressure:
+        yield from _of_indentations(data, plan, some)
+    loads = [row.path for row in yielding.FIRST_LOAD.values()]
+    if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
+        yield f"{' and '.join(loads)} are not near each other"
+    twins = {
+        quantity.path: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
+        for quantity in QUANTITIES.values()
+        if quantity.of and quantity.method == CLOSED_FORM and quantity.mode in scene.modes
+        and not _is_place(quantity.path)
+        # Next to kinks numbers are infinite, or nearly so; and of yield a few states were looked at.
+        and (smooth(body.profile) or quantity.over == (STATE,)) and quantity.asked_by != stresses.YIELD
+        and not METHODS[CLOSED_FORM].refusal(scene, body, quantity)
+    }  # fmt: skip
+    both = {path: other for path, other in twins.items() if other in archive.names}
+    for rows, found in _computed(plan, data, (CLOSED_FORM,), some, [QUANTITIES[path] for path in both]):
+        intensities = [abs(values) for path, values in found.items() if "K_I" in path]
+        for path, exact in found.items():
+            held = _held(archive, both[path], rows)
+            if path == states.CENTRE[CLOSED_FORM].path:
+                size = found[states.HALF_WIDTH[CLOSED_FORM].path]
+            else:
+                size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
+            if exact.ndim > 1:
+                finite = np.where(np.isfinite(exact), np.abs(exact), 0.0)
+                size = np.maximum(size, np.median(finite, axis=1, keepdims=True))
+            far = np.abs(held - exact) > max(_FROM_EXACT, _TOLERANCES * plan.tolerance) * np.where(
+                size > 0.0, size, 1.0
+            )
+            if far.any():
+                state = rows[far.reshape(len(rows), -1).any(axis=1)][0]
+                yield f"{both[path]} is not near the closed form of state {state}"
+
+
+def _of_invariants(archive: Archive, plan: Plan, some: NDArray[np.int64]) -> Iterator[str]:
+    """Principal and von Mises stresses inside follow from the components."""
+    rows = (*stresses.STRESSES_INSIDE[FEM], *stresses.INVARIANTS_INSIDE[FEM])
+    if any(row.path not in archive.names for row in rows):
+        return
+    inside = [_held(archive, row.path, some) for row in stresses.STRESSES_INSIDE[FEM]]
+    for row in stresses.INVARIANTS_INSIDE[FEM]:
+        assert row.of
+        expected = row.of(SimpleNamespace(inside=inside), plan.body)
+        if not np.allclose(
+            _held(archive, row.path, some), expected, rtol=1e-9, atol=1e-12, equal_nan=True
+        ):
+            yield f"{row.path} is not what the components give"
+
+
+def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64]) -> Iterator[str]:
+    """v₀ from the pressure of the closed form."""
+    looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
+    method = make(CLOSED_FORM, looked_at, Progress(), Clock())
+    held, g = data[states.INDENTATION.path], data[states.RATIO.path]
+    for task, rows in _tasks(looked_at, some):
+        load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])
+        body = plan.body.loaded(load)
+        try:
+            with method.at(task, np.unique(g[rows])) as solver:
+                solution: Any = solver.states(g[rows], load)  # type: ignore[call-arg]
+                σ_YY = solution.surface.σ_YY
+        except SolveError:
+            continue
+        ends = -body.half_width
+        if body.found:
+            ends = solution.centre - solution.half_width
+        height = body.profile.height(np.broadcast_to(ends, len(rows)))
+        v0 = body.displacement * indentation(task.response, g[rows], σ_YY, height / body.displacement)
+        far = np.abs(held[rows] - v0) > _INDENTATION * np.abs(v0)
+        if far.any():
+            state = rows[far][0]
+            yield (
+                f"{states.INDENTATION.path}: found {held[state]:g} m in state {state}, the pressure of "
+                f"the closed form gives {v0[far][0]:g} m"
+            )
+
 
 #: States looked at together.
 _ROWS = 1000
@@ -46,7 +330,7 @@ def faults(path: Path) -> list[str]:
             plan = make_plan(scene)
             found += _of_plan(archive, scene, plan)
             if not found:
-                found += recomputed.faults(archive, scene, plan)
+                found += recomputed_faults(archive, scene, plan)
         return [*found, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 

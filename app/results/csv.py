@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from galinx.app.errors import BadInput
-from galinx.app.results.si import scaling
-from galinx.app.scene import read as scenes
-from galinx.postprocess.apart import parameters
-from galinx.postprocess.hdf5 import reader
+from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
-from galinx.postprocess.scaling import Scaled
+from galinx.postprocess.tables import Scaled, parameters
+
+from ..errors import BadInput
+from ..scene import read as scenes
+from .si import scaling
 
 #: Where states have values, and the word of output.quantities that asks for them, by table.
 TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}

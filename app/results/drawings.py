@@ -4,31 +4,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from galinx.app.errors import BadInput
-from galinx.app.pictures import (
-    angles,
-    energies,
-    film,
-    friction,
-    inside,
-    interfaces,
-    numerics,
-    over_time,
-    pressures,
-    slider,
-    surface,
-    surface_over_time,
-    sweep,
-    thicknesses,
-)
-from galinx.app.pictures.choice import Choice, one_of
-from galinx.app.pictures.drawing import Drawing, there
-from galinx.app.pictures.files import FILM, Files, Written
-from galinx.app.plan.plan import make_plan
-from galinx.app.scene.scene import Scene
 from galinx.postprocess.figures.canvas import TooSmall
-from galinx.postprocess.figures.film import FORMATS as OF_FILMS
+from galinx.postprocess.figures.maps import FORMATS as OF_FILMS
 from galinx.postprocess.quantities.quantity import METHODS
+
+from ..errors import BadInput
+from ..pictures import film, friction, motion, numerics, surface, sweep
+from ..pictures.choice import FILM, Choice, Drawing, Files, Written, one_of, there
+from ..plan.plan import make_plan
+from ..scene.scene import Scene
 
 __all__ = ["Drawing", "names", "of_archive", "there", "write"]
 
@@ -53,9 +37,9 @@ def _on_surface(data: _Data, choice: Choice) -> bool:
 
 
 def _below(data: _Data, scene: Scene, choice: Choice) -> bool:
-    if not inside.has_map(data, choice.method):
+    if not surface.has_map(data, choice.method):
         return False
-    return set(choice.quantities) <= set(inside.Fields(data, scene, choice).names)
+    return set(choice.quantities) <= set(surface.Fields(data, scene, choice).names)
 
 
 def _no_figure(data: _Data, scene: Scene, choice: Choice) -> Drawing:
@@ -66,7 +50,7 @@ def _no_figure(data: _Data, scene: Scene, choice: Choice) -> Drawing:
 _FIGURES = {
     "friction": _Figure({"states"}, lambda data, scene, _: True, friction.friction),
     "parameters": _Figure(
-        {"states", "method", "x", "y", "by"}, lambda data, scene, choice: sweep.has(data, scene, choice),
+        {"states", "method", "x", "y", "by"}, sweep.has_parameters,
         sweep.parameters,
     ),
     "surface": _Figure(
@@ -74,26 +58,28 @@ _FIGURES = {
         surface.surface,
     ),
     "interfaces": _Figure(
-        {"states", "quantities", "method"}, lambda data, scene, choice: interfaces.has(data, choice),
-        interfaces.interfaces,
+        {"states", "quantities", "method"}, 
+        lambda data, scene, choice: surface.has_interfaces(data, choice),
+        surface.interfaces,
     ),
-    "inside": _Figure({"states", "quantities", "method"}, _below, inside.inside),
-    "slider": _Figure(set(), lambda data, scene, _: slider.has(data), slider.slider),
-    "time": _Figure(set(), lambda data, scene, _: over_time.has(data), over_time.time),
-    "pressures": _Figure(set(), lambda data, scene, _: pressures.has(data), pressures.pressures),
+    "inside": _Figure({"states", "quantities", "method"}, _below, surface.inside),
+    "slider": _Figure(set(), lambda data, scene, _: friction.has_slider(data), friction.slider),
+    "time": _Figure(set(), lambda data, scene, _: motion.has_motions(data), motion.time),
+    "pressures": _Figure(set(), lambda data, scene, _: motion.has_pressures(data), motion.pressures),
     "stresses": _Figure(
-        set(), lambda data, scene, _: surface_over_time.has(data), surface_over_time.stresses
+        set(), lambda data, scene, _: motion.has_surface(data), motion.stresses
     ),
-    "energies": _Figure(set(), lambda data, scene, _: energies.has(data), energies.energies),
-    "angles": _Figure(set(), lambda data, scene, _: angles.has(scene), angles.angles),
+    "energies": _Figure(set(), lambda data, scene, _: motion.has_energies(data), motion.energies),
+    "angles": _Figure(set(), lambda data, scene, _: sweep.has_angles(scene), sweep.angles),
     "thicknesses": _Figure(
-        set(), lambda data, scene, _: thicknesses.has(data, scene), thicknesses.thicknesses
+        set(), lambda data, scene, _: sweep.has_thicknesses(data, scene), sweep.thicknesses
     ),
     "degrees": _Figure(set(), lambda data, scene, _: numerics.has_degrees(data), numerics.degrees),
     "mesh": _Figure(set(), lambda data, scene, _: bool(make_plan(scene).fem), numerics.mesh),
     FILM: _Figure(
         {"states", "quantities", "method"},
-        lambda data, scene, choice: film.has(data, scene, choice) or any(has for has, _ in _films(data)),
+        lambda data, scene, choice: film.has_film(data, scene, choice)
+        or any(has for has, _ in _films(data)),
         _no_figure,
     ),
 }  # fmt: skip
@@ -126,7 +112,7 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
     wanted = names(data, scene, choice)
     files.check(wanted)
     in_time = [make for has, make in _films(data) if has]
-    made = film.film if not in_time or film.has(data, scene, choice) else in_time[0]
+    made = film.film if not in_time or film.has_film(data, scene, choice) else in_time[0]
     whole = (lambda: made(data, scene, choice)) if FILM in wanted else None
     return files.write(of_archive(data, scene, choice), whole)
 
@@ -134,7 +120,8 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
 def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
     """Films of motions in time: does an archive have what they show, and what makes them."""
     return (
-        (surface_over_time.has_film(data), surface_over_time.film), (pressures.has(data), pressures.film),
+        (motion.has_film(data), motion.film_of_surface),
+        (motion.has_pressures(data), motion.pressure_film),
     )  # fmt: skip
 
 
@@ -168,8 +155,8 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
 
 
 def _quantities(data: _Data, scene: Scene) -> list[str]:
-    below = inside.Fields(data, scene, _PLAIN).names if inside.has_map(data) else []
-    return [*surface.quantities(data), *interfaces.quantities(data), *below]
+    below = surface.Fields(data, scene, _PLAIN).names if surface.has_map(data) else []
+    return [*surface.quantities(data), *surface.interface_quantities(data), *below]
 
 
 def _options(names: set[str]) -> str:

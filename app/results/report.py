@@ -1,26 +1,380 @@
-"""The report of an archive: one HTML page that needs nothing else."""
+"""The report of an archive: one HTML page that needs nothing else.
+
+What an archive says of a contact, in a few lines with units: the results that a report begins with.
+
+Tables and curves of an archive as the scripts of a page read them.
+"""
 
 import json
 from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import floor, log10
 from typing import Any
 
-from galinx.app.console.program import program
-from galinx.app.results.answers import answers, summary
-from galinx.app.results.drawings import Drawing
-from galinx.app.results.si import scaling
-from galinx.app.results.tabulated import curves, states_table
-from galinx.app.scene.scene import Scene
-from galinx.app.study.published import (
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.figures.canvas import embedded, in_a_page
+from galinx.postprocess.figures.style import plain
+from galinx.postprocess.page import render
+from galinx.postprocess.quantities import (
+    Quantity,
+    layers,
+    of_states,
+    runs,
+    states,
+    stresses,
+    table,
+    validity,
+    yielding,
+)
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
+from galinx.postprocess.stresses import NEAR
+from galinx.postprocess.tables import Scaling, Sheet, as_archived, parameters, solved_speeds, starts_sheet
+from galinx.solvers.contact import from_edge
+from galinx.texts import counted
+
+from ..console import program
+from ..scene.scene import Scene
+from ..study.published import (
     INTENSITIES,
     intensities,
     intensity_rows,
     like_the_studys,
     limit_of_steady_motion,
 )
-from galinx.postprocess.figures.canvas import embedded, in_a_page
-from galinx.postprocess.page import render
-from galinx.postprocess.quantities import runs
-from galinx.postprocess.tables import Sheet, starts_sheet
+from .drawings import Drawing
+from .si import in_si, scaling, stress_of_states
+
+#: Of units, and where the one stands that means nothing.
+_PREFIXES, _MIDDLE = "pnµm kMGT", 4
+
+
+#: By method.
+_K_I_LEFT, _K_I_RIGHT = states.K_I_LEFT | layers.K_I_LEFT, states.K_I_RIGHT | layers.K_I_RIGHT
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A result in words.
+
+    Attributes:
+        name: what it is.
+        value: with its unit.
+        where: state and place.
+    """
+
+    name: str
+    value: str
+    where: str = ""
+
+
+def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
+    """The results that an archive has, finite elements first where there are both methods."""
+    return [
+        *_of_states(data),
+        *_of_contact(data, scene),
+        *_of_surface(data, scene),
+        *_of_interfaces(data, scene),
+        *_of_limits(data, scene),
+    ]
+
+
+def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
+    f = data[states.FRICTION.path]
+    yield Answer("Friction coefficient f, positive in forward motion", *_span(f, "", "{:+.4f}"))
+    intensities = [data[row.path] for row in (*_either(data, _K_I_LEFT), *_either(data, _K_I_RIGHT))]
+    if intensities and np.any(intensities):
+        both = np.array(intensities)
+        smallest, largest = both.min(axis=0), both.max(axis=0)
+        low, high = int(smallest.argmin()), int(largest.argmax())
+        yield Answer(
+            "Stress intensity factor K_I at the edges, dimensionless",
+            *_words(smallest[low], largest[high], low, high, "", "{:.4f}"),
+        )
+    if states.INDENTATION.path in data:
+        name = "Indentation v_0 relative to the surface far away"
+        yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
+
+
+def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    """Of contacts whose ends are found."""
+    for row in _either(data, states.HALF_WIDTH):
+        yield Answer("Half-width of the contact", *_span(data[row.path], "m"))
+    for row in _either(data, states.CENTRE):
+        yield Answer("Middle of the contact, from the punch's axis", *_span(data[row.path], "m"))
+    for row in _either(data, states.LARGEST):
+        pressure = stress_of_states(data, scene)[:, 0] * data[row.path]
+        if np.isfinite(pressure).any():
+            yield Answer("Largest contact pressure", *_span(pressure, "Pa"))
+
+
+def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    if stresses.SURFACE_X.path not in data:
+        return
+    stress, X = stress_of_states(data, scene), data[stresses.SURFACE_X.path]
+    for row in _either(data, stresses.PRESSURE | layers.PRESSURE):
+        middle = int(np.abs(X).argmin())
+        pressure = -stress[:, 0] * data[row.path][:, middle]
+        yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
+    away = from_edge(X) >= NEAR
+    for row in _either(data, stresses.IN_PLANE | layers.IN_PLANE):
+        σ, places = stress * data[row.path][:, away], X[away]
+        beyond = f"further than {NEAR:g} a from the edges"
+        for name, at in (("tension", σ.argmax()), ("compression", σ.argmin())):
+            state, point = np.unravel_index(int(at), σ.shape)
+            if (σ[state, point] > 0.0) == (name == "tension"):
+                yield Answer(
+                    f"Largest in-plane {name} σ_XX on the surface, {beyond}",
+                    _engineering(abs(float(σ[state, point])), "Pa"),
+                    f"state {state}, X/a = {places[point]:.4g}",
+                )
+
+
+def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    """What may part a layer from what it lies on: shear, and tension across and along."""
+    method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
+    if method is None:
+        return
+    stress, X = stress_of_states(data, scene), data[layers.ALONG_X.path]
+    YY, XY, above, below = (stress[..., None] * data[row.path] for row in layers.INTERFACES[method])
+    depths = np.cumsum([layer.thickness for layer in scene.layers])
+    for i, depth in enumerate(depths.tolist()):
+        parts = {
+            "shear |σ_XY| at": np.abs(XY), "tension σ_YY at": YY,
+            "in-plane tension σ_XX just above": above, "in-plane tension σ_XX just below": below,
+        }  # fmt: skip
+        where = f"the interface {_engineering(depth, 'm')} deep"
+        for name, σ in parts.items():
+            state, point = np.unravel_index(int(σ[:, i].argmax()), σ[:, i].shape)
+            if (largest := float(σ[state, i, point])) > 0.0:
+                yield Answer(
+                    f"Largest {name} {where}",
+                    _engineering(largest, "Pa"),
+                    f"state {state}, X/a = {X[point]:.4g}",
+                )
+
+
+#: Where the solid yields, and where answers do not hold, by method.
+_LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
+    ("Largest von Mises stress", yielding.VON_MISES),
+    ("Largest shear stress in the plane", yielding.SHEAR),
+    ("Load at first yield", yielding.FIRST_LOAD),
+    ("Yield passed up to, from the edge X = −a", yielding.REACH_LEFT),
+    ("Yield passed up to, from the edge X = a", yielding.REACH_RIGHT),
+    ("Depth of the yielded zone", yielding.DEPTH),
+    (
+        "Tension under the punch",
+        {method: rows[0] for method, rows in (validity.TENSION | layers.TENSION).items()},
+    ),
+    ("Wave crossings of the contact in a stroke", {CLOSED_FORM: validity.CROSSINGS}),
+    ("Slip turned round up to, from X = −a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
+    ("Slip turned round up to, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
+    ("Strain beyond 5 % up to, from X = −a", {CLOSED_FORM: validity.STRAIN[0]}),
+    ("Strain beyond 5 % up to, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
+)
+
+
+def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+    for name, rows in _LIMITS:
+        for row in _either(data, rows):
+            told = in_si(row, "", scene, data)
+            if told and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
+                form = "{:.4g}" if told.unit == "1" else ""
+                yield Answer(name, *_span(told.of(data[row.path]), told.unit, form))
+
+
+def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
+    """One of several methods."""
+    return [
+        rows[method] for method in (FEM, CLOSED_FORM, SIE) if method in rows and rows[method].path in data
+    ][:1]
+
+
+def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
+    """Smallest and largest of the states, and which these are."""
+    if not np.isfinite(values).any():
+        return "none", ""
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    return _words(float(values[low]), float(values[high]), low, high, unit, form)
+
+
+def _words(least: float, most: float, low: int, high: int, unit: str, form: str) -> tuple[str, str]:
+    told = [form.format(value) if form else _engineering(value, unit) for value in (least, most)]
+    if told[0] == told[1]:
+        return told[0], ""
+    return " to ".join(told), f"states {low} and {high}"
+
+
+def _engineering(value: float, unit: str) -> str:
+    """With four digits and a prefix: 113.8 GPa."""
+    if value == 0.0:
+        return f"0 {unit}"
+    size = floor(log10(abs(float(f"{value:.3e}"))))
+    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
+    told = f"{value / 1000.0**thousands:.{max(3 + 3 * thousands - size, 0)}f}"
+    return f"{told} {_PREFIXES[thousands + _MIDDLE].strip()}{unit}".replace("-", "−")
+
+
+def summary(data: dict[str, Any], scene: Scene) -> str:
+    """What was computed, in two sentences with units."""
+    count, c = len(data[states.FRICTION.path]), np.unique(data[states.SPEED.path])
+    solid, c_s = scene.solid, scene.solid.c_s
+    moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
+    speed = " to ".join(f"{v * c_s:.4g}" for v in sorted({c[0], c[-1]}))
+    ends = sorted({min(scene.punch.loads), max(scene.punch.loads)})
+    load = " to ".join(_engineering(N, "N/m") for N in ends)
+    text = (
+        f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
+        f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
+        f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
+    )
+    record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]
+    if all(path in data for path in record):
+        cells, degree, unknowns = (int(data[path].max()) for path in record)
+        mesh = "layered" if scene.layers else scene.solve.mesh
+        text += (
+            f" Finite elements: {mesh} mesh, {cells} cells of degree up to {degree}, "
+            f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
+        )
+        if told := solved_speeds(data):
+            text += f" {told.capitalize()}."
+    return text
+
+
+#: Most cells of the table, and numbers of the curves: a page stays below 5 MB.
+_CELLS, _NUMBERS = 60_000, 250_000
+
+#: Digits that are shown; errors have fewer.
+_DIGITS, _OF_ERRORS = 6, 2
+
+
+def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any]:
+    """Every state with all that has one value a state: what differs between states first.
+
+    Args:
+        data: datasets by path.
+        scaling: how quantities are told.
+    """
+    apart = parameters(data)
+    others = [
+        row
+        for path, row in table().items()
+        if of_states(path)
+        and path in data
+        and row.over == (STATE,)
+        and path not in apart
+        and scaling(row, "")
+    ]
+    rows = [*apart.values(), *others]
+    constant = [row for row in apart.values() if len(np.unique(data[row.path])) == 1]
+    shown = [row for row in rows if row not in constant]
+    count = len(data[rows[0].path])
+    kept = min(count, _CELLS // (len(shown) + 1))
+    columns = [{"head": "state", "name": "state", "csv": "state", "about": "number", "digits": None}]
+    columns += [_column(row, scaling) for row in shown]
+    cells = [
+        list(range(kept)),
+        *(_plain(_told(row, data[row.path][:kept], scaling), 12) for row in shown),
+    ]
+    same = ", ".join(f"{_head(row)} = {data[row.path][0]:g}" for row in constant if row.type != TEXT)
+    note = f"{counted(count, 'state')}; click on a head to sort."
+    note += f" The same in all: {same}." * bool(same)
+    if kept < count:
+        note += f" The first {kept} are here; the command csv writes all."
+    heads = [{"head": column["head"], "about": column["about"]} for column in columns]
+    return {"columns": heads, "note": note, "data": {"columns": columns, "rows": list(zip(*cells))}}
+
+
+def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any] | None:
+    """Stresses on the surface of states, by method and quantity; None where there are none.
+
+    Args:
+        data: datasets by path.
+        scaling: how quantities are told.
+    """
+    known = {
+        "σ_XX": stresses.IN_PLANE | layers.IN_PLANE, "σ_YY": stresses.PRESSURE | layers.PRESSURE
+    }  # fmt: skip
+    methods = [m for m in METHODS if all(rows[m].path in data for rows in known.values())]
+    if not methods:
+        return None
+    X = data[stresses.SURFACE_X.path]
+    order, apart = np.argsort(X, kind="stable"), parameters(data)
+    count = len(data[next(iter(apart))])
+    most = max(_NUMBERS // (len(X) * len(methods) * len(known)), 1)
+    some = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+    told = scaling(known["σ_XX"][methods[0]], "")
+    in_units = told is not None and told.unit == "Pa"
+    factors = 1e-6 * told.factor * np.ones(count) if told and in_units else np.ones(count)
+    values = [
+        [
+            [_plain(factors[i] * data[rows[method].path][i][order], 5) for i in some.tolist()]
+            for rows in known.values()
+        ]
+        for method in methods
+    ]
+    varied = [row for row in apart.values() if len(np.unique(data[row.path])) > 1]
+    names = [
+        ", ".join([str(i), *(_value(row, data[row.path][i]) for row in varied)]) for i in some.tolist()
+    ]
+    note = "In MPa." if in_units else "Over N/(2a)."
+    note += f" {len(some)} of {count} states." * (len(some) < count)
+    return {
+        "note": note,
+        "data": {
+            "unit": "[MPa]" if in_units else "/ (N/2a)",
+            "X": _plain(X[order], 9), "states": names, "quantities": list(known),
+            "methods": [METHODS[method] for method in methods], "values": values,
+        },
+    }  # fmt: skip
+
+
+def _told(row: Quantity, values: NDArray, scaling: Scaling) -> NDArray:
+    told = scaling(row, "")
+    return values if told is None else told.of(values, slice(len(values)))
+
+
+def _column(row: Quantity, scaling: Scaling) -> dict[str, Any]:
+    name = row.path.partition("/")[2].replace("/", "_")
+    told = scaling(row, name) or as_archived(row, name)
+    head = _head(row)
+    if told.name != name:
+        head = told.name if row.symbol else head.replace(" over a", "")
+    unit = "" if told.unit in ("1", "none") else f" [{told.unit}]"
+    error = "error" in row.path or "estimate" in row.path
+    digits = None if row.type == TEXT else _OF_ERRORS if error else _DIGITS
+    return {
+        "head": head + unit,
+        "name": told.name,
+        "csv": told.name + unit,
+        "about": row.about,
+        "digits": digits,
+    }
+
+
+def _head(row: Quantity) -> str:
+    """A column's head: the symbol, or the name with its method."""
+    if row.symbol:
+        return f"${row.symbol}$"
+    method, _, name = row.path.partition("/")[2].rpartition("/")
+    called = {"v0": "v_0", "alpha": "α", "beta": "β"}.get(
+        name, name.replace("_", " ").replace("K I", "K_I")
+    )
+    return called + {CLOSED_FORM: ", exact", SIE: ", SIE", FEM: ", FE"}.get(method, "")
+
+
+def _value(row: Quantity, value: Any) -> str:
+    return str(value) if row.type == TEXT else plain(f"${row.symbol}$ = {value:.4g}")
+
+
+def _plain(values: NDArray, digits: int) -> list[Any]:
+    """Numbers with so many digits, None for NaN; texts stay."""
+    if values.dtype.kind in "OSU":
+        return [str(value) for value in values.tolist()]
+    return [None if value != value else float(f"{value:.{digits}g}") for value in values.tolist()]
+
 
 #: What words of a report mean; those that it does not use are left out.
 TERMS = (

@@ -1,19 +1,58 @@
-"""Results in Python: everything the command line does in a few lines, with or without files."""
+"""Results in Python: everything the command line does in a few lines, with or without files.
+
+How a result looks in a notebook: its title, verdict and states as HTML.
+"""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import nullcontext
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import Any
 
-from galinx.app.console.progress import Progress
-from galinx.app.run.flow import compute as compute_into
-from galinx.app.run.sinks import Memory
-from galinx.app.scene import read as scenes
-from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import runs, states
+from galinx.postprocess.tables import states_sheet
 from galinx.postprocess.target import FIELDS, PAGE, Target
+
+from ..console import Progress
+from ..run.flow import Memory
+from ..run.flow import compute as compute_into
+from ..scene import read as scenes
+from ..scene.scene import Scene
+
+_COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
+
+
+def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
+    """A few lines and a table; all of it plain, without scripts or styles of its own.
+
+    Args:
+        data, attributes: of an archive.
+    """
+    verdict = attributes["verdict"]
+    colour = _COLOURS.get(verdict, "inherit")
+    sheet = states_sheet(data, attributes["title"])
+    reasons = json.loads(attributes["verdict_reasons"])
+    warnings = [f"warning: {text}" for text in json.loads(attributes["warnings"])]
+    heads = "".join(f"<th>{escape(column)}</th>" for column in sheet.columns)
+    rows = "".join(f"<tr>{_cells(row)}</tr>" for row in sheet.rows)
+    return (
+        f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
+        f'<b style="color: {colour}">{escape(verdict)}</b></p>'
+        f"{_lines(warnings)}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+        f"{_lines([*sheet.notes, *reasons])}"
+    )
+
+
+def _cells(row: Iterable[str]) -> str:
+    return "".join(f"<td>{escape(cell)}</td>" for cell in row)
+
+
+def _lines(texts: Iterable[str]) -> str:
+    """Small print."""
+    told = "<br>".join(map(escape, texts))
+    return f"<p><small>{told}</small></p>" if told else ""
 
 
 class Result:
@@ -37,7 +76,6 @@ class Result:
 
     def _repr_html_(self) -> str:
         """For notebooks: verdict and states."""
-        from galinx.app.results.notebook import html
 
         return html(self.data, self.attributes)
 
@@ -71,7 +109,7 @@ class Result:
         return over_parameters(self.dataset)
 
     def drawings(self, **options: Any) -> Iterator[Any]:
-        """Figures of the result, as :class:`galinx.app.pictures.drawing.Drawing`.
+        """Figures of the result, as :class:`galinx.app.pictures.choice.Drawing`.
 
         Args:
             options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
@@ -79,8 +117,8 @@ class Result:
         Raises:
             BadInput: what is wanted is not there.
         """
-        from galinx.app.pictures.choice import Choice
-        from galinx.app.results.drawings import of_archive
+        from ..pictures.choice import Choice
+        from .drawings import of_archive
 
         return of_archive(self.data, self.scene, Choice(**options))
 
@@ -95,8 +133,9 @@ class Result:
         Raises:
             BadInput: the result has no such figure.
         """
-        from galinx.app.results.drawings import names
-        from galinx.postprocess.figures.notebook import shown
+        from galinx.postprocess.figures.canvas import shown
+
+        from .drawings import names
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
         (drawing,) = self.drawings(figures=(name or usual,), **options)
@@ -125,9 +164,8 @@ class Result:
         """
         if to is None:
             return self.figure(**options)
-        from galinx.app.pictures.choice import Choice
-        from galinx.app.pictures.files import Files
-        from galinx.app.results.drawings import write
+        from ..pictures.choice import Choice, Files
+        from .drawings import write
 
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
         return [one.path for one in write(self.data, self.scene, Choice(**options), files)]
@@ -139,7 +177,7 @@ class Result:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from galinx.app.results.report import Report
+        from .report import Report
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
         report = Report(self.data, self.attributes, self.scene, si=si)
@@ -167,7 +205,7 @@ class Result:
             Occupied: the ending is another kind's, or another file is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from galinx.app.results.paraview import write_fields
+        from .fields import write_fields
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
         numbers = [state] if isinstance(state, int) else list(state)
@@ -188,7 +226,7 @@ class Result:
             BadInput: no such state, finite elements have no answer there, or there are several ranks.
             MachineFailure: dolfinx is not installed.
         """
-        from galinx.app.results.one_state import displacement
+        from .fields import displacement
 
         return displacement(self.scene, state, self._degree(state), extent)
 
@@ -228,10 +266,9 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     Raises:
         BadInput: no such scene, or the changed one has faults.
     """
-    from galinx.app.errors import BadInput
-    from galinx.app.scene.changes import changed
-    from galinx.app.scene.excerpt import excerpt, nearest
-    from galinx.app.scene.templates import templates
+    from ..errors import BadInput, excerpt, nearest
+    from ..scene.changes import changed
+    from ..scene.library import templates
 
     known = templates()
     if name not in known:
@@ -262,6 +299,6 @@ def load(path: Path | str, stresses: bool = True) -> Result:
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
     """
-    from galinx.postprocess.hdf5.reader import read
+    from galinx.postprocess.hdf5.archive import read
 
     return Result(*read(Path(path), stresses), (Path(path),))

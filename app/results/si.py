@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.states import order
-from galinx.app.scene.scene import Scene
 from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import CENTRE, FRICTION, HALF_WIDTH, LOAD, SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
-from galinx.postprocess.scaling import LENGTHS, Scaled, Scaling, as_archived
+from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
+
+from ..plan.states import order
+from ..scene.scene import Scene
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
 #: Ends of names of places along X: where ends are found they are told from the punch's axis.

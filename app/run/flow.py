@@ -1,34 +1,316 @@
-"""Run a scene: plan, solve, judge, archive."""
+"""Run a scene: plan, solve, judge, archive.
+
+Who takes results where they go.
+
+What every archive tells of its scene, in SI.
+
+What a result was computed with.
+
+Where results go.
+
+The verdict on a run.
+"""
 
 import json
-from collections.abc import Iterator
+import platform
+import sys
+from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import Any
+from math import inf
+from time import perf_counter
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx import __version__
-from galinx.app import ranks
-from galinx.app.console.progress import Progress
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import States, enumerate_states
-from galinx.app.plan.task import Plan
-from galinx.app.plan.words import lines
-from galinx.app.run.collector import Collector
-from galinx.app.run.judge import Judge
-from galinx.app.run.methods import make
-from galinx.app.run.over_time import follow
-from galinx.app.run.sinks import Nowhere, Sink
-from galinx.app.run.slider import slide
-from galinx.app.run.solve import Work
-from galinx.app.run.told import of_scene
-from galinx.app.run.versions import libraries, machine
-from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess.compare import comparisons
-from galinx.postprocess.journal import Journal, Part
-from galinx.postprocess.quantities import column, runs, stresses
+from galinx.postprocess.compare import RULES, Comparison, comparisons
+from galinx.postprocess.journal import Journal, Part, joined
+from galinx.postprocess.quantities import column, declared, runs, stresses
+from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
+from galinx.postprocess.validity import Steady, Validity
+from galinx.solvers.errors import SolveError
+from galinx.solvers.parameters import values as constants
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.solids import SOLIDS, Solid
+from galinx.solvers.transient.admittance import InPlane
+from galinx.solvers.transient.late_time import approach
+
+from .. import ranks
+from ..console import Progress
+from ..plan.plan import lines, make_plan
+from ..plan.states import States, enumerate_states
+from ..plan.task import Plan
+from ..scene.scene import Scene
+from .methods import make
+from .over_time import follow
+from .slider import slide
+from .solve import Work
+
+
+def of_scene(scene: Scene) -> dict[str, Any]:
+    """Attributes of an archive's root that say what slides over what."""
+    half_plane, solid = scene.half_plane, scene.solid
+    known = _solid(half_plane.solid)
+    if half_plane.yield_strength:
+        known["yield_strength"] = half_plane.yield_strength
+    if scene.layers:
+        known |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
+    return {
+        "title": scene.title,
+        "material": half_plane.material or "",
+        "solid": json.dumps(known, ensure_ascii=False),
+        "half_width": scene.body.half_width,
+        "load": scene.punch.load,
+        "c_s": solid.c_s,
+        "speed_limit": solid.limit() * solid.c_s,
+    }
+
+
+def _solid(solid: Solid) -> dict[str, Any]:
+    kind = next((name for name, known in SOLIDS.items() if known is type(solid)), "")
+    return {"kind": kind, **constants(solid)}
+
+
+#: Libraries that numbers depend on, by the module that knows the version.
+_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "gmsh", "h5py")
+
+
+def libraries() -> dict[str, str]:
+    """Versions of Python and of the libraries that were used so far: nothing is imported for this."""
+    found = {"Python": platform.python_version()}
+    for name in _LIBRARIES:
+        version = getattr(sys.modules.get(name), "__version__", None)
+        if version:
+            found[name] = str(version)
+    return found
+
+
+def machine() -> str:
+    """System and number of ranks."""
+    count = ranks.size()
+    return f"{platform.system()} {platform.machine()}, {count} rank{'s' * (count > 1)}"
+
+
+class Sink(Protocol):
+    """Where results go: an archive in the making, or memory.
+
+    Every path has to be in the table of quantities; an unknown one raises KeyError.
+    """
+
+    def put(self, name: str, value: Any) -> None:
+        """A whole dataset."""
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        """Room for a dataset that comes by rows."""
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        """Rows of a reserved dataset."""
+
+
+class Memory(dict[str, Any]):
+    """A sink that keeps the datasets by path, as an archive would give them back."""
+
+    def put(self, name: str, value: Any) -> None:
+        self[declared(name).path] = np.array(value, dtype=object) if isinstance(value, list) else value
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        self[declared(name).path] = np.full(shape, np.nan)
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        self[name][rows] = values
+
+
+class Nowhere:
+    """The sink of ranks other than 0."""
+
+    def put(self, name: str, value: Any) -> None:
+        declared(name)
+
+    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
+        declared(name)
+
+    def write(self, name: str, rows: slice, values: NDArray) -> None:
+        pass
+
+
+#: Speeds that could not be solved of which a verdict says why, at most.
+_FAILURES = 10
+
+
+def limits(scene: Scene, names: Iterable[str]) -> dict[str, float]:
+    """Largest values of a PASS by the names of rules; what is only told is not among them."""
+    rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
+    allowed = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
+    return {name: limit for name, limit in allowed.items() if limit is not None}
+
+
+class Judge:
+    """Watches parts of results and says PASS or FAIL; keeps the worst of every comparison.
+
+    Args:
+        scene: sets the tolerance.
+        names: of the rules by which results are compared.
+
+    Attributes:
+        worst: largest value by the comparison's text, dimensionless.
+        failures: what could not be solved, and why.
+        validity: watches where what was solved does not hold.
+    """
+
+    def __init__(self, scene: Scene, names: Iterable[str]) -> None:
+        self.worst: dict[str, float] = {}
+        self.failures: list[str] = []
+        self.validity = Validity(_steady(scene))
+        self._limits = limits(scene, names)
+        self._judged: dict[str, float] = {}
+
+    def see(self, comparisons: list[Comparison]) -> None:
+        """Take a part's comparisons into account; NaN is worse than any number."""
+        for found in comparisons:
+            value = float(np.max([self.worst.get(found.text, 0.0), found.value]))
+            self.worst[found.text] = value
+            if found.name in self._limits:
+                self._judged[found.text] = self._limits[found.name]
+
+    def verdict(self) -> tuple[str, list[str]]:
+        """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
+        if not self._judged and not self.failures:
+            return "not judged", []
+        good = all(self.worst[text] <= limit for text, limit in self._judged.items())
+        good = good and not self.failures
+        reasons = [f"{text}: {self.worst[text]:.1e}, at most {x:g}" for text, x in self._judged.items()]
+        reasons += [f"not solved, {text}" for text in self.failures[:_FAILURES]]
+        if len(self.failures) > _FAILURES:
+            reasons.append(f"not solved, and {len(self.failures) - _FAILURES} more speeds")
+        return "PASS" if good else "FAIL", reasons
+
+
+def _steady(scene: Scene) -> Steady | None:
+    """Known of flat punches on uniform solids, below the speed of the wave along the surface."""
+    solid = scene.solid
+    if scene.layers or not isinstance(scene.punch.profile, Flat):
+        return None
+    if not isinstance(solid.response(0.0), InPlane):
+        return None  # a user's own
+
+    def within(c: float, g: float) -> float:
+        return approach(solid, c, g).within(0.01) if c < solid.limit() else inf
+
+    return Steady(within, scene.body.half_width / solid.c_s)
+
+
+#: Seconds after which small parts wait no longer for others: so much is lost at most.
+_PATIENCE = 1.0
+
+#: What the time is told as.
+_STEP = "archive"
+
+
+class Collector:
+    """Takes finished parts in: judges, writes and keeps them.
+
+    Args:
+        sink: where results go.
+        judge: is shown the comparisons.
+        progress: is told what is done.
+        journal: keeps parts; None for no journal.
+        plan: the plan that is followed.
+        clock: takes the time spent here.
+    """
+
+    def __init__(
+        self,
+        sink: Sink,
+        judge: Judge,
+        progress: Progress,
+        journal: Journal | None,
+        plan: Plan,
+        clock: Clock,
+    ) -> None:
+        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, plan
+        self._journal, self._clock, self._done = journal, clock, 0
+        self._small: list[Part] = []
+        self._kept = perf_counter()
+        self._records: dict[int, dict[str, Any]] = {}
+        for quantity in plan.quantities:
+            sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
+
+    def earlier(self) -> NDArray[np.bool_]:
+        """Take in what the journal has; which states those are, (states,)."""
+        found = np.zeros(self._plan.states, dtype=bool)
+        if self._journal and self._journal.damaged:
+            self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
+        for part in self._journal.parts() if self._journal else ():
+            found[part.rows] = True
+            self._take(part)
+        return found
+
+    def take(self, part: Part) -> None:
+        """Take in a part that was just computed; a failure is tried again by a run that goes on."""
+        if not ranks.is_root():
+            return  # all ranks share one mesh and have the same results
+        if "failure" in (part.record or {}):
+            self._keep()
+            self._take(part)
+            return
+        if self._small and self._small[-1].rows.stop != part.rows.start:
+            self._keep()
+        self._small.append(part)
+        states = part.rows.stop - self._small[0].rows.start
+        if part.record or states >= self._plan.chunk or perf_counter() - self._kept > _PATIENCE:
+            self._keep()
+
+    def _keep(self) -> None:
+        """Keep the parts that wait, as one: a file a part, and a look at the archive, take their time."""
+        if self._small:
+            with self._clock(_STEP):
+                part = joined(self._small)
+                if self._journal:
+                    self._journal.keep(part)
+            self._small = []
+            self._take(part)
+        self._kept = perf_counter()
+
+    def _take(self, part: Part) -> None:
+        self._judge.see(part.comparisons)
+        self._judge.validity.see(part.data)
+        with self._clock(_STEP):
+            for name, values in part.data.items():
+                self._sink.write(name, part.rows, values)
+        if part.record:
+            self._records[part.record["speed"]] = part.record
+        self._done += part.rows.stop - part.rows.start
+        self._progress.done(self._done, self._plan.states)
+
+    def finish(self) -> None:
+        """Write the records of the speeds.
+
+        Raises:
+            SolveError: no speed could be solved.
+        """
+        if not ranks.is_root():
+            return
+        self._keep()
+        records = [self._records[i] for i in sorted(self._records)]
+        failures = [
+            f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
+        ]
+        if len(failures) == len(self._plan.tasks) and not any(one.get("solved") for one in records):
+            raise SolveError(failures[0])
+        self._judge.failures = failures
+        if self._plan.fem or failures:
+            self._sink.put(FAILURES.path, failures)
+        if not self._plan.fem:
+            return
+        for name, quantity in RECORD.items():
+            values = np.array([record[name] for record in records], quantity.type)
+            self._sink.put(quantity.path, values)
+        changes = [record.get("change_by_degree", []) for record in records]
+        if longest := max(map(len, changes)):
+            padded = [change + [0.0] * (longest - len(change)) for change in changes]
+            self._sink.put(CHANGES.path, np.array(padded))
 
 
 def compute(
@@ -110,7 +392,7 @@ def _parts(
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
     methods = {name: make(name, plan, progress, clock) for name in plan.methods}
     if ranks.size() > 1 and plan.fem:
-        from galinx.app.run.share import same_on_all, shared_out
+        from .share import same_on_all, shared_out
 
         finished = same_on_all(finished)
     work = Work(plan, states.g, methods, clock, finished)

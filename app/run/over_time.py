@@ -1,37 +1,154 @@
-"""Motions in time of a scene: both methods, one speed after the other."""
+"""Motions in time of a scene: both methods, one speed after the other.
+
+What there were at once in steady motion of the same friction, beside which motions are seen.
+
+What finite elements in time tell besides the contact: works, energies, and stresses on the surface.
+"""
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app import ranks
-from galinx.app.errors import finite_elements_installed
-from galinx.app.plan.driving import Drive
-from galinx.app.plan.over_time import Level, Starts
-from galinx.app.run.at_once import AtOnce
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
-from galinx.postprocess import surface_over_time, to_steady
-from galinx.postprocess.compare_over_time import TOLD, largest_change
-from galinx.postprocess.over_time import told
-from galinx.postprocess.quantities import energy_over_time, work_over_time
+from galinx.postprocess import over_time, surface_over_time
+from galinx.postprocess.over_time import TOLD, contact_numbers, largest_change
+from galinx.postprocess.quantities import over_time as beside
+from galinx.postprocess.quantities import over_time as energy
 from galinx.postprocess.quantities import over_time as rows
+from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.quantities.to_steady import APPROACH
+from galinx.postprocess.surface_over_time import named
+from galinx.solvers.fem.dynamic import Energies, Motion
+from galinx.solvers.fem.in_time import Steps, SurfaceInTime, Watch
+from galinx.solvers.layers.contact import Pressure, Speed
+from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
-from galinx.solvers.transient.approach import approach
-from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
+from galinx.solvers.transient.late_time import approach
+from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
+
+from .. import ranks
+from ..errors import finite_elements_installed
+from ..plan.over_time import Drive, Level, Starts
+
+#: Length over a of the rule by which a pressure over layers is integrated.
+_FINEST = 0.5
+#: Accuracy over that of a scene.
+_OF_TOLERANCE = 0.1
+
+
+@dataclass(frozen=True)
+class AtOnce:
+    """Steady motion under a flat punch at a speed.
+
+    Args:
+        starts: what is asked for.
+        solid: the solid.
+        c: speed over c_s.
+    """
+
+    starts: Starts
+    solid: Solid
+    c: float
+
+    def centres(self, ratios: NDArray) -> NDArray[np.float64]:
+        """Centre of the pressure over a at frictions σ_XY/σ_YY, (n,)."""
+        different, which = np.unique(ratios, return_inverse=True)
+        response = self.starts.response(self.solid, self.c)
+        if isinstance(response, LayersInCells):
+            stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
+            found, _ = Speed(response.surface, stack, np.zeros_like, accuracy).solved(different)
+            return np.asarray((found.at(different) @ found.read(_centre))[which])
+        punches = [FlatPunch(response, ratio) for ratio in different]
+        return np.array([one.β - one.α for one in punches])[which]
+
+    def K_I(self, ratio: float) -> float:
+        """That of both ends; NaN over layers, where they differ."""
+        response = self.starts.response(self.solid, self.c)
+        return np.nan if isinstance(response, LayersInCells) else FlatPunch(response, ratio).K_I
+
+
+def _centre(pressure: Pressure) -> NDArray[np.float64]:
+    t, forces = pressure.points(_FINEST)
+    return np.array(forces @ t / forces.sum())
+
+
+_Found = dict[str, NDArray[np.float64]]
+
+
+class Seen:
+    """What is watched of all motions at a speed.
+
+    Args:
+        starts: what is asked for.
+        level: with which it is computed.
+        motion: the equations.
+    """
+
+    def __init__(self, starts: Starts, level: Level, motion: Motion) -> None:
+        self._starts, self._level, self._motion = starts, level, motion
+        self._ends = SurfaceInTime(motion, np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
+        self._along = SurfaceInTime(motion, ON_SURFACE) if starts.every else None
+        self._energies = Energies(motion) if starts.every and level.every == 1 else None
+
+    @property
+    def watching(self) -> tuple[Watch, ...]:
+        """What looks at each step."""
+        found: list[Watch] = [lambda u, w, way: self._ends.strain(u)]
+        if (along := self._along) is not None:
+            found.append(lambda u, w, way: along.strain(u))
+        return (*found, *filter(None, [self._energies]))
+
+    def told(self, run: Steps, g: Drive) -> _Found:
+        """Datasets of a motion by path."""
+        ends, *rest = run.watched
+        σ = self._motion.response.σ_XX(ends[1:], np.zeros_like(ends[1:]), np.zeros_like(ends[1:]))
+        found = {
+            rows.WORK.path: run.work, rows.ENERGY.path: run.energy, rows.ABSORBED.path: run.absorbed,
+            beside.OF_LOAD[FEM].path: run.work_of_load,
+            beside.OF_FRICTION[FEM].path: run.work_of_friction,
+            beside.LEFT[FEM].path: σ[:, 0], beside.RIGHT[FEM].path: σ[:, 1],
+        }  # fmt: skip
+        if self._along is not None:
+            found |= self._on_surface(rest[0], run, g)
+        if self._energies is not None:
+            found |= self._of_energies(rest[1], run, g)
+        return found
+
+    def _on_surface(self, strains: NDArray, run: Steps, g: Drive) -> _Found:
+        assert self._along is not None
+        σ_YY, ratios = [], []
+        for n in (at := self._starts.outputs // self._level.every):
+            steady = FlatPunch(self._motion.response, ratio := g(float(run.t[n - 1])))
+            σ_YY.append(self._along.pressure(run.forces[n - 1], steady.α, steady.β))
+            ratios.append(ratio)
+        pressure = np.array(σ_YY)
+        shear = np.array(ratios)[:, None] * pressure
+        σ_XX = self._motion.response.σ_XX(strains[at], pressure, shear)
+        return named(FEM, np.array([σ_XX, pressure, shear]))
+
+    def _of_energies(self, watched: NDArray, run: Steps, g: Drive) -> _Found:
+        """By changes since t = 0; what is carried along while the punch goes one way."""
+        ways = self._starts.directions(g)
+        strain, kinetic, all_strain, all_kinetic, momentum = (watched - watched[0])[1:].T
+        steps = np.diff(momentum, prepend=0.0)
+        return {
+            energy.CARRIED.path: np.cumsum(self._motion.response.c * ways * steps),
+            energy.STRAIN.path: strain, energy.KINETIC.path: kinetic,
+            energy.RADIATED.path: all_strain - strain + all_kinetic - kinetic + run.absorbed,
+        }  # fmt: skip
+
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
 #: steps within which the load comes on; polynomials there, and more at each tenth of it.
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
-_Found = dict[str, NDArray[np.float64]]
 #: A method and a speed.
 _Job = tuple[str, float]
 
@@ -71,7 +188,7 @@ def _computed(
     """What each job gives, on rank 0."""
     if ranks.size() == 1:
         return ((job, solve(job)) for job in jobs)
-    from galinx.app.run.share import shared_out
+    from .share import shared_out
 
     return shared_out(jobs, lambda job: iter([(job, solve(job))]))
 
@@ -91,7 +208,7 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
                 rows.STEADY_K_I.path: np.array(at_once.K_I(g[-1])),
                 rows.CENTRES.path: centres,
                 APPROACH.path: np.array(_within(solid, c, g[-1])),
-                energy_over_time.DISSIPATED.path: starts.dissipated(c, drive),
+                energy.DISSIPATED.path: starts.dissipated(c, drive),
                 rows.DIRECTION.path: starts.directions(drive),
             }  # fmt: skip
             for method in (SIE, FEM):
@@ -102,9 +219,9 @@ def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _F
     if starts.every:
         whole |= surface_over_time.where(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
-        whole[work_over_time.PLACES.path] = PLACES
+        whole[beside.PLACES.path] = PLACES
     for name in starts.methods:
-        whole |= to_steady.told(whole, name)
+        whole |= over_time.distances_from_steady(whole, name)
     return whole
 
 
@@ -142,7 +259,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                     course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
                     course.σ_XX_right,
                 )  # fmt: skip
-                one |= {row.path: value for row, value in zip(work_over_time.ALL, works)}
+                one |= {row.path: value for row, value in zip(beside.ALL, works)}
             one = {path: _until_the_end(value[finer - 1 :: finer], starts) for path, value in one.items()}
             if starts.every:
                 one |= surface_over_time.named(
@@ -223,11 +340,9 @@ def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
     """Values, and datasets of what else is seen, of each friction at a speed."""
     from mpi4py import MPI
 
-    from galinx.app.run.seen_over_time import Seen
-    from galinx.solvers.fem.distributed import distribute
     from galinx.solvers.fem.dynamic import Motion
     from galinx.solvers.fem.in_time import Phase, SlidingInTime
-    from galinx.solvers.fem.space import Space
+    from galinx.solvers.fem.space import Space, distribute
 
     response = starts.response(solid, c)
     with clock("mesh"):
@@ -255,7 +370,7 @@ def _read(run: Any, g: Drive, motion: Any, degree: int, tells_K_I: bool) -> tupl
     read = np.empty((3, len(ratios)))
     for ratio in np.unique(ratios):
         at, steady = ratios == ratio, FlatPunch(motion.response, ratio)
-        one = told(motion.X, run.forces[at], steady.α, steady.β, degree)
+        one = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, degree)
         read[:, at] = one.centre, one.K_left, one.K_right
     if not tells_K_I:
         read[1:] = np.nan

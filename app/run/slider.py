@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.errors import BadInput
-from galinx.app.scene.scene import Scene
-from galinx.postprocess.quantities import slider as rows
+from galinx.postprocess.quantities import runs as rows
 from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
+
+from ..errors import BadInput
+from ..scene.scene import Scene
 
 #: Sliders of a scene, times at which each is archived, and steps of the last cycle.
 MOST, TIMES, STEPS = 200, 4001, 1001

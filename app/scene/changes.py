@@ -7,12 +7,12 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
 
-from galinx.app.errors import BadInput
-from galinx.app.scene.excerpt import excerpt, nearest, short
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS
+
+from ..errors import BadInput, excerpt, nearest, short
 
 #: What a material gives, or may not have.
 _CONSTANTS = ["solid.kind", "solid.yield_strength"] + [

@@ -1,35 +1,412 @@
-"""Sections of a scene: every key with its kind, default and meaning."""
+"""Sections of a scene: every key with its kind, default and meaning.
 
+Keys of a scene's sections, and what makes a section of them.
+
+Layers of a scene, [[layer]], from the top down.
+
+JSON schema of scenes, for editors that complete and check TOML; made from the keys that check.
+"""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from galinx.app.methods import ASSEMBLERS, METHODS, MODES
-from galinx.app.scene.keys import Key, ModelSection, Section
-from galinx.app.scene.layers import LayerSections
-from galinx.app.scene.materials import LIBRARY
-from galinx.app.scene.numbers import Numbers
-from galinx.app.scene.scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
-from galinx.app.scene.tables import Rows, Strokes
-from galinx.app.scene.values import (
-    Choice,
-    Choices,
-    Map,
-    Number,
-    OrAuto,
-    Points,
-    Pressure,
-    Whole,
-)
 from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
+from galinx.registry import Registry
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.slider import Slider
-from galinx.solvers.parameters import Range, made
+from galinx.solvers.layers.layered import GRADINGS, Layer
+from galinx.solvers.parameters import Parameter, Range, fields, made, parameters
 from galinx.solvers.profiles import PROFILES, Profile
-from galinx.solvers.solids import SOLIDS, Solid
+from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
+from ..console import program
+from ..errors import excerpt, nearest, short
+from ..methods import ASSEMBLERS, METHODS, MODES
+from .library import LIBRARY
+from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
+from .values import (
+    Choice,
+    Choices,
+    Kind,
+    Map,
+    Number,
+    NumberList,
+    Numbers,
+    OneOrMore,
+    OrAuto,
+    Points,
+    Pressure,
+    Rows,
+    Strokes,
+    Variations,
+    Whole,
+    Wrapped,
+)
+
+#: Stands for a default where a key has to be given.
+REQUIRED: Any = dataclasses.MISSING
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a section.
+
+    Attributes:
+        kind: what its value is.
+        about: what it means.
+        default: value of a key that is not given.
+        note: what documentation says beyond ``about``.
+        without: what documentation says instead of a default of None.
+        stands_for: a model's parameter that follows from this key; models without it do not have the key.
+    """
+
+    kind: Kind
+    about: str
+    default: Any = REQUIRED
+    note: str = ""
+    without: str = "none"
+    stands_for: str = ""
+
+
+class Section:
+    """A section of a scene whose keys do not depend on one another.
+
+    Args:
+        build: makes the section from its values by key.
+        keys: of the section.
+        or_else: what else would do where a key is missing, for messages.
+    """
+
+    #: How the section stands in a scene.
+    heading = "[{}]"
+
+    def __init__(self, build: Callable[..., Any], keys: Mapping[str, Key], or_else: str = "") -> None:
+        self.build, self._keys, self.or_else = build, dict(keys), or_else
+
+    @property
+    def alternatives(self) -> dict[str, dict[str, Key]]:
+        """All keys that a section can have, by what it describes; here the one set there is."""
+        return {"": self._keys}
+
+    def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
+        """Keys that a section with these values can have."""
+        return self._keys
+
+    def read(self, name: str, given: Any, faults: list[str]) -> Any:
+        """What the section says, or None after adding its faults; ``name`` is the section's."""
+        if not isinstance(given, dict):
+            faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
+            return None
+        keys = self.keys(given)
+        found = [
+            f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
+        ]
+        values = {}
+        for key, known in keys.items():
+            if key not in given:
+                if known.default is REQUIRED:
+                    found.append(f"{name}.{key}: missing; expected the {known.about}{self.or_else}")
+                else:
+                    values[key] = known.default
+                continue
+            try:
+                values[key] = known.kind(given[key])
+            except ValueError as error:
+                found.append(f"{name}.{key} ({known.about}): {error}")
+        if not found:
+            try:
+                return self._made(values)
+            except ValueError as error:  # values that a model refuses together
+                found.append(f"{name}: {error}")
+        faults += found
+        return None
+
+    def _made(self, values: dict[str, Any]) -> Any:
+        return self.build(**values)
+
+
+class ModelSection(Section):
+    """A section that describes a model of a registry: the model's parameters are keys of the section.
+
+    Args:
+        chosen: key that names the model.
+        default: the model of a section that names none.
+        models: classes by name.
+        build: makes the section from the model's class, the model's values by key, and the other values.
+        keys: of the section besides, by name.
+        several: a parameter may be a list.
+        defaults: of parameters, in scenes.
+        or_else: what else would do where a key is missing, for messages.
+    """
+
+    def __init__(
+        self,
+        chosen: str,
+        default: str,
+        models: Registry[Any],
+        build: Callable[..., Any],
+        keys: Mapping[str, Key],
+        several: bool = False,
+        defaults: Mapping[str, Any] | None = None,
+        or_else: str = "",
+    ) -> None:
+        super().__init__(build, keys, or_else)
+        self._chosen, self._default, self._models, self._several = chosen, default, models, several
+        self._defaults = defaults or {}
+
+    @property
+    def alternatives(self) -> dict[str, dict[str, Key]]:
+        return {name: self._of(name) for name in self._models}
+
+    def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
+        name = given.get(self._chosen)
+        known = isinstance(name, str) and name in self._models
+        return self._of(str(name) if known else self._default)
+
+    def read(self, name: str, given: Any, faults: list[str]) -> Any:
+        wanted = given.get(self._chosen) if isinstance(given, dict) else None
+        if wanted is not None and (not isinstance(wanted, str) or wanted not in self._models):
+            # Which other keys there are depends on it.
+            try:
+                Choice(self._models)(wanted)
+            except ValueError as error:
+                own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
+                faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
+            return None
+        return super().read(name, given, faults)
+
+    def _of(self, model: str) -> dict[str, Key]:
+        kind = self._models[model]
+        own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
+        chosen = Key(Choice(self._models), self._models.noun, self._default)
+        besides = {key: known for key, known in self._keys.items() if known.stands_for in ("", *own)}
+        keys = {**own, self._chosen: chosen, **besides}
+        return keys | {"vary": self._variations(model)} if self._several else keys
+
+    def _variations(self, model: str) -> Key:
+        """Tables of parameters; rows of numbers, which all laws share, are not among these."""
+        single = {
+            name: [known for known in parameters(kind).values() if known.single]
+            for name, kind in self._models.items()
+        }
+        own = {known.key: self._key(known, self._models[model]).kind for known in single[model]}
+        every = tuple(dict.fromkeys(known.key for some in single.values() for known in some))
+        return Key(
+            Variations(own, every), "parameters of the laws, table by table", (),
+            "instead of the product of the lists above: the product of each table, with what it leaves "
+            "out as the section has it; laws that are in several tables are computed once",
+        )  # fmt: skip
+
+    def _key(self, known: Parameter, model: Any) -> Key:
+        value: Kind
+        if known.options:
+            value = Choice(known.options)
+        elif known.columns:
+            value = Rows(known.columns)
+        elif known.count:
+            value = NumberList(known.unit, known.count)
+        else:
+            value = (Numbers if self._several else Number)(known.unit, known.range)
+        default = self._defaults.get(known.key, fields(model)[known.key].default)
+        if self._several:  # each then is a tuple of what laws have
+            if isinstance(value, Choice):
+                value = OneOrMore(value)
+            elif not known.single:
+                value = Wrapped(value)
+            if default is not REQUIRED:
+                default = (default,)
+        return Key(value, known.about, default, known.note)
+
+    def _made(self, values: dict[str, Any]) -> Any:
+        model = self._models[values.pop(self._chosen)]
+        own = {key: values.pop(key) for key in parameters(model)}
+        return self.build(model, own, **values)
+
+
+#: The most layers of a scene.
+MOST = 10
 _POSITIVE = Range(above=0.0)
+
+
+class Constants:
+    """Constants of a solid at the lower face, `{ E = 2.5e9, nu = 0.3 }`; the others are as on top."""
+
+    def __call__(self, value: Any) -> dict[str, Any]:
+        if not isinstance(value, dict) or not value:
+            raise ValueError(f"found {excerpt(value)}, expected constants, as in {{ E = 2.5e9 }}")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "object", "minProperties": 1}
+
+
+class Depths:
+    """Rows `[depth, E, nu, rho]` from the upper face, depth 0, downwards; linear between them."""
+
+    units = ("m", "Pa", "", "kg/m^3")
+
+    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
+        expected = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
+        if not isinstance(value, list) or len(value) < 2:
+            raise ValueError(f"found {excerpt(value)}, expected {expected}")
+        for row in value:
+            if not isinstance(row, list) or len(row) != len(self.units):
+                raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
+        kinds = [Number(unit) for unit in self.units]
+        rows = tuple(tuple(kind(entry) for kind, entry in zip(kinds, row)) for row in value)
+        depths = [row[0] for row in rows]
+        if depths[0] != 0.0 or any(low >= high for low, high in pairwise(depths)):
+            raise ValueError(f"found the depths {excerpt(depths)}, expected {expected}")
+        return rows
+
+    def schema(self) -> dict[str, Any]:
+        row = {"type": "array", "items": Number().schema(), "minItems": 4, "maxItems": 4}
+        return {"type": "array", "items": row, "minItems": 2}
+
+
+_KEYS = {
+    "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
+    "material": Key(
+        Choice(LIBRARY), "name of a known solid, gives `kind` and constants", None,
+        "what is written beside it replaces the material's",
+    ),
+    "to": Key(
+        Constants(), "constants at the lower face", None,
+        "the layer is graded; those at its upper face stand beside it", without="as at the upper face",
+    ),
+    "grading": Key(
+        Choice(GRADINGS), "how constants change with depth", "linear",
+        '`"exponential"`: their logarithms are linear; `"power"`: (depth/thickness)^exponent',
+    ),
+    "exponent": Key(
+        Number("", Range(at_least=1.0, at_most=10.0)), 'of `grading = "power"`', 1.0,
+    ),
+    "properties": Key(
+        Depths(), "constants by depth, `[[depth, E, nu, rho], …]`", None,
+        "instead of `thickness`, constants and `to`; isotropic, linear between the rows",
+    ),
+}  # fmt: skip
+
+
+class LayerSections:
+    """Any number of tables [[layer]]."""
+
+    heading = "[[{}]]"
+
+    def __init__(self) -> None:
+        self._one = ModelSection(
+            "kind", "isotropic", SOLIDS, _layer, _KEYS, or_else=", or material, or properties"
+        )
+
+    @property
+    def alternatives(self) -> dict[str, dict[str, Key]]:
+        """Keys that a layer can have, by kind of its solid."""
+        return self._one.alternatives
+
+    @property
+    def or_else(self) -> str:
+        """What else would do where a key is missing."""
+        return self._one.or_else
+
+    def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
+        """Keys that a layer with these values can have."""
+        return self._one.keys(given)
+
+    def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
+        """The layers; faults are added."""
+        if given == {}:
+            return ()
+        if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+            faults.append(
+                f"{name}: found {excerpt(given)}, expected tables [[{name}]], from the top down"
+            )
+            return ()
+        if len(given) > MOST:
+            faults.append(f"{name}: found {len(given)} layers, expected at most {MOST}")
+            return ()
+        found: list[Layer] = []
+        for number, one in enumerate(given, 1):
+            found += self._read(f"{name} {number}", one, faults)
+        return tuple(found)
+
+    def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
+        if isinstance(given.get("properties"), list):
+            return self._tabulated(name, given, faults)
+        material = given.get("material")
+        known = LIBRARY.get(material) if isinstance(material, str) else None
+        constants = {"kind": known.kind} | known.values if known else {}
+        if material is not None and not known:  # its constants are not missing: one fault
+            constants = next(iter(LIBRARY.values())).values
+        kept = constants | given
+        layer = self._one.read(name, kept, faults)
+        if layer is None or layer.bottom is None:
+            return [] if layer is None else [Layer(layer.thickness, layer.solid)]
+        own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
+        bottom = self._one.read(f"{name}.to", own | layer.bottom, faults)
+        if bottom is None:
+            return []
+        try:
+            return [Layer(layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent)]
+        except ValueError as error:
+            faults.append(f"{name}: {error}")
+            return []
+
+    def _tabulated(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
+        if others := sorted(given.keys() - {"properties", "kind", "plane"}):
+            faults.append(f"{name}: properties tells {', '.join(others)}, too; take one of them away")
+            return []
+        if given.get("kind", "isotropic") != "isotropic":
+            faults.append(
+                f"{name}.kind: found {excerpt(given['kind'])}, expected isotropic with properties"
+            )
+            return []
+        try:
+            rows = _KEYS["properties"].kind(given["properties"])
+            solids = [
+                made(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | _plane(given)) for row in rows
+            ]
+        except ValueError as error:
+            faults.append(f"{name}.properties: {error}")
+            return []
+        return [
+            Layer(lower[0] - upper[0], one, None if one == other else other)
+            for (upper, lower), (one, other) in zip(pairwise(rows), pairwise(solids))
+        ]
+
+
+def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {"plane": given["plane"]} if "plane" in given else {}
+
+
+def _layer(
+    kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
+    to: Any, grading: str, exponent: float, properties: Any,
+) -> Any:  # fmt: skip
+    """What one table says; the lower face's constants are still to be read."""
+    if thickness is None:
+        raise ValueError('missing thickness, as in thickness = "2 µm"')
+    if to is None and (grading != "linear" or exponent != 1.0):
+        raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
+    if grading != "power" and exponent != 1.0:
+        raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
+    return _Read(thickness, made(kind, values), to, grading, exponent)
+
+
+class _Read:
+    """A layer whose lower face is still in the scene's words."""
+
+    def __init__(
+        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float
+    ) -> None:
+        self.thickness, self.solid, self.bottom = thickness, solid, bottom
+        self.grading, self.exponent = grading, exponent
+
+
 #: Times of a motion at which stresses along the surface are told, at most.
 MOST_OUTPUTS = 400
 
@@ -272,3 +649,55 @@ SECTIONS: dict[str, Any] = {
     "solve": Section(Solve, _SOLVE_KEYS),
     "output": Section(Output, _OUTPUT_KEYS),
 }
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema (draft 7) of a scene."""
+    properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
+    properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
+    properties["layer"] = {"type": "array", "items": _layer_schema(properties["layer"]), "maxItems": MOST}
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "galinx scene",
+        "type": "object",
+        "properties": properties,
+        "required": ["solid", "friction", "motion"],
+        "additionalProperties": False,
+    }
+
+
+def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, Any]:
+    """A section with the keys of all its alternatives; required are those that all of them require."""
+    keys = {key: known for one in alternatives.values() for key, known in one.items()}
+    needed = [
+        key
+        for key in keys
+        if all(key in one and one[key].default is REQUIRED for one in alternatives.values())
+    ]
+    section = {
+        "type": "object",
+        "properties": {key: entry(known) for key, known in keys.items()},
+        "additionalProperties": False,
+    }
+    if name == "solid":  # a known material gives the constants
+        section["anyOf"] = [{"required": ["material"]}, {"required": needed}]
+    elif needed:
+        section["required"] = needed
+    return section
+
+
+def _layer_schema(one: dict[str, Any]) -> dict[str, Any]:
+    """A layer: constants of its own, a known material, or rows by depth."""
+    needed = one.pop("required", [])
+    enough = [["thickness", "material"], ["thickness", *needed], ["properties"]]
+    return one | {"anyOf": [{"required": keys} for keys in enough]}
+
+
+def entry(key: Key) -> dict[str, Any]:
+    """JSON schema of a key's value."""
+    unit = getattr(key.kind, "unit", None)
+    about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
+    found = key.kind.schema() | {"description": about}
+    if key.default is not REQUIRED and key.default not in (None, ((),)):  # a table left out is none
+        found["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
+    return found

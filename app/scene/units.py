@@ -1,13 +1,117 @@
-"""Numbers with units: texts such as "193 GPa" become SI numbers, rarer units by pint's table."""
+"""Numbers with units: texts such as "193 GPa" become SI numbers, rarer units by pint's table.
 
+What a quantity is as scenes write it: a number, and units with signs between them.
+
+Nothing of it is evaluated: what is no such text is refused.
+
+Metric units that most scenes use; to read all that pint knows takes longer than a friction loop.
+"""
+
+import re
 import sys
+from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from typing import Any
 
-from galinx.app.scene.excerpt import excerpt
-from galinx.app.scene.metric import in_units
-from galinx.app.scene.quantity import Quantity, Units, quantity, units
+from ..errors import excerpt
+
+#: Characters that a quantity may have.
+LONGEST = 200
+
+_SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
+_PLAIN = str.maketrans(_SUPERSCRIPTS, "-0123456789")
+
+_NUMBER = re.compile(r"\s*([-+]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|(?:nan|inf)\b))")
+#: What a unit that divides begins with, where no other stands before it.
+_ONE = re.compile(r"\s*1\s*(?=/)")
+_FACTOR = re.compile(
+    rf"\s*([*/]?)\s*(%|[^\W\d{_SUPERSCRIPTS}][^\W{_SUPERSCRIPTS}]*)"
+    rf"(?:\s*(?:\*\*|\^)\s*([-+]?[0-9])(?![.\w])|(⁻?[{_SUPERSCRIPTS[1:]}]))?"
+)
+
+#: Names of units with their exponents, in the order in which they are written.
+Units = tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with the product of powers of units that it counts; no units: it counts nothing."""
+
+    number: float
+    units: Units
+
+
+def quantity(text: str) -> Quantity:
+    """Read a quantity, as ``25000 1/m`` or ``7.86 g/mm^3``.
+
+    Raises:
+        ValueError: it is none.
+    """
+    found = _NUMBER.match(text) if len(text) <= LONGEST else None
+    if not found:
+        raise ValueError("no number")
+    return Quantity(float(found[1]), units(text[found.end() :]))
+
+
+def units(text: str) -> Units:
+    """Read a product of powers of units; exponents have one digit.
+
+    Raises:
+        ValueError: it is none.
+    """
+    found: list[tuple[str, int]] = []
+    one = _ONE.match(text)
+    at, end = one.end() if one else 0, len(text.rstrip())
+    while at < end:
+        factor = _FACTOR.match(text, at)
+        # Only what comes first needs no sign.
+        if not factor or (bool(found) != bool(factor[1]) and factor[1] != "/"):
+            raise ValueError("no product of units")
+        sign = -1 if factor[1] == "/" else 1
+        found.append((factor[2], sign * int((factor[3] or factor[4] or "1").translate(_PLAIN))))
+        at = factor.end()
+    return tuple(found)
+
+
+#: Power of ten and dimension (length, mass, time) of a unit by its name.
+_UNITS = {
+    "m": (0, (1, 0, 0)), "km": (3, (1, 0, 0)), "mm": (-3, (1, 0, 0)),
+    "µm": (-6, (1, 0, 0)), "μm": (-6, (1, 0, 0)), "um": (-6, (1, 0, 0)), "nm": (-9, (1, 0, 0)),
+    "kg": (0, (0, 1, 0)), "g": (-3, (0, 1, 0)), "s": (0, (0, 0, 1)), "ms": (-3, (0, 0, 1)),
+    "N": (0, (1, 1, -2)), "mN": (-3, (1, 1, -2)), "kN": (3, (1, 1, -2)), "MN": (6, (1, 1, -2)),
+    "Pa": (0, (-1, 1, -2)), "kPa": (3, (-1, 1, -2)), "MPa": (6, (-1, 1, -2)), "GPa": (9, (-1, 1, -2)),
+    "%": (-2, (0, 0, 0)),  # not every pint has it
+}  # fmt: skip
+
+
+def in_units(given: Quantity, wanted: Units) -> float | None:
+    """A quantity's number in other units; None where a unit is not in the table, or dimensions differ.
+
+    Factors are powers of ten and are divided by where they are below one, so that "0.1 mm" is the float
+    that 1e-4 is.
+
+    Raises:
+        OverflowError: the factor is no floating-point number.
+    """
+    one, other = _product(given.units), _product(wanted)
+    if one is None or other is None or one[1] != other[1]:
+        return None
+    power = one[0] - other[0]
+    return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
+
+
+def _product(units: Units) -> tuple[int, tuple[int, ...]] | None:
+    """Power of ten and dimension of a product of units; None where one is not in the table."""
+    power = 0
+    dimension: tuple[int, ...] = (0, 0, 0)
+    for name, exponent in units:
+        if name not in _UNITS:
+            return None
+        ten, kind = _UNITS[name]
+        power += ten * exponent
+        dimension = tuple(a + b * exponent for a, b in zip(dimension, kind))
+    return power, dimension
 
 
 @lru_cache(maxsize=1)

@@ -8,31 +8,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.pictures.choice import Choice
-from galinx.app.pictures.drawing import Drawing
-from galinx.app.pictures.friction import Loops
-from galinx.app.pictures.surface import SHOWN, stresses
-from galinx.app.pictures.told import PLACE, STROKE, C, Told
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states
-from galinx.app.scene import read as scenes
-from galinx.app.scene.scene import Scene
-from galinx.app.scene.templates import SCENES
-from galinx.app.study.published import REFERENCE
-from galinx.meshes.cells import edges
-from galinx.postprocess.figures.loops import Panel, loops_figure, motion_figure
-from galinx.postprocess.figures.mesh import mesh_figure
+from galinx.meshes.kind import edges
+from galinx.postprocess.figures.friction import Panel, loops_figure, motion_figure
 from galinx.postprocess.figures.rows import Curve, Row, laws_figure, rows_figure
-from galinx.postprocess.figures.sketches import problem_figure, procedure_figure
-from galinx.postprocess.figures.style import COLOURS, LINES, Look, looks
+from galinx.postprocess.figures.sketches import mesh_figure, problem_figure, procedure_figure
+from galinx.postprocess.figures.style import COLOURS, LINES, Look, looks, number, plain
 from galinx.postprocess.figures.surface import Stress
-from galinx.postprocess.figures.typeset import number, plain
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.stresses import SURFACE_X
 from galinx.solvers.contact import under_punch
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import fields
 from galinx.solvers.sie.closed_form import FlatPunch
+
+from ..pictures.choice import Choice, Drawing
+from ..pictures.friction import Loops
+from ..pictures.state_labels import PLACE, STROKE, C, Told
+from ..pictures.surface import SHOWN, stresses_of
+from ..plan.plan import make_plan
+from ..plan.states import enumerate_states
+from ..scene import read as scenes
+from ..scene.library import SCENES
+from ..scene.scene import Scene
+from .published import REFERENCE
 
 #: The study's two speeds over the shear wave speed, slow and high, and its strokes.
 SS, HS = 4.786e-7, 0.6
@@ -249,7 +247,7 @@ def _loops(loops: Loops) -> Any:
 def stresses_drawing(name: str, data: dict[str, Any], told: Told) -> Drawing:
     """A figure of stresses, by its name."""
     figure = STRESSES[name]
-    shown = stresses(data, Choice())
+    shown = stresses_of(data, Choice())
     rows, states = [], []
     for value in figure.rows:
         at = figure.at | {figure.row: value}

@@ -10,18 +10,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app import ranks
-from galinx.app.console.program import program
-from galinx.app.console.progress import Progress
-from galinx.app.console.terminal import colours, say
-from galinx.app.methods import ASSEMBLERS
-from galinx.app.run.flow import compute
-from galinx.app.run.judge import limits
-from galinx.app.run.sinks import Memory
-from galinx.app.scene import read as scenes
-from galinx.app.scene.scene import Scene
-from galinx.app.scene.templates import SCENES
-from galinx.app.study.published import (
+from galinx.postprocess.compare import RULES
+from galinx.postprocess.quantities import states as of
+from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.tables import Sheet
+from galinx.postprocess.target import ARCHIVE, PAGE, TABLES, Folder, Target
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.motion import friction_along
+from galinx.solvers.sie import collocation
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+
+from .. import ranks
+from ..console import Progress, colours, program, say
+from ..methods import ASSEMBLERS
+from ..run.flow import Memory, compute, limits
+from ..scene import read as scenes
+from ..scene.library import SCENES
+from ..scene.scene import Scene
+from .published import (
     FAST,
     INTENSITIES,
     REFERENCE,
@@ -38,18 +46,7 @@ from galinx.app.study.published import (
     table2,
     table3,
 )
-from galinx.app.study.statements import statements, statements_sheet
-from galinx.postprocess.compare import RULES
-from galinx.postprocess.quantities import states as of
-from galinx.postprocess.quantities import stresses
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
-from galinx.postprocess.tables import Sheet
-from galinx.postprocess.target import ARCHIVE, PAGE, TABLES, Folder, Target
-from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.friction.strokes import friction_along
-from galinx.solvers.sie import collocation
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import Isotropic
+from .statements import statements, statements_sheet
 
 #: What is written besides figures.
 _FILES = {
@@ -178,7 +175,8 @@ def _computed(name: str, target: Target, progress: Progress) -> Computed:
     scene = scenes.read(SCENES / f"{name}.toml")
     if not ranks.is_root():
         return Computed(scene, {}, compute(scene))
-    from galinx.postprocess.hdf5 import archive, reader
+    from galinx.postprocess.hdf5 import archive
+    from galinx.postprocess.hdf5 import archive as reader
 
     with archive.Writer(target) as writer:
         writer.finish(compute(scene, writer, progress))
@@ -189,12 +187,13 @@ def _draw(
     study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, progress: Progress
 ) -> str:
     """Write the figures; the report, with all of them and all tables."""
-    from galinx.app.pictures.choice import Choice
-    from galinx.app.pictures.inside import inside as draw_inside
-    from galinx.app.pictures.numerics import mesh
-    from galinx.app.results.report import Report
-    from galinx.app.study.drawings import of_study
     from galinx.postprocess.figures.canvas import save
+
+    from ..pictures.choice import Choice
+    from ..pictures.numerics import mesh
+    from ..pictures.surface import inside as draw_inside
+    from ..results.report import Report
+    from .drawings import of_study
 
     drawings, plain = [], Choice()
     for drawing in of_study(study.data, study.scene):
@@ -230,7 +229,7 @@ def _beside() -> list[Scene]:
 
 
 def _write(target: Target, sheets: Sequence[Sheet]) -> None:
-    from galinx.app.console.sheets import new_console, print_sheet
+    from ..console import new_console, print_sheet
 
     text = StringIO()
     for sheet in sheets:
@@ -240,7 +239,7 @@ def _write(target: Target, sheets: Sequence[Sheet]) -> None:
 
 
 def _print(sheets: Sequence[Sheet]) -> None:
-    from galinx.app.console.sheets import new_console, print_sheet
+    from ..console import new_console, print_sheet
 
     console = new_console(colours=colours())
     for sheet in sheets:
@@ -269,10 +268,10 @@ def _details(study: Computed) -> list[Sheet]:
 
 def _displacements(study: Computed) -> Sheet:
     """u and v under the punch at both speeds, by finite elements."""
-    from galinx.app.results.one_state import under_punch
+    from ..results.fields import displacement_under_punch
 
     numbers = [state_of(study.data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    X, displacements = under_punch(study.scene, numbers, _DEGREE)
+    X, displacements = displacement_under_punch(study.scene, numbers, _DEGREE)
     places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
     rows = [
         (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.study.published import FAST, REFERENCE, SLOW, published, state_of
 from galinx.postprocess.quantities import column, runs, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.tables import Sheet
 from galinx.solvers.contact import under_punch
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids import Solid
+
+from .published import FAST, REFERENCE, SLOW, published, state_of
 
 #: The parameters of the study's Figs 6c, 6d, 9 and 10.
 MILDER = REFERENCE | {"mu_c": 0.5}

@@ -13,13 +13,12 @@ from mpi4py import MPI
 from static_punch import KAPPA, G, exact_moments
 
 from galinx.meshes import MESHES
-from galinx.meshes.cells import check_cells
-from galinx.meshes.gmsh_model import through_gmsh
+from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.store import through_gmsh
 from galinx.postprocess.pressure import contact_recovery
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Degree, levels, ratio, widths of columns next to the rings, and how many moments of the forces at the

@@ -15,8 +15,7 @@ import numpy as np
 from row import Row, Verdict
 
 from galinx.app.errors import BadInput
-from galinx.app.run.flow import compute
-from galinx.app.run.sinks import Memory
+from galinx.app.run.flow import Memory, compute
 from galinx.app.scene.read import parse
 from galinx.postprocess import compare
 from galinx.solvers.errors import SolveError

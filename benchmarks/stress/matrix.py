@@ -12,7 +12,7 @@ from random_scenes import random_scenes
 from row import Row
 
 from galinx.app import ranks
-from galinx.app.console.progress import Progress
+from galinx.app.console import Progress
 from galinx.postprocess.target import ARCHIVE, Folder, Target
 
 #: Every row but the random scenes, cheap ones first.
@@ -52,13 +52,13 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
 
 
 def _figure(row: Row) -> Any:
-    from galinx.postprocess.figures.lines import lines_figure
+    from galinx.postprocess.figures.curves import lines_figure
 
     return lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
 
 
 def _write(target: Target, rows: list[Row], good: bool) -> None:
-    from galinx.app.console.sheets import new_console
+    from galinx.app.console import new_console
     from galinx.postprocess.hdf5 import archive
 
     with archive.Writer(target) as writer:

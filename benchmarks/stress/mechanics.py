@@ -14,10 +14,9 @@ from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact import from_edge
-from galinx.solvers.fem.distributed import distribute
+from galinx.solvers.fem.fields import SurfaceSlopes
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.surface import SurfaceSlopes
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 

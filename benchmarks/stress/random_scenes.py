@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from row import Row, Verdict, scene
 from scipy.stats import binom
 
-from galinx.app.console.progress import Progress
+from galinx.app.console import Progress
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.app.run.methods import make
 from galinx.app.scene.read import parse
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess import scale
+from galinx.postprocess import stresses as scale
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.solvers.sie.closed_form import FlatPunch

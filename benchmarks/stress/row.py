@@ -5,8 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from galinx.app.run.flow import compute
-from galinx.app.run.sinks import Memory
+from galinx.app.run.flow import Memory, compute
 from galinx.app.scene.read import parse
 
 _SCENE = """

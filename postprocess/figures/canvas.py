@@ -1,4 +1,7 @@
-"""Sheets of panels in inches, and how they become files or text."""
+"""Sheets of panels in inches, and how they become files or text.
+
+Figures that notebooks show.
+"""
 
 import os
 from base64 import b64encode
@@ -16,9 +19,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.style import DPI, GREY, SMALL, Look, styled
-from galinx.postprocess.figures.typeset import plain
-from galinx.postprocess.target import PDF, PNG, SVG, Folder, Kind, Target
+from ..target import PDF, PNG, SVG, Folder, Kind, Target
+from .style import DPI, GREY, SMALL, Look, plain, styled
 
 #: What in a file says who made it, and the kind of file, by the format's ending.
 FORMATS: dict[str, tuple[str, Kind]] = {
@@ -285,3 +287,20 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
 def embedded(data: bytes, kind: str = "png") -> str:
     """The bytes of a picture's file as a data URI."""
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
+
+
+#: Dots per inch on a screen.
+_DPI = 110
+
+
+def shown(figure: Figure) -> Figure:
+    """The same figure, which says itself how it looks: notebooks know those of pyplot only."""
+    figure._repr_png_ = lambda: _png(figure)  # type: ignore[attr-defined]
+    return figure
+
+
+@styled
+def _png(figure: Figure) -> bytes:
+    data = BytesIO()
+    figure.savefig(data, format="png", dpi=_DPI)
+    return data.getvalue()

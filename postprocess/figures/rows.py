@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, panels
-from galinx.postprocess.figures.loops import F_LABEL, X_LABEL, Panel, draw
-from galinx.postprocess.figures.style import COLOURS, GREY, LINES, PAGE, Look, styled
-from galinx.postprocess.figures.surface import along, broken, limits, over_a, picked
+from .canvas import Legend, Room, Size, handle, lettered, panels
+from .friction import F_LABEL, X_LABEL, Panel, draw
+from .style import COLOURS, GREY, LINES, PAGE, Look, styled
+from .surface import along, broken, limits, over_a, picked
 
 #: Height of a row [in], and of the panels of differences over it.
 _HIGH, _FLAT = 1.62, 0.5

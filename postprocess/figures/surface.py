@@ -1,4 +1,7 @@
-"""Stresses along the surface: finite elements as markers on closed-form lines."""
+"""Stresses along the surface: finite elements as markers on closed-form lines.
+
+Stresses along interfaces of layers: finite elements as markers on the integral equation's lines.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,11 +14,12 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import Legend, Room, Size, handle, lettered, of_methods, panels
-from galinx.postprocess.figures.loops import Loop
-from galinx.postprocess.figures.style import COLUMN, GREY, PAGE, SMALL, Look, styled
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE
 from galinx.solvers.contact import from_edge, under_punch
+
+from ..quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE
+from .canvas import Legend, Room, Size, handle, lettered, of_methods, panels
+from .friction import Loop
+from .style import COLUMN, GREY, PAGE, SMALL, Look, styled
 
 #: Positions that are shown of what is there all along the surface, and under the punch alone [a].
 _BESIDE, _UNDER = 2.0, 1.04
@@ -278,3 +282,114 @@ def _inset(axis: Axes, column: Column) -> None:
     inset.margins(0.08, 0.12)
     inset.set_xlabel("$X/L$", fontsize=SMALL, labelpad=1.0)
     inset.set_ylabel("$f$", fontsize=SMALL, labelpad=1.0, rotation=0, va="center", ha="right")
+
+
+#: How far positions are shown: over a, and over the depth of the interface.
+_OVER_A, _OVER_DEPTH = 2.0, 2.5
+#: Lines of what is told on one side alone, above and below.
+_SIDES = ("-", (0, (4.0, 1.5)))
+#: Markers along a curve.
+_MARKERS_ALONG = 15
+
+
+@dataclass(frozen=True)
+class Row:
+    """A stress along interfaces.
+
+    Attributes:
+        label: of its axis.
+        sides: by method (states, interfaces, points): once, or above and below.
+    """
+
+    label: str
+    sides: Sequence[Mapping[str, NDArray]]
+
+
+@dataclass(frozen=True)
+class Interface:
+    """An interface that has a column.
+
+    Attributes:
+        number: among all, from 0.
+        depth: over a.
+        title: of the column.
+    """
+
+    number: int
+    depth: float
+    title: str
+
+
+@styled
+def interfaces_figure(
+    X: NDArray,
+    rows: Sequence[Row],
+    interfaces: Sequence[Interface],
+    curves: Sequence[Curve],
+    size: Size | None = None,
+    frames: Sequence[tuple[float, float]] = (),
+) -> Figure:
+    """Stresses along interfaces: a row for each stress, a column for each interface.
+
+    Args:
+        X: positions over a, (points,).
+        rows: what to draw.
+        interfaces: of which interfaces.
+        curves: of which states.
+        size: of the figure.
+        frames: half-width and middle [mm] of each state's contact, from whose punch's axis positions are
+            drawn; over a for none.
+    """
+    size = size or Size(COLUMN if len(interfaces) == 1 else PAGE)
+    methods = {method for row in rows for side in row.sides for method in side}
+    named = [handle(curve.look, curve.label, linestyle="-") for curve in curves if len(curves) > 1]
+    both = any(len(row.sides) > 1 for row in rows)
+    of_sides = [
+        handle(curves[0].look, f"{side} the interface", color=GREY, linestyle=line)
+        for side, line in zip(("above", "below"), _SIDES)
+    ]
+    lines = of_methods(SIE in methods, FEM in methods, METHODS[SIE])
+    legend = Legend([*named, *(of_sides if both else []), *lines], size.width)
+    room = Room(0.55, 0.1, 0.42 + legend.height, 0.2, 0.42, 0.3)
+    figure, axes = panels(len(rows), len(interfaces), size, 0.6, room)
+    for row, line in zip(axes, rows):
+        for axis, interface in zip(row, interfaces):
+            _draw_interface(axis, X, line, interface, curves, frames or [(1.0, 0.0)] * len(curves))
+        row[0].set_ylabel(line.label)
+    for axis in axes[-1]:
+        axis.set_xlabel(f"position along the interface {'$X$ [mm]' if frames else '$X/a$'}")
+    lettered(axes.flat, [interface.title for interface in interfaces])
+    figure.align_ylabels(axes[:, 0])
+    legend.put(figure)
+    return figure
+
+
+def _draw_interface(
+    axis: Axes, X: NDArray, row: Row, interface: Interface, curves: Sequence[Curve],
+    frames: Sequence[tuple[float, float]],
+) -> None:  # fmt: skip
+    half = max(_OVER_A, _OVER_DEPTH * interface.depth)
+    low, high = (
+        min(centre - half * a for a, centre in frames),
+        max(centre + half * a for a, centre in frames),
+    )
+    for a, centre in sorted(set(frames)):
+        axis.axvspan(centre - a, centre + a, color="#F2F2F2", linewidth=0.0, zorder=-1)
+    axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
+    for side, line in zip(row.sides, _SIDES):
+        for n, (curve, (a, centre)) in enumerate(zip(curves, frames)):
+            values = {method: found[curve.state, interface.number] for method, found in side.items()}
+            drawn = next(iter(values.values()))
+            x = centre + a * X
+            seen = (x >= low) & (x <= high)
+            axis.plot(x[seen], drawn[seen], color=curve.look.colour, linestyle=line)
+            if len(values) > 1:
+                # Those of one curve stand between those of the others.
+                step = 2.0 * half / _MARKERS_ALONG
+                wanted = -half + step * (np.arange(_MARKERS_ALONG) + (n + 0.5) / len(curves))
+                pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+                axis.plot(
+                    x[pick], values[FEM][pick], curve.look.marker, color=curve.look.colour,
+                    markerfacecolor="none",
+                )  # fmt: skip
+    axis.set_xlim(low, high)

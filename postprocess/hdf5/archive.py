@@ -2,11 +2,26 @@
 
 An archive appears under its final name only when it is complete: it is written beside it, closed,
 opened again and compared, sealed, synchronised with the disk and renamed.
+
+A file that HDF5 can always write to: it crashes where a disk refuses what it holds.
+
+The digest of an archive, in the room that HDF5 leaves to others at a file's start.
+
+It is of every byte that follows, so names, shapes, types, units and attributes are covered like numbers.
+HDF5 itself crashes over some damaged files: what is sealed is verified before HDF5 opens it.
+
+The one door to archives: what comes through is as it was written, and fits the schema.
 """
 
+import hashlib
+import io
 import json
+import os
+import re
+import subprocess
+import sys
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -18,13 +33,142 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.files import NewFile
-from galinx.postprocess.disk import refused
-from galinx.postprocess.errors import UnwritableArchive
-from galinx.postprocess.hdf5 import seal
-from galinx.postprocess.hdf5.patient import PatientFile
-from galinx.postprocess.quantities import declared
-from galinx.postprocess.schema import VERSION
-from galinx.postprocess.target import Target, as_target
+
+from .. import schema
+from ..errors import UnreadableArchive, UnwritableArchive, refused
+from ..quantities import declared, large, of_states, table
+from ..quantities.quantity import STATE, TEXT
+from ..quantities.runs import FAILURES
+from ..quantities.stresses import SURFACE_X
+from ..schema import VERSION
+from ..target import Target, as_target
+from . import walk
+
+
+class PatientFile(io.RawIOBase):
+    """A new file that takes every write, and keeps in memory what the disk refuses.
+
+    Attributes:
+        refusal: why the disk refused, None as long as it did not.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._file = io.FileIO(path, "w+")
+        self._kept: dict[int, bytes] = {}
+        self.refusal: OSError | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    writable = seekable = readable
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        return self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def write(self, data: Any) -> int:
+        start, view = self._file.tell(), memoryview(data).cast("B")
+        done = 0
+        try:
+            while done < len(view) and self.refusal is None:
+                done += self._file.write(view[done:])  # a disk that becomes full takes a part
+        except OSError as error:
+            self.refusal = error
+        if done < len(view):
+            self._kept[start + done] = bytes(view[done:])
+            self._file.seek(start + len(view))
+        return len(view)
+
+    def readinto(self, buffer: Any) -> int:
+        start, view = self._file.tell(), memoryview(buffer).cast("B")
+        found = self._file.readinto(view) or 0
+        view[found:] = bytes(len(view) - found)
+        for offset, data in self._kept.items():
+            first, last = max(offset, start), min(offset + len(data), start + len(view))
+            if first < last:
+                view[first - start : last - start] = data[first - offset : last - offset]
+        self._file.seek(start + len(view))
+        return len(view)
+
+    def truncate(self, size: int | None = None) -> int:
+        try:
+            return self._file.truncate(size)
+        except OSError as error:
+            self.refusal = self.refusal or error
+            return size or 0
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+
+#: Bytes of that room, HDF5's user block; the smallest that there can be.
+ROOM = 512
+#: What it says; by hand: ``tail -c +513 ARCHIVE | sha256sum``.
+_TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n{}\n"
+#: How every HDF5 file begins that has no user block.
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+#: What the beginning of a scene has, comments and a title before it, and no control character.
+_SCENE = re.compile(rb"\A[^\0-\x08\x0e-\x1f]*^\s*(?:\[[\w.]+\]|\w+\s*=)", re.MULTILINE)
+
+
+def put(path: Path, seal: bytes | None = None) -> None:
+    """Seal a file that was made with this room.
+
+    Args:
+        path: the file, closed.
+        seal: what :func:`made` gave for it; made here if not given.
+
+    Raises:
+        OSError: the file system refused.
+    """
+    seal = seal or made(path)
+    with path.open("r+b") as file:
+        file.write(seal)
+
+
+def is_sealed(path: Path) -> bool:
+    """Is there a seal, which fits? Archives of schema version 1 have none.
+
+    Raises:
+        OSError: the file cannot be read.
+        UnreadableArchive: the seal does not fit what follows, or this is no HDF5 file.
+    """
+    with path.open("rb") as file:
+        start = file.read(ROOM)
+    if start.startswith(_HDF5):
+        return False
+    if b"\0" not in start and _SCENE.search(start):
+        raise UnreadableArchive(
+            f"{path} is a scene or another text, expected an archive of results; the command run makes "
+            "one of a scene"
+        )
+    if not start.startswith(_TITLE.encode()):
+        raise UnreadableArchive(
+            f"{path} begins neither as an archive of galinx does nor as HDF5: it is something else, or "
+            "damaged; expected a file that galinx wrote"
+        )
+    if start != made(path):
+        raise UnreadableArchive(
+            f"{path} is damaged: its bytes are not those that its digest is of; one was changed since it "
+            "was written, or it was cut short; take another copy, or run again"
+        )
+    return True
+
+
+def made(path: Path) -> bytes:
+    """The seal that fits a file.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    with path.open("rb", buffering=0) as file:
+        file.seek(ROOM)
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return (_TITLE + _WORDS.format(digest)).encode().ljust(ROOM, b"\0")
 
 
 class Writer:
@@ -56,7 +200,7 @@ class Writer:
     def __enter__(self) -> "Writer":
         with self._told():
             self._disk = PatientFile(self._new.__enter__().temporary)
-            self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"), userblock_size=seal.ROOM)
+            self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"), userblock_size=ROOM)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -124,9 +268,9 @@ class Writer:
             self._file.attrs.update(common | attributes | layout)
             self._close()
             with ThreadPoolExecutor(1) as beside:  # both read all of it, on two cores
-                made = beside.submit(seal.made, self._new.temporary)
+                digest = beside.submit(made, self._new.temporary)
                 self._compare()
-                seal.put(self._new.temporary, made.result())
+                put(self._new.temporary, digest.result())
             before(self._new.temporary)
             self._target.publish(self._new, self._bytes)
 
@@ -165,3 +309,187 @@ class Writer:
 
 def _checksum(dtype: np.dtype, values: NDArray) -> int:
     return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).data)
+
+
+#: Faults that a message tells.
+_TOLD = 8
+#: Seconds for a walk through a file without a seal, and bytes that it reads in another.
+_PATIENCE, _PACE = 60.0, 1e7
+#: How names begin of what MPI tells its processes; h5py starts MPI where it finds them.
+_OF_MPI = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_", "HYDI_", "HYDRA_")
+
+
+class Archive:
+    """An open archive without faults.
+
+    Attributes:
+        attributes: of the root.
+        data: datasets by path, but for large ones.
+        names: of all datasets.
+    """
+
+    def __init__(self, path: Path, file: h5py.File, sealed: bool) -> None:
+        self._path, self._file = path, file
+        self.attributes, described = _described(path, file)
+        if not sealed and self.attributes["schema_version"] >= schema.SEALED:
+            _refuse(path, ["its digest: missing, expected in its first bytes"])
+        _refuse(path, schema.faults(self.attributes, described))
+        self.names = list(described)
+        self.data = {name: self._read(name) for name in self.names if not large(name)}
+        _refuse(path, schema.faults_of_values(self.data, self.attributes))
+        _refuse(path, [*schema.faults_between(self.data, self.attributes)])
+
+    def all(self) -> dict[str, Any]:
+        """Every dataset by path.
+
+        Raises:
+            UnreadableArchive: a large one does not fit the schema.
+        """
+        return {name: self._large(name) if large(name) else self.data[name] for name in self.names}
+
+    def rows(self, rows: slice, names: Iterable[str] | None = None) -> dict[str, Any]:
+        """Datasets of some states by path, and positions that all states share.
+
+        Args:
+            rows: numbers of the states.
+            names: of the datasets; all of states if not given.
+
+        Raises:
+            UnreadableArchive: a large one does not fit the schema.
+        """
+        found, known = {}, table()
+        for name in filter(of_states, self.names) if names is None else names:
+            if large(name):
+                found[name] = self._large(name, rows)
+            else:
+                found[name] = self.data[name][rows if STATE in known[name].over else slice(None)]
+        return found
+
+    def _large(self, name: str, rows: slice = slice(None)) -> Any:
+        values = self._read(name, rows)
+        needed = {row.path: self.data[row.path] for row in (SURFACE_X, FAILURES) if row.path in self.data}
+        _refuse(self._path, schema.faults_of_values(needed | {name: values}, self.attributes))
+        return values
+
+    def _read(self, name: str, rows: slice = slice(None)) -> Any:
+        with _told(self._path):
+            dataset = self._file[name]
+            wanted = rows if dataset.shape else ()
+            return dataset.asstr()[wanted] if _type(dataset) == TEXT else dataset[wanted]
+
+
+@contextmanager
+def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
+    """An archive as long as it is open; for the arguments see :func:`read`.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
+    """
+    with _told(path):
+        there = path.is_file()
+    if not there:
+        raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
+    with _told(path):
+        sealed = just_sealed or is_sealed(path)
+        if not sealed:
+            _walk(path)
+        file = h5py.File(path, "r")
+    with file:
+        yield Archive(path, file, sealed)
+
+
+def read(
+    path: Path, stresses: bool = True, just_sealed: bool = False
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What an archive holds.
+
+    Args:
+        path: the file.
+        stresses: also those on the surface and inside, which can be large.
+        just_sealed: by this very process, which need not do the sum of all bytes once more.
+
+    Returns:
+        Arrays and text by path, and the root's attributes.
+
+    Raises:
+        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
+    """
+    with opened(path, just_sealed) as archive:
+        return archive.all() if stresses else archive.data, archive.attributes
+
+
+def _walk(path: Path) -> None:
+    """Let another process read all of a file first: it is that one which HDF5 makes crash."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(_OF_MPI)}
+    patience = _PATIENCE + path.stat().st_size / _PACE
+    try:
+        done = subprocess.run(
+            [sys.executable, "-P", walk.__file__, path], env=kept, capture_output=True, text=True,
+            errors="replace", timeout=patience,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        raise OSError(f"HDF5 did not come to an end within {patience:.0f} s") from None
+    if done.returncode:
+        said = done.stderr.strip().splitlines()
+        raise OSError(said[-1] if said and done.returncode > 0 else "HDF5 crashes over it")
+
+
+def _described(path: Path, file: h5py.File) -> tuple[dict[str, Any], dict[str, schema.Described]]:
+    found: dict[str, schema.Described] = {}
+
+    def visit(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset):
+            shape = item.shape or ()  # None: without any room
+            found[name] = schema.Described(_type(item), shape, dict(item.attrs), _whole(item))
+
+    with _told(path):
+        attributes = dict(file.attrs)
+        _check_kind(path, attributes)
+        file.visititems(visit)
+    return attributes, found
+
+
+def _check_kind(path: Path, attributes: dict[str, Any]) -> None:
+    program, version = attributes.get("program"), attributes.get("schema_version")
+    if not isinstance(program, str) or program != "galinx":
+        raise UnreadableArchive(f"{path} is HDF5, but not an archive of galinx")
+    if not isinstance(version, np.integer) or version < 1:
+        raise UnreadableArchive(
+            f"{path}: attribute schema_version: found {version!r}, expected 1 to {schema.VERSION}"
+        )
+    if version > schema.VERSION:
+        raise UnreadableArchive(
+            f"{path} has schema version {version}, this program reads up to {schema.VERSION}; install a "
+            "newer one"
+        )
+
+
+def _type(dataset: h5py.Dataset) -> str:
+    return TEXT if h5py.check_string_dtype(dataset.dtype) else str(dataset.dtype)
+
+
+def _whole(dataset: h5py.Dataset) -> bool:
+    return walk.is_there(dataset) and (dataset.fletcher32 or _type(dataset) == TEXT)
+
+
+def _refuse(path: Path, faults: list[str]) -> None:
+    if faults:
+        more = f"\n  and {len(faults) - _TOLD} more" if len(faults) > _TOLD else ""
+        lines = "".join(f"\n  {fault}" for fault in faults[:_TOLD])
+        raise UnreadableArchive(
+            f"{path} is not as galinx writes archives: damaged, or changed; take another copy or rerun"
+            f"{lines}{more}"
+        )
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """For what meets HDF5: it raises any of these where a file is not what it seems."""
+    try:
+        yield
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno:
+            raise UnreadableArchive(f"cannot read {path}: {error.strerror}") from error
+        raise UnreadableArchive(
+            f"{path} is not a whole HDF5 file ({error}); it is damaged or was cut short, run again"
+        ) from error

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.files import NewFile
-from galinx.postprocess.disk import refused
-from galinx.postprocess.hdf5.patient import PatientFile
-from galinx.postprocess.target import Target, as_target
+
+from ..errors import refused
+from ..target import Target, as_target
+from .archive import PatientFile
 
 #: Layout that VTK 9.1 knows, of one grid; and that of series, which VTK knows from 9.3 on.
 _ALONE, _SERIES = (1, 0), (2, 0)

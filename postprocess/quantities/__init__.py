@@ -5,13 +5,15 @@ from difflib import get_close_matches
 
 # Each adds its own; tables have them in this order.
 # isort: off
-from galinx.postprocess.quantities import runs, slider, states  # noqa: F401
-from galinx.postprocess.quantities import stresses, validity, yielding  # noqa: F401
-from galinx.postprocess.quantities import over_time, to_steady, work_over_time  # noqa: F401
-from galinx.postprocess.quantities import energy_over_time, surface_over_time, strata  # noqa: F401
+from . import runs, states  # noqa: F401
+from . import stresses, validity, yielding  # noqa: F401
+from . import over_time, layers  # noqa: F401
 
 # isort: on
-from galinx.postprocess.quantities.quantity import (
+from galinx.solvers.friction import LAWS
+from galinx.solvers.parameters import parameters
+
+from .quantity import (
     ALONG,
     FRICTION_ALONE,
     INSIDE,
@@ -21,8 +23,6 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.solvers.friction import LAWS
-from galinx.solvers.parameters import parameters
 
 __all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "table"]
 

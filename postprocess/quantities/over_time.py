@@ -1,7 +1,17 @@
-"""What happens over time where a punch is pressed on and slides, one row for each start."""
+"""What happens over time where a punch is pressed on and slides, one row for each start.
 
-from galinx.postprocess.quantities.quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
+How far starts from rest are from steady motion, one row for each.
+
+Works, and stresses on the surface, over time, one row for each motion.
+
+Where energy goes over time, one row for each motion.
+
+Stresses on the surface at chosen times, one row for each motion in time.
+"""
+
 from galinx.solvers.parameters import Range
+
+from .quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
 
 #: Word of output.quantities.
 TIME = "time"
@@ -86,6 +96,136 @@ ESTIMATE = _row(
     "fem/estimate", "1",
     "estimated error over time of v0, centre times load, and K_I, over the largest of each",
     (START,), _NOT_NEGATIVE, method=FEM, accuracy=True,
+)  # fmt: skip
+
+
+#: Shares of steady motion within which something is told to be.
+SHARES = (0.1, 0.01, 0.001)
+#: Their dimension.
+SHARE = "10, 1 and 0.1 %"
+
+_HOW = {FEM: "finite elements", SIE: "integral equation"}
+
+OFF = {
+    method: Quantity(
+        f"time/{method}/off_steady", "1",
+        "distance from steady motion at the end, the largest of the differences of K_I at both ends, "
+        f"over that of steady motion, and of the centre of the pressure, over the half-width, {told}",
+        (START,), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
+    )
+    for method, told in _HOW.items()
+}  # fmt: skip
+WITHIN = {
+    method: Quantity(
+        f"time/{method}/steady_within", "a/c_s",
+        "time from which on that is at most 0.1, 0.01 and 0.001; where it is later than the last of "
+        "/time/t what is left is taken to fall like 1/t if it does so in the second half of the motion, "
+        f"NaN where that is too short to tell, {told}",
+        (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
+    )
+    for method, told in _HOW.items()
+}  # fmt: skip
+APPROACH = Quantity(
+    "time/steady_within_1_percent", "a/c_s",
+    "time from which on a start is within 1 % of steady motion, the formula for late times, under a load "
+    "that came on at once; none over layers",
+    (START,), asked_by=TIME, range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
+)  # fmt: skip
+
+
+def _work_by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
+    return {
+        method: Quantity(
+            f"time/{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), asked_by=TIME,
+            method=method, nan_allowed=ANYWHERE,
+        )
+        for method, told in _HOW.items()
+    }  # fmt: skip
+
+
+OF_LOAD = _work_by_method("work_of_load", "N^2/(4mu)", "work of the load")
+OF_FRICTION = _work_by_method(
+    "work_of_friction", "N^2/(4mu)",
+    "work of friction on the surface, by velocities seen from the punch besides being carried past it",
+)  # fmt: skip
+LEFT = _work_by_method("sigma_XX_left", "N/(2a)", "in-plane stress on the free surface at X = -1.05 a")
+RIGHT = _work_by_method("sigma_XX_right", "N/(2a)", "in-plane stress on the free surface at X = 1.05 a")
+
+#: Dimension of places under the punch.
+PLACE = "places"
+PLACES = Quantity(
+    "time/X_over_a", "1", "positions under the punch over the half-width", (PLACE,), asked_by=TIME,
+    method=SIE,
+)  # fmt: skip
+PRESSURE = Quantity(
+    "time/sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE),
+    asked_by=TIME, method=SIE, nan_allowed=ANYWHERE,
+)  # fmt: skip
+
+#: In the order in which a course of the integral equation tells them.
+ALL = OF_LOAD[SIE], OF_FRICTION[SIE], PRESSURE, LEFT[SIE], RIGHT[SIE]
+
+
+#: In which box about the punch, that goes with it, energy is near.
+_NEAR = "within 3 a of its middle and 2 a below it"
+
+
+def _energy_row(name: str, about: str) -> Quantity:
+    return Quantity(
+        f"time/fem/{name}", "N^2/(4mu)", f"{about}, since t = 0", (START, INSTANT), asked_by=TIME,
+        method=FEM,
+    )  # fmt: skip
+
+
+DISSIPATED = Quantity(
+    "time/dissipated", "N*a", "work that friction takes to first order since t = 0, f V load over time",
+    (START, INSTANT), asked_by=TIME,
+)  # fmt: skip
+CARRIED = _energy_row(
+    "work_of_carrying",
+    "work on the solid by being carried past the punch, V times the change of its momentum in the field",
+)
+STRAIN = _energy_row("strain_near", f"strain energy of the solid near the punch, {_NEAR}")
+KINETIC = _energy_row("kinetic_near", f"kinetic energy of the solid near the punch, {_NEAR}")
+RADIATED = _energy_row(
+    "radiated",
+    "strain and kinetic energy of the solid farther from the punch, and what was absorbed there",
+)
+
+
+#: Dimensions: chosen times, and places.
+OUTPUT, SURFACE_PLACE = "chosen times", "places along the surface"
+
+
+SURFACE_TIMES = Quantity(
+    "time/surface/t", "a/c_s", "times at which stresses along the surface are told", (OUTPUT,),
+    asked_by=TIME, range=Range(at_least=0.0),
+)  # fmt: skip
+SURFACE_PLACES = Quantity(
+    "time/surface/X_over_a", "1", "positions along the surface over the half-width", (SURFACE_PLACE,),
+    asked_by=TIME,
+)  # fmt: skip
+
+
+def _surface_by_method(name: str, about: str) -> dict[str, Quantity]:
+    return {
+        method: Quantity(
+            f"time/surface/{method}/{name}", "N/(2a)", f"{about}, {told}", (START, OUTPUT, SURFACE_PLACE),
+            asked_by=TIME, method=method, nan_allowed=NEVER if method == FEM else ANYWHERE,
+        )
+        for method, told in _HOW.items()
+    }  # fmt: skip
+
+
+SURFACE_IN_PLANE = _surface_by_method("sigma_XX", "in-plane stress on the surface over time")
+SURFACE_PRESSURE = _surface_by_method("sigma_YY", "contact stress over time")
+SURFACE_SHEAR = _surface_by_method("sigma_XY", "friction stress over time")
+
+SURFACE_ESTIMATE = Quantity(
+    "time/surface/fem/estimate", "1",
+    "estimated error of sigma_XX and sigma_YY along the surface over time, further than 0.01 a from the "
+    "edges, over the largest of each there",
+    (START,), asked_by=TIME, method=FEM, range=Range(at_least=0.0), accuracy=True,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

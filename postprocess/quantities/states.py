@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities.quantity import (
+from galinx.solvers.parameters import Range
+
+from ..stresses import flatness
+from .quantity import (
     ALONE,
     ANYWHERE,
     CLOSED_FORM,
@@ -22,8 +25,6 @@ from galinx.postprocess.quantities.quantity import (
     SWEPT,
     Quantity,
 )
-from galinx.postprocess.stresses import flatness
-from galinx.solvers.parameters import Range
 
 _CONTACT, _NOT_NEGATIVE = "contact", Range(at_least=0.0)
 

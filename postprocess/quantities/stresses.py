@@ -5,8 +5,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from galinx.postprocess.in_plane import extreme
-from galinx.postprocess.quantities.quantity import (
+from galinx.solvers.parameters import Range
+
+from ..free_ends import extreme
+from ..stresses import principal, von_mises
+from .quantity import (
     ALONE,
     BESIDE,
     CLOSED_FORM,
@@ -17,8 +20,6 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.postprocess.stresses import principal, von_mises
-from galinx.solvers.parameters import Range
 
 #: Words of output.quantities.
 ON_SURFACE, BELOW, YIELD = "surface", "interior", "yield"

@@ -5,7 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities.quantity import (
+from galinx.solvers.parameters import Range
+
+from ..stresses import tension
+from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
@@ -14,9 +17,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.postprocess.quantities.stresses import ON_SURFACE
-from galinx.postprocess.stresses import tension
-from galinx.solvers.parameters import Range
+from .stresses import ON_SURFACE
 
 _NOT_NEGATIVE = Range(at_least=0.0)
 

@@ -5,7 +5,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities.quantity import (
+from galinx.solvers.parameters import Range
+
+from ..yielding import Peak
+from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
@@ -15,9 +18,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     Quantity,
 )
-from galinx.postprocess.quantities.stresses import YIELD
-from galinx.postprocess.yielding.peak import Peak
-from galinx.solvers.parameters import Range
+from .stresses import YIELD
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
 _INFINITE = "NaN where it is infinite: with friction, where the pressure ends in a jump"

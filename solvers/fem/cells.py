@@ -1,12 +1,153 @@
 """What one quadrilateral makes of its nodal values: places and derivatives.
 
 A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11.
+
+Lagrange polynomials of an element's nodes.
+
+Shape functions of a cell and their slopes at the points of a rule.
+
+What the finite element room asks of the chart in which a mesh lives, and what speed does to it.
+
+Which cells of a mesh are another one, moved and scaled: in a plane they have the same matrix.
+
+The energy of a displacement does not change where lengths are scaled, nor does that of pressures over a
+cell's size. Rings around an edge, each a share of the one outside it, and cells of one size cut from a
+larger one need one matrix each kind, not one each cell.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
 
-from galinx.solvers.fem.lagrange import lagrange
+import numpy as np
+from numpy.polynomial.legendre import legder, leggauss, legvander
+from numpy.typing import ArrayLike, NDArray
+
+from ..solids.solid import ByCells, Response
+
+
+def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
+
+    They are expanded in Legendre polynomials, which is well conditioned for nodes that crowd at the ends;
+    SciPy's barycentric interpolation takes the nodes in random order, so no two runs would agree in
+    their last digits.
+
+    Args:
+        nodes: positions of the nodes in [0, 1], (p+1,), p >= 1.
+        t: positions, (n,).
+
+    Returns:
+        Two arrays (n, p+1).
+    """
+    p, x = len(nodes) - 1, 2.0 * np.asarray(t, dtype=float) - 1.0
+    coefficients = np.linalg.inv(legvander(2.0 * np.asarray(nodes) - 1.0, p))
+    return legvander(x, p) @ coefficients, 2.0 * legvander(x, p - 1) @ legder(coefficients)
+
+
+class Chart(Protocol):
+    """What forms and postprocessing ask of a chart: the coordinates a mesh is drawn in."""
+
+    @property
+    def name(self) -> str:
+        """Name of the chart in archives."""
+
+    @property
+    def contracts(self) -> bool:
+        """Is a mesh drawn for what the solid makes of the plane, see :class:`Contracted`?"""
+
+    @property
+    def similar(self) -> bool:
+        """Have cells that are alike in the chart, moved and scaled, the same matrix?"""
+
+    def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
+        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n).
+
+        Args:
+            x: points, or UFL's coordinates.
+            of: what has their functions, NumPy or UFL.
+        """
+
+    def stretch(self, x: NDArray) -> NDArray:
+        """Length of a step in physical coordinates over that in the chart, at points (n, 2)."""
+
+    def to_physical(self, x: NDArray) -> NDArray:
+        """Physical coordinates over a of points (..., 2) of the chart."""
+
+    def from_physical(self, X: NDArray) -> NDArray:
+        """Points of the chart, (..., 2), of physical coordinates over a with Y <= 0."""
+
+    def along_surface(self, x: NDArray) -> NDArray:
+        """Surface coordinate s of points (..., 2) of the chart on Y = 0; it grows with X."""
+
+    def surface_coordinate(self, X: NDArray) -> NDArray:
+        """Surface coordinate s at positions X over a."""
+
+    def surface_position(self, s: NDArray) -> NDArray:
+        """Positions X over a at surface coordinates s."""
+
+    def surface_stretch(self, s: NDArray) -> NDArray:
+        """dX/ds along the surface."""
+
+    def from_edges(self, x: Any) -> tuple[Any, Any]:
+        """Distances in s of points of the contact, (2, n) or UFL's coordinates, from both punch edges."""
+
+    def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
+        """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
+
+        Next to an edge X/a itself no longer tells the distance, so this does.
+
+        Args:
+            from_left, from_right: numbers, or UFL's expressions.
+            of: what has their functions, NumPy or UFL.
+        """
+
+
+@dataclass(frozen=True)
+class Contracted:
+    """A chart of the plane X' = X + Re(p) Y, Y' = Im(p) Y instead of the physical one.
+
+    A solid's fields live in two such planes, where their parts are analytic; isotropic ones at rest
+    in the physical plane. Speed contracts them, and a mesh that follows sees fields like those at rest.
+    The surface stays where it is.
+
+    Attributes:
+        chart: the chart.
+        p: of the contraction, Im p > 0; 1j for none.
+    """
+
+    chart: Chart
+    p: complex
+
+    def to_physical(self, x: NDArray) -> NDArray[np.float64]:
+        """Physical coordinates over a of points (..., 2) of the chart."""
+        drawn = self.chart.to_physical(x)
+        Y = drawn[..., 1] / self.p.imag
+        return np.stack([drawn[..., 0] - self.p.real * Y, Y], axis=-1)
+
+    def from_physical(self, X: NDArray) -> NDArray[np.float64]:
+        """Points of the chart, (..., 2), of physical coordinates over a with Y <= 0."""
+        X = np.asarray(X, dtype=float)
+        return self.chart.from_physical(
+            np.stack([X[..., 0] + self.p.real * X[..., 1], self.p.imag * X[..., 1]], axis=-1)
+        )
+
+    def physical_gradients(self, x: NDArray, gradients: NDArray) -> NDArray[np.float64]:
+        """Derivatives along X and Y from those along the chart's axes, at its points x (n, 2).
+
+        Args:
+            x: where; not at a punch edge of a chart whose stretch vanishes there.
+            gradients: array (n, component, axis, fields).
+        """
+        axes = self.axes(x) / self.chart.stretch(x)[:, None, None]
+        return np.einsum("ncxf,nxX->ncXf", gradients, axes, optimize=True)
+
+    def axes(self, x: NDArray) -> NDArray[np.float64]:
+        """What makes the same of them but for the chart's stretch: Rᵀ·M at points x (n, 2), (n, 2, 2)."""
+        cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T))
+        M = np.array([[1.0, self.p.real], [0.0, self.p.imag]])
+        return np.array([[cos, sin], [-sin, cos]]).transpose(2, 0, 1) @ M
+
 
 #: Step of Newton's method, over the cell's size, after which the next would change no digit: convergence
 #: is quadratic. In small cells beside X = -a rounding alone makes steps of 1e-12, so it is no smaller.
@@ -95,3 +236,105 @@ def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray
     """
     inverse = np.linalg.inv(jacobian(vertices, t))
     return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
+
+
+#: Digits of a shape by which cells that may be alike are found; whether they are is looked at then.
+_DIGITS = 3
+
+#: How many roundings the vertices of cells that are alike may be apart.
+_ROUNDINGS = 64.0
+
+
+def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cells that stand for others, and which of these each cell is like.
+
+    Args:
+        corners: vertices, (n, 4, 2 or 3).
+        kinds: whole numbers that differ where cells have to be told apart whatever their shape, (n,).
+
+    Returns:
+        Arrays (m,) and (n,): numbers of the largest cell of each kind, and a place among these for each
+        cell.
+    """
+    n = len(corners)
+    relative = (corners - corners[:, :1]).reshape(n, -1)
+    size = np.abs(relative).max(axis=1)
+    shape = relative / size[:, None]
+    key = np.column_stack([kinds, np.round(shape * 10**_DIGITS)])
+    _, group = np.unique(key, axis=0, return_inverse=True)
+    by_group = np.lexsort([-size, group])
+    largest = by_group[np.flatnonzero(np.diff(group[by_group], prepend=-1))]
+    model = largest[group]
+    # Vertices of a small cell far from the origin have few digits of its shape.
+    rounding = np.finfo(float).eps * np.abs(corners).reshape(n, -1).max(axis=1) / size
+    alone = np.abs(shape - shape[model]).max(axis=1) > _ROUNDINGS * rounding
+    model[alone] = np.flatnonzero(alone)
+    return np.unique(model, return_inverse=True)
+
+
+def standing_for(
+    corners: NDArray, chart: Chart, response: Response, constants: Sequence[str]
+) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
+    """Cells whose matrices are those of all, and the cells that have the matrix of each.
+
+    Args:
+        corners: vertices in the chart, (n, 4, 3).
+        chart: of the mesh.
+        response: of the half-plane.
+        constants: that the weak form has.
+    """
+    each = np.arange(len(corners))
+    if not chart.similar or not len(each):
+        return each, list(each[:, None])
+    kinds = np.zeros_like(each)
+    if isinstance(response, ByCells):
+        solid = response.solids(corners[..., 1].mean(axis=1))
+        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
+        kinds = np.where(graded[solid], len(graded) + each, solid)
+    models, like = alike(corners, kinds)
+    return models, np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Of the unit square, by Gauss's rule that is exact for their products on parallelograms.
+
+    Attributes:
+        t: points, (points, 2).
+        weights: of these, (points,).
+        values: (points, nodes).
+        slopes: along both directions of the square, (2, points, nodes).
+    """
+
+    t: NDArray[np.float64]
+    weights: NDArray[np.float64]
+    values: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, reference: NDArray) -> "Shapes":
+        """Of the nodes at places in the unit square, (nodes, 2)."""
+        grid, nodes = tensor_order(reference)
+        x, w = leggauss(len(nodes) + 1)
+        x, w = (x + 1.0) / 2.0, w / 2.0
+        value, slope = lagrange(nodes, x)
+        t = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
+        place = np.argsort(grid.ravel())
+        φ, along, across = (
+            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
+            for a, b in ((value, value), (slope, value), (value, slope))
+        )
+        return cls(t, np.outer(w, w).ravel(), φ, np.array([along, across]))
+
+    def on(self, corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Weights, and what makes derivatives along the axes of those along a cell's directions.
+
+        Args:
+            corners: of a cell, (4, 2).
+
+        Returns:
+            Arrays (points,) and [point, direction, axis].
+        """
+        J = jacobian(corners, self.t)
+        weights = np.asarray(self.weights * np.abs(np.linalg.det(J)), dtype=np.float64)
+        return weights, np.asarray(np.linalg.inv(J), dtype=np.float64)

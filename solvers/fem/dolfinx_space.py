@@ -15,16 +15,15 @@ from dolfinx import fem
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from galinx.solvers.contact import EdgeTraction
-from galinx.solvers.fem import adapter
-from galinx.solvers.fem.cells import image
-from galinx.solvers.fem.compiler import compiling
-from galinx.solvers.fem.condensation import size_of_cells
-from galinx.solvers.fem.forms import traction_form, weak_form
-from galinx.solvers.fem.nodes import NodalForces, Traction
-from galinx.solvers.fem.space import Space
-from galinx.solvers.panel import interpolation
-from galinx.solvers.solids.solid import ByCells, Response
+from ..approximation import interpolation
+from ..contact import EdgeTraction
+from ..solids.solid import ByCells, Response
+from . import versions
+from .cells import image
+from .element import size_of_cells
+from .forms import traction_form, weak_form
+from .space import NodalForces, Space, Traction
+from .versions import compiling
 
 #: Degree to which the traction times a test function is integrated on facets: next to the edges of the
 #: contact it is no polynomial.
@@ -42,7 +41,7 @@ class DolfinxSpace(Space):
     @cached_property
     def _pressures(self) -> Any:
         """Discontinuous pressures, two degrees below the displacement."""
-        return adapter.function_space(self.mesh, adapter.pressure_element(self.degree - 2))
+        return versions.function_space(self.mesh, versions.pressure_element(self.degree - 2))
 
     @cached_property
     def _plane(self) -> tuple[Any, Any]:
@@ -57,22 +56,22 @@ class DolfinxSpace(Space):
     @cached_property
     def _varying(self) -> list[Any]:
         """The weak form's constants where they change with depth: values at the points of quadrature."""
-        Q = adapter.function_space(self.mesh, adapter.quadrature_element(self._quadrature))
+        Q = versions.function_space(self.mesh, versions.quadrature_element(self._quadrature))
         return [fem.Function(Q) for _ in self.form.constants]
 
     @cached_property
     def _sizes(self) -> Any:
         """Sizes of cells, which pressures are over: small cells' weigh as much as large ones'."""
-        D = adapter.function_space(self.mesh, adapter.pressure_element(0))
+        D = versions.function_space(self.mesh, versions.pressure_element(0))
         sizes, corners = fem.Function(D), self._all_corners
-        sizes.x.array[adapter.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
+        sizes.x.array[versions.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
         return sizes
 
     @property
     def _all_corners(self) -> NDArray[np.float64]:
         """Vertices of all cells that this rank has, ghosts included, (cells, 4, 3)."""
         cells = self.mesh.topology.index_map(2)
-        return adapter.vertices(self.mesh, cells.size_local + cells.num_ghosts)
+        return versions.vertices(self.mesh, cells.size_local + cells.num_ghosts)
 
     @cached_property
     def _forms(self) -> dict[bool, Any]:
@@ -102,7 +101,7 @@ class DolfinxSpace(Space):
 
     def _set_varying(self, response: ByCells) -> None:
         """Set constants at the points of quadrature of all cells."""
-        points, corners = adapter.quadrature_points(self._quadrature), self._all_corners
+        points, corners = versions.quadrature_points(self._quadrature), self._all_corners
         Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
         solids = response.solids(corners[..., 1].mean(axis=1))
         tables = response.constants(self.form.constants)
@@ -111,17 +110,17 @@ class DolfinxSpace(Space):
             cells = solids == i
             values[cells] = interpolation(response.share(i, Y[cells]), len(tables[i])) @ tables[i]
         for k, function in enumerate(self._varying):
-            function.x.array[adapter.cell_nodes(function.function_space)[: len(Y)]] = values[..., k]
+            function.x.array[versions.cell_nodes(function.function_space)[: len(Y)]] = values[..., k]
 
     def _compiled(self, form: Any) -> Any:
         with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
-            return adapter.form(form, options)
+            return versions.form(form, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions."""
         form = self._form(response)
         with self.clock("assembly"):
-            return adapter.matrix(form, [])
+            return versions.matrix(form, [])
 
     def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
         """Matrix with Dirichlet conditions: "far" on the far boundary, "contact" for v under a punch.
@@ -143,7 +142,7 @@ class DolfinxSpace(Space):
         }
         form = self._form(response)
         with self.clock("assembly"):
-            return adapter.matrix(form, [conditions[part]() for part in parts])
+            return versions.matrix(form, [conditions[part]() for part in parts])
 
     @cached_property
     def _load(self) -> tuple[Any, EdgeTraction]:
@@ -165,7 +164,7 @@ class DolfinxSpace(Space):
         form, traction = self._load
         for constant, value in zip(vars(traction).values(), vars(σ_YY).values()):
             constant.value = float(value)
-        b = adapter.vector(form)
+        b = versions.vector(form)
         forces = np.array(b.getValues(self.contact.dofs(1)))
         b.destroy()
         return NodalForces(self.contact.numbers, self.contact.s[self.contact.owned], forces)

@@ -7,19 +7,188 @@ S = M + γh (D - 2c B) + (γh)² K each stage is S w = b + γh·forces, under a 
 
 Where the punch turns round, what is carried along changes sign. The solid goes on as it did, so that
 the velocities seen from the punch jump, M Δw = Δc B u.
+
+The scheme of steps in time: diagonally implicit Runge-Kutta of order four, stages of second order.
+
+ESDIRK4(3)6L[2]SA of Kennedy and Carpenter, stiffly accurate and L-stable: the last stage is the end of
+the step, and the first one the end of that before.
+
+A matrix with a rigid flat punch on its contact nodes, whose friction may be any.
+
+Sought are x and the normal reactions r with A x = b + (g r along X, r along Y), x = -η along Y under the
+punch, x = 0 far away, and Σ r given. With the normal reactions P of unit tangential forces ::
+
+    (I - g P) r = ρ + η ρ_η
+
+where ρ are those to b. The fields of these forces and of η are solved for once.
+
+A half-plane at rest that is loaded by given tractions, suddenly or not: finite elements in time.
+
+Seen from the load M ü - 2c B u̇ + K u = (share of the load) f, by the steps of
+:mod:`galinx.solvers.fem.in_time`; the pressure is known, so that nothing is asked of the contact.
+
+What a motion in time does to the surface: strains along it, and the pressure between its nodes.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve, solve
 from scipy.sparse import csr_matrix, identity, kron
+from scipy.special import roots_jacobi
 
 from galinx.clock import Clock
-from galinx.solvers.fem.dynamic import Motion, of_both
-from galinx.solvers.fem.pressed import Pressed
-from galinx.solvers.fem.scheme import TIMES, A, γ
+
+from .cells import lagrange
+from .dynamic import Motion, of_both
+from .fields import SurfaceTrace
+from .linear import UnsymmetricFactor
+from .space import Traction, consistent_forces
+
+#: On the diagonal, so that one matrix serves all stages.
+γ = 0.25
+#: Stages below the first.
+A = (
+    (1 / 4,),
+    (8611 / 62500, -1743 / 31250),
+    (5012029 / 34652500, -654441 / 2922500, 174375 / 388108),
+    (15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768, 2285395 / 8070912),
+    (82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211),
+)
+TIMES = (0.5, 83 / 250, 31 / 50, 17 / 20, 1.0)
+
+
+class Pressed:
+    """A matrix of a space's unknowns under a punch.
+
+    Args:
+        A: the matrix.
+        motion: tells which nodes are under the punch, and which far away.
+        clock: takes the time of what is done.
+
+    Raises:
+        SolveError: the matrix could not be factorised.
+    """
+
+    def __init__(self, A: csr_matrix, motion: Motion, clock: Clock) -> None:
+        self._Y, X = 2 * motion.contact + 1, 2 * motion.contact
+        held = np.zeros(motion.size, dtype=bool)
+        held[self._Y] = True
+        held[2 * motion.far] = held[2 * motion.far + 1] = True
+        self._free = np.flatnonzero(~held)
+        self._factor = UnsymmetricFactor(A[self._free][:, self._free].tocsr(), clock)
+        self._rows = A[self._Y].tocsr()
+        place = np.full(motion.size, -1)
+        place[self._free] = np.arange(len(self._free))
+        loads = np.zeros((len(self._free), len(X) + 1))
+        loads[place[X], np.arange(len(X))] = 1.0
+        # The contact moves by -1 along Y.
+        loads[:, -1] = np.asarray(A[self._free][:, self._Y].sum(axis=1)).ravel()
+        self._fields = np.zeros((motion.size, len(X) + 1))
+        self._fields[self._free] = self._factor.solve(loads)
+        self._fields[self._Y, -1] = -1.0
+        self._reactions = self._rows @ self._fields
+
+    def solve(
+        self, b: NDArray, g: float, total: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """x and normal reactions r with Σ r = total, for forces b and friction g."""
+        x = np.zeros(len(b))
+        x[self._free] = self._factor.solve(b[self._free])
+        ρ = self._rows @ x - b[self._Y]
+        P, ρ_η = self._reactions[:, :-1], self._reactions[:, -1]
+        found = lu_solve(lu_factor(np.eye(len(P)) - g * P), np.column_stack([ρ, ρ_η]))
+        parts = found.sum(axis=0)
+        η = (total - parts[0]) / parts[1]
+        r = found[:, 0] + η * found[:, 1]
+        x += self._fields @ np.append(g * r, η)
+        return x, r
+
+    def destroy(self) -> None:
+        """Free the factor."""
+        self._factor.destroy()
+
+
+#: Points of a facet's rule beyond those for products of shapes: the weight next door is no polynomial.
+_MORE = 12
+#: Distance over a from a place to either side of it: more than that within which facets are one.
+_BESIDE = 1e-8
+
+
+class SurfaceInTime:
+    """The surface of a space at chosen places.
+
+    Args:
+        motion: the equations.
+        X: places over a, not at the edges of the punch, (n,).
+    """
+
+    def __init__(self, motion: Motion, X: NDArray) -> None:
+        self.X, self._motion = np.asarray(X, dtype=float), motion
+        facets = motion.space.surface_facets(("contact", "free surface"))
+        order = np.argsort(facets.s[:, 0])
+        self._s, self._nodes = facets.s[order], facets.nodes[order]
+        self._degree = motion.space.degree
+
+    def strain(self, u: NDArray) -> NDArray[np.float64]:
+        """μ u,X over N/(2a) of displacements (unknowns,): (n,); between two cells the mean of both."""
+        trace = SurfaceTrace(self._s, u.reshape(-1, 2)[self._nodes][..., None])
+        left, right = (trace.derivative(self.X + beside)[:, 0, 0] for beside in (-_BESIDE, _BESIDE))
+        return np.asarray((left + right) / 2.0)
+
+    def pressure(self, forces: NDArray, α: float, β: float) -> NDArray[np.float64]:
+        """σ_YY over N/(2a), 0 beside the punch: the weight (1 - X)^α (1 + X)^β times what shapes tell.
+
+        Its products with these, integrated, are the nodal forces.
+
+        Args:
+            forces: consistent ones over N/2 at the contact nodes, (nodes,).
+            α, β: exponents at X = a and X = -a.
+        """
+        X, p = self._motion.X, self._degree
+        mass, told = np.zeros((len(X), len(X))), np.zeros((len(self.X), len(X)))
+        of_place = np.clip(np.searchsorted(X[::p], self.X, side="right") - 1, 0, len(X) // p - 1)
+        for k, (left, right) in enumerate(pairwise(X[::p])):
+            some = slice(k * p, k * p + p + 1)
+            t, w = _rule(left, right, (α, β), (k == 0, right == X[-1]), p + 1 + _MORE)
+            φ, _ = lagrange(self._reference, t)
+            mass[some, some] += φ.T @ (w[:, None] * φ)
+            here = of_place == k
+            told[here, some] = lagrange(self._reference, (self.X[here] - left) / (right - left))[0]
+        under = np.abs(self.X) < 1.0
+        weight = np.zeros_like(self.X)
+        weight[under] = (1.0 - self.X[under]) ** α * (1.0 + self.X[under]) ** β
+        return np.asarray(weight * (told @ solve(mass, forces, assume_a="pos")))
+
+    @property
+    def _reference(self) -> NDArray[np.float64]:
+        """Places of nodes on the unit facet, as the widest one tells them."""
+        widest = self._s[np.argmax(self._s[:, -1] - self._s[:, 0])]
+        return np.asarray((widest - widest[0]) / (widest[-1] - widest[0]))
+
+
+def _rule(
+    left: float, right: float, exponents: tuple[float, float], ends: tuple[bool, bool], points: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places in a facet and weights, with those of the pressure among them.
+
+    Args:
+        left, right: its ends over a.
+        exponents: α and β.
+        ends: is its left one X = -a, its right one X = a?
+        points: how many.
+    """
+    (α, β), half = exponents, (right - left) / 2.0
+    at_left, at_right = β * ends[0], α * ends[1]
+    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy replaces 0/0 where α + β = -1
+        x, w = roots_jacobi(points, at_right, at_left)
+    X, w = left + half * (1.0 + x), w * half ** (1.0 + at_left + at_right)
+    w = w if ends[0] else w * (1.0 + X) ** β
+    return (1.0 + x) / 2.0, w if ends[1] else w * (1.0 - X) ** α
+
 
 #: Time over a/c_s after a turn at which friction is that of the way back.
 _AFTER = 1e-7
@@ -210,3 +379,103 @@ class SlidingInTime:
         """Free the factors."""
         for pressed in self._pressed.values():
             pressed.destroy()
+
+
+@dataclass(frozen=True)
+class SurfaceMotion:
+    """What the surface does; lengths over a, displacements over N/(2μ).
+
+    Attributes:
+        t: times over a/c_s, (steps,).
+        X: where its nodes are, from left to right, (nodes,).
+        u: their displacements, (steps, nodes, 2).
+    """
+
+    t: NDArray[np.float64]
+    X: NDArray[np.float64]
+    u: NDArray[np.float64]
+
+
+class LoadedInTime:
+    """All loads at one speed with one step size.
+
+    Args:
+        motion: the equations.
+        h: the step over a/c_s.
+        clock: takes the time of what is done.
+
+    Raises:
+        SolveError: the equations could not be solved.
+    """
+
+    def __init__(self, motion: Motion, h: float, clock: Clock | None = None) -> None:
+        self._motion, self._h = motion, h
+        with (clock := clock or Clock())("assembly"):
+            carried = motion.M - 2.0 * motion.response.c * γ * h * motion.B
+            S = kron(carried, identity(2)) + (γ * h) ** 2 * motion.K
+        held = np.zeros(motion.size, dtype=bool)
+        held[2 * motion.far] = held[2 * motion.far + 1] = True
+        self._free = np.flatnonzero(~held)
+        self.factor = UnsymmetricFactor(S.tocsr()[self._free][:, self._free].tocsr(), clock)
+        space = motion.space
+        nodes = np.unique(np.concatenate([space.nodes_on(part) for part in ("contact", "free surface")]))
+        self._surface = nodes[np.argsort(space.coordinates[nodes, 0])]
+
+    def run(
+        self,
+        steps: int,
+        σ_YY: Traction,
+        g: float,
+        load: Callable[[float], float],
+        knots: tuple[float, ...] = (),
+    ) -> SurfaceMotion:
+        """March from rest.
+
+        Args:
+            steps: how many.
+            σ_YY: pressure under the punch over N/(2a), where all of it is there.
+            g: σ_XY/σ_YY.
+            load: its share at a time; at 0, too, from which on it is smooth.
+            knots: positions X over a between which the pressure is smooth.
+        """
+        h, M, K, free = self._h, self._motion.M, self._motion.K, self._free
+        f = self._forces(σ_YY, g, knots)
+        u, w = np.zeros(len(f)), np.zeros(len(f))
+        a = self._at_once(f * load(0.0))
+        found = np.zeros((steps, len(self._surface), 2))
+        for n in range(steps):
+            velocities, accelerations = [w], [a]
+            for weights, time in zip(A, TIMES):
+                before = u + h * sum(of * one for of, one in zip(weights, velocities))
+                given = w + h * sum(of * one for of, one in zip(weights, accelerations))
+                b = of_both(M, given) + γ * h * (load(h * (n + time)) * f - K @ before)
+                now = np.zeros(len(f))
+                now[free] = self.factor.solve(b[free])
+                velocities.append(now)
+                accelerations.append((now - given) / (γ * h))
+            u, w, a = before + γ * h * now, now, accelerations[-1]
+            found[n] = u.reshape(-1, 2)[self._surface]
+        X = self._motion.space.coordinates[self._surface, 0]
+        return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, found)
+
+    def _at_once(self, f: NDArray) -> NDArray[np.float64]:
+        """Accelerations at rest by forces that are there at once."""
+        a = np.zeros(len(f))
+        if f.any():
+            M = kron(self._motion.M, identity(2)).tocsr()
+            factor = UnsymmetricFactor(M[self._free][:, self._free].tocsr(), Clock())
+            a[self._free] = factor.solve(f[self._free])
+            factor.destroy()
+        return a
+
+    def _forces(self, σ_YY: Traction, g: float, knots: tuple[float, ...]) -> NDArray[np.float64]:
+        space = self._motion.space
+        facets, ends = space.surface_facets(("contact",)), space.contact.s[[0, -1]]
+        by_node = consistent_forces(facets.s, space.chart, ends, σ_YY, knots).ravel()
+        f = np.zeros((self._motion.size // 2, 2))
+        np.add.at(f, facets.nodes.ravel(), np.column_stack([g * by_node, by_node]))
+        return f.ravel()
+
+    def destroy(self) -> None:
+        """Free the factor."""
+        self.factor.destroy()

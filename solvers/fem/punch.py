@@ -10,23 +10,244 @@ the normal reactions caused by tangential forces r, friction asks for
 The Krylov space of (T, R₀) serves every g at that speed; a profile P that is not flat has one of its own.
 For few nodes T is there as a matrix.
 Of a contact whose ends are found P is a combination of some shapes, each with a space of its own.
+
+The Krylov space in which the contact forces of every friction lie, made by Arnoldi's method.
+
+States of a punch with friction as sums of its parts, whatever these were found by.
+
+A punch at a speed between others at which it was solved: what a fit says of these, put together.
+
+At a solved speed the parts of a punch are sampled at some frictions, between which they are polynomials
+in g to rounding. At another speed each number is a sum over the solved speeds, with the same shares for
+all. What an edge's singularity does to a number is taken out before and put in again: a force or a slope
+at a distance d goes as d^α with an exponent that changes with speed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
+from scipy.linalg import schur
 
-from galinx.solvers.fem.direct import Factor
-from galinx.solvers.fem.far import FarBoundary
-from galinx.solvers.fem.held import forces_of_profile, ones, product, set_zero
-from galinx.solvers.fem.krylov import KrylovSpace
-from galinx.solvers.fem.multigrid import Multigrid
-from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.states import Part, Punch
-from galinx.solvers.solids.solid import Response
+from ..approximation import barycentric
+from ..errors import SolveError
+from ..solids.solid import Response
+from .boundary import FarBoundary, forces_of_profile, ones, product, set_zero
+from .linear import Factor, Multigrid
+from .space import Space
+
+#: Least relative residual of contact forces that is asked for; the last digits are rounding.
+LEAST = 1e-13
+LIMIT = 120
+
+#: Numbers of frictions up to which each is solved for itself; beyond, all share a triangular form.
+_FEW = 40
+
+
+class KrylovSpace:
+    """The space of (T, R₀), by Arnoldi's method.
+
+    Args:
+        field: the punch without friction.
+        forces: its forces in X and Y at the contact nodes, (2, n).
+        refines: solutions are refined.
+        left: relative residual of the contact forces that may be left, if it is above the least.
+
+    Attributes:
+        fields, forces: the first, then those of each tangential load.
+        complete: the space holds every answer.
+    """
+
+    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float) -> None:
+        self.fields, self.forces, self.refines = [field], [forces], refines
+        self._left = max(left, LEAST)
+        self._size = np.linalg.norm(forces[1])
+        self._V = [forces[1] / self._size]
+        self._H = np.zeros((LIMIT + 1, LIMIT))
+        self._triangle = np.empty((0, 0)), np.empty((0, 0))
+        self.complete = False
+
+    @property
+    def last(self) -> NDArray[np.float64]:
+        """The load that is not yet applied, (n,)."""
+        return self._V[len(self.fields) - 1]
+
+    def take(self, field: PETSc.Vec, forces: NDArray) -> None:
+        """One Arnoldi step: the field and the forces that the last load causes."""
+        j = len(self.fields) - 1
+        self.fields.append(field)
+        self.forces.append(forces)
+        w = forces[1]
+        for _ in range(2):  # twice is enough
+            h = np.array(self._V) @ w
+            self._H[: j + 1, j] += h
+            w = w - np.array(self._V).T @ h
+        self._H[j + 1, j] = np.linalg.norm(w)
+        # A happy breakdown: the space holds every answer.
+        self.complete = bool(self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j]))
+        if not self.complete:
+            self._V.append(w / self._H[j + 1, j])
+
+    def converged(self, g: NDArray) -> NDArray[np.float64] | None:
+        """Coefficients y of R = V y for every g, (states, m); None where the space is too small.
+
+        Raises:
+            SolveError: it has grown to its limit.
+        """
+        m = len(self.fields) - 1
+        if not m:
+            return None
+        y, left = self.solve(g)
+        worst = int(np.argmax(left))
+        if self.complete or left[worst] <= self._left:
+            return y
+        if m == LIMIT:
+            raise SolveError(
+                f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
+                f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {self._left:g}"
+            )
+        return None
+
+    def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
+        """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
+        m = len(self.fields) - 1
+        if len(g) <= _FEW:
+            first = np.zeros((len(g), m, 1))
+            first[:, 0] = self._size
+            y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], first)[..., 0]
+            return y, self._residuals(g, y)
+        T, Q = self._triangle
+        if len(T) != m:  # once for all g: Schur's form keeps the digits that eigenvectors may lose
+            T, Q = self._triangle = schur(self._H[:m, :m], output="complex")
+        solved = np.tile((self._size * Q[0].conj())[:, None], len(g))
+        for i in reversed(range(m)):
+            solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])
+            solved[i] /= 1.0 - g * T[i, i]
+        y = (Q @ solved).real.T
+        return y, self._residuals(g, y)
+
+    def _residuals(self, g: NDArray, y: NDArray) -> NDArray[np.float64]:
+        """Of coefficients (states, m), relative, (states,)."""
+        m = y.shape[1]
+        return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1))
+
+
+@dataclass(frozen=True)
+class Part:
+    """Combinations of fields of a punch; lengths over a, stresses over N/(2a), so forces over N/2.
+
+    Attributes:
+        weights: of the fields, (states, fields).
+        forces: of each field, consistent nodal forces of σ_XY and σ_YY at the contact nodes, read off the
+            assembled equations, (fields, 2, nodes); of σ_YY alone, (fields, 1, nodes), where none were.
+    """
+
+    weights: NDArray[np.float64]
+    forces: NDArray[np.float64]
+
+    @cached_property
+    def normal(self) -> NDArray[np.float64]:
+        """Nodal forces of σ_YY, (states, nodes)."""
+        return self.weights @ self.forces[:, -1]
+
+    def tested(self, tests: NDArray) -> NDArray[np.float64]:
+        """Nodal forces of σ_YY times some tests (nodes, n), (states, n); nodal forces are not formed."""
+        return self.weights @ (self.forces[:, -1] @ tests)
+
+    @property
+    def load(self) -> NDArray[np.float64]:
+        """∫σ_YY dX, (states,)."""
+        return self.weights @ self.forces[:, -1].sum(axis=1)
+
+
+@dataclass(frozen=True)
+class ContactStates(Part):
+    """Several friction states.
+
+    Attributes:
+        g: σ_XY/σ_YY under the punch, (states,).
+        v0: indentation over N/(2μ), (states,), relative to the surface at :data:`.line_loads.DATUM`, or
+            to a far boundary that is held.
+    """
+
+    g: NDArray[np.float64]
+    v0: NDArray[np.float64]
+
+    @cached_property
+    def tangential(self) -> NDArray[np.float64]:
+        """Nodal forces of σ_XY, (states, nodes): what the equations say, or g times the normal ones."""
+        known = self.forces.shape[1] == 2
+        return self.weights @ self.forces[:, 0] if known else self.g[:, None] * self.normal
+
+
+class Punch:
+    """All friction states of a punch at one speed, which are sums of its parts.
+
+    Attributes:
+        space: the finite element space.
+        response: of the half-plane.
+    """
+
+    space: Space
+    response: Response
+
+    @property
+    def fields(self) -> Sequence[PETSc.Vec]:
+        """Displacements of the parts, those of one after those of the other."""
+        raise NotImplementedError
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
+        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
+
+        Args:
+            g: values of σ_XY/σ_YY, (states,).
+            shapes: that are wanted, all of them if not given.
+        """
+        raise NotImplementedError
+
+    def release(self) -> None:
+        """Free factor and fields; states that were asked for before can be asked for again."""
+        raise NotImplementedError
+
+    def destroy(self) -> None:
+        """Free factor and fields."""
+        raise NotImplementedError
+
+    def states(self, g: ArrayLike, flat: bool = False, share: ArrayLike = 1.0) -> ContactStates:
+        """The states with σ_XY = g σ_YY under the punch and the load ∫σ_YY = -N.
+
+        Args:
+            g: values of σ_XY/σ_YY.
+            flat: of a flat punch, whatever the profile is.
+            share: by what the profile's heights are multiplied, of each state: less over a larger load.
+        """
+        g = np.atleast_1d(np.asarray(g, dtype=float))
+        heights = np.asarray(share, dtype=float) * np.ones(len(g))
+        parts = self.parts(g, 0 if flat else None)
+        amplitudes = [heights] * (len(parts) - 1)
+        # ∫ σ_YY d(X/a) = -2 over N/(2a)
+        carried = sum(of * part.load for of, part in zip(amplitudes, parts[1:]))
+        v0 = (-2.0 - carried) / parts[0].load
+        return combined(g, parts, np.column_stack([v0, *amplitudes]))
+
+
+def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactStates:
+    """States that are sums of a punch's parts, the first of which is the flat one.
+
+    Args:
+        g: values of σ_XY/σ_YY, (states,).
+        parts: of :meth:`Punch.parts`.
+        amplitudes: of each, (states, parts); the first is the indentation v₀.
+    """
+    weights = [amplitudes[:, [i]] * part.weights for i, part in enumerate(parts)]
+    forces = np.concatenate([part.forces for part in parts])
+    return ContactStates(np.concatenate(weights, axis=1), forces, g, amplitudes[:, 0])
+
 
 #: Frictions for which a basis is completed at most.
 _SPREAD = 33
@@ -285,3 +506,193 @@ class SlidingPunch(Punch):
         w.destroy()
         comm.Allreduce(MPI.IN_PLACE, found)
         return found
+
+
+@dataclass(frozen=True)
+class Frictions:
+    """Values of g = σ_XY/σ_YY at which punches are sampled.
+
+    Attributes:
+        g: the values, all different, (frictions,).
+        weights: barycentric weights of the polynomial through values there.
+    """
+
+    g: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+    def shares(self, g: NDArray) -> NDArray[np.float64]:
+        """What of the values there makes that at others, (len(g), frictions)."""
+        return barycentric(self.g, self.weights, g)
+
+
+@dataclass(frozen=True)
+class Singular:
+    """What edges do to numbers of each friction: these are a smooth factor times it.
+
+    Attributes:
+        forces: to nodal forces, (frictions, nodes).
+        slopes: to slopes at the places on the surface, (frictions, places).
+    """
+
+    forces: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Parts of a punch at a speed, or at several, at some frictions.
+
+    Attributes:
+        forces: in Y at the contact nodes, (..., parts, frictions, nodes); those in X are g times these.
+        slopes: of both displacements along X at places on the surface, none if nobody asks for them,
+            (..., 2, parts, frictions, places).
+        rounding: what the last digits can do to slopes of u, (..., parts, frictions, places).
+        fields: displacements, this rank's unknowns, none if nobody asks for them,
+            (..., parts, frictions, unknowns).
+    """
+
+    forces: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+    rounding: NDArray[np.float64]
+    fields: NDArray[np.float64]
+
+    def smooth(self, singular: Singular) -> "Sampled":
+        """The same without what edges do."""
+        slopes, forces = self.slopes / singular.slopes, self.forces / singular.forces
+        return Sampled(forces, slopes, self.rounding / singular.slopes, self.fields)
+
+    def singular(self, singular: Singular) -> "Sampled":
+        """Smooth numbers with what edges do."""
+        slopes, forces = self.slopes * singular.slopes, self.forces * singular.forces
+        return Sampled(forces, slopes, self.rounding * singular.slopes, self.fields)
+
+    def numbers(self) -> Iterator[NDArray[np.float64]]:
+        """All but the rounding, part by part, (..., n): what a fit is made of."""
+        for part in range(self.forces.shape[-3]):
+            for values in (self.forces[..., part, :, :], self.slopes[..., part, :, :]):
+                yield values.reshape(*values.shape[:-3], -1)
+            fields = self.fields[..., part, :, :]
+            yield fields.reshape(*fields.shape[:-2], -1)
+
+
+def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
+    """The sum of some speeds' numbers with these shares, (len(several),)."""
+
+    def total(name: str, of: NDArray) -> NDArray:
+        return np.asarray(sum(share * getattr(one, name) for share, one in zip(of, several) if share))
+
+    rounding = total("rounding", np.abs(shares))
+    return Sampled(total("forces", shares), total("slopes", shares), rounding, total("fields", shares))
+
+
+def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool = False) -> Sampled:
+    """A punch's parts at some frictions.
+
+    Args:
+        punch: the punch, solved for these frictions.
+        at: the frictions.
+        slopes: of its fields, a :class:`.surface.SurfaceSlopes`; None where nobody asks for them.
+        with_fields: keep the displacements.
+    """
+    parts, first, count = punch.parts(at.g), 0, len(at.g)
+    forces = np.array([part.normal for part in parts])
+    fields = punch.fields
+    of_slopes: list[Any] = []
+    noise: list[NDArray] = []
+    displacements: list[NDArray] = []
+    for part in parts:
+        own = fields[first : first + part.weights.shape[1]]
+        if slopes is not None:
+            weights = np.zeros((count, len(fields)))
+            weights[:, first : first + len(own)] = part.weights
+            of_slopes.append(slopes.of(weights))
+            noise.append(slopes.rounding(weights))
+        if with_fields:
+            displacements.append(part.weights @ np.array([field.array_r for field in own]))
+        first += len(own)
+    if slopes is None:
+        of_slopes, noise = [np.empty((2, count, 0))] * len(parts), [np.empty((count, 0))] * len(parts)
+    if not with_fields:
+        displacements = [np.empty((count, 0))] * len(parts)
+    return Sampled(forces, np.array(of_slopes).swapaxes(0, 1), np.array(noise), np.array(displacements))
+
+
+class FittedPunch(Punch):
+    """All friction states of the punch at a speed where its parts are known from others.
+
+    Args:
+        space: the finite element space.
+        response: of the half-plane.
+        at: frictions at which the parts are known.
+        known: the parts.
+    """
+
+    def __init__(self, space: Space, response: Response, at: Frictions, known: Sampled) -> None:
+        self.space, self.response = space, response
+        self._at, self._known = at, known
+        self._fields = _Fields(np.concatenate(list(known.fields)), space)
+
+    @property
+    def fields(self) -> Sequence[PETSc.Vec]:
+        """Displacements of every part at every friction; made where somebody asks for one."""
+        return self._fields
+
+    @property
+    def slopes(self) -> "FittedSlopes":
+        """Slopes of the fields at the places on the surface."""
+        return FittedSlopes(self._known.slopes, self._known.rounding)
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
+        shares = self._at.shares(g)
+        known = self._known.forces[: None if shapes is None else 1 + shapes]
+        # No equations are assembled here from which tangential forces could be read.
+        return [Part(shares, normal[:, None]) for normal in known]
+
+    def release(self) -> None:
+        """Free the fields."""
+        self._fields.destroy()
+
+    destroy = release
+
+
+class FittedSlopes:
+    """Derivatives along X, on the surface, of combinations of fitted fields.
+
+    Args:
+        slopes, rounding: see :class:`Sampled`.
+    """
+
+    def __init__(self, slopes: NDArray, rounding: NDArray) -> None:
+        self._basis = [np.concatenate(list(of_one)) for of_one in slopes]
+        self._rounding = np.concatenate(list(rounding))
+
+    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
+        u_X, v_X = (weights @ basis[: weights.shape[1]] for basis in self._basis)
+        return u_X, v_X
+
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        """What the last digits of the fields can do to μ u,X of combinations, (states, n)."""
+        return np.abs(weights) @ self._rounding[: weights.shape[1]]
+
+
+class _Fields(Sequence[PETSc.Vec]):
+    """Vectors of some numbers, (fields, unknowns), made when the first is asked for."""
+
+    def __init__(self, numbers: NDArray, space: Space) -> None:
+        self._numbers, self._space = numbers, space
+        self._made: list[PETSc.Vec] = []
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __getitem__(self, which: Any) -> Any:
+        if not self._made:
+            comm = self._space.comm
+            self._made = [PETSc.Vec().createWithArray(row.copy(), comm=comm) for row in self._numbers]
+        return self._made[which]
+
+    def destroy(self) -> None:
+        for field in self._made:
+            field.destroy()
+        self._made = []

@@ -1,9 +1,18 @@
-"""The finite element space on a mesh of the half-plane, and where its surface unknowns are."""
+"""The finite element space on a mesh of the half-plane, and where its surface unknowns are.
 
-from collections.abc import Callable, Iterator, Sequence
+Meshes shared out over ranks.
+
+A parallel matrix with room for what cells will add to it.
+
+Nodes and facets of parts of the surface, and the nodal forces of tractions on them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from itertools import pairwise
+from typing import Any, Protocol
 
 import numpy as np
 from dolfinx import fem, la
@@ -12,17 +21,189 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.clock import Clock
-from galinx.solvers.errors import MeshError
-from galinx.solvers.fem import adapter
-from galinx.solvers.fem.alike import standing_for
-from galinx.solvers.fem.chart import Chart, Contracted
-from galinx.solvers.fem.compiler import compiling
-from galinx.solvers.fem.condensation import CellMatrices
-from galinx.solvers.fem.forms import FORMS
-from galinx.solvers.fem.matrix import empty_matrix
-from galinx.solvers.fem.nodes import NodalForces, SurfaceFacets, SurfaceNodes, Traction, consistent_forces
-from galinx.solvers.panel import interpolation
-from galinx.solvers.solids.solid import ByCells, Response
+
+from ..approximation import interpolation
+from ..errors import MeshError
+from ..solids.solid import ByCells, Response
+from . import versions
+from .cells import Chart, Contracted, lagrange, standing_for
+from .element import CellMatrices
+from .forms import FORMS
+from .versions import compiling, create_mesh, tag_facets
+
+#: dolfinx numbers a quadrilateral's vertices row by row, others go round it.
+_ORDER = [0, 1, 3, 2]
+
+
+class Quadrilaterals(Protocol):
+    """``points`` (n, 2), ``cells`` (m, 4) going round, and ``edges`` (k, 2) by their tag."""
+
+    @property
+    def points(self) -> NDArray: ...
+    @property
+    def cells(self) -> NDArray: ...
+    @property
+    def edges(self) -> Mapping[int, NDArray]: ...
+
+
+def distribute(mesh: Quadrilaterals | None, comm: MPI.Comm) -> tuple[Any, Any]:
+    """Share a mesh out over the ranks of ``comm``.
+
+    Args:
+        mesh: what this rank has of it, None for nothing. Vertices are numbered over all ranks; ``points``
+            are those of the next numbers after the ranks before.
+        comm: communicator.
+
+    Returns:
+        The dolfinx mesh and its facet tags.
+    """
+    points, cells = np.empty((0, 2)), np.empty((0, 4), dtype=np.int64)
+    edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
+    if mesh:
+        points, cells = mesh.points, mesh.cells[:, _ORDER]
+        edges = np.concatenate(list(mesh.edges.values()))
+        tags = np.repeat(np.array([*mesh.edges], np.int32), [len(part) for part in mesh.edges.values()])
+    result = create_mesh(comm, cells, points)
+    return result, tag_facets(result, edges, tags)
+
+
+def empty_matrix(numbers: NDArray[np.int32], first: int, last: int, comm: MPI.Comm) -> PETSc.Mat:
+    """A matrix with two rows a node, and room for cells that couple all their nodes.
+
+    Collective.
+
+    Args:
+        numbers: global numbers of the nodes of this rank's cells, (cells, nodes of a cell).
+        first, last: the nodes that this rank owns, without the last.
+        comm: communicator.
+    """
+    owned, width = last - first, 2 * numbers.shape[1]
+    here = (first <= numbers) & (numbers < last)
+
+    def brought(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """Entries that these cells bring to each row of the nodes owned here, at most."""
+        nodes = numbers[cells][here[cells]] - first
+        return width * np.bincount(nodes, minlength=owned)
+
+    # Cells of other ranks bring entries to nodes on the border; without room for those PETSc would move
+    # the whole matrix at each.
+    border = PETSc.Vec().createMPI((owned, None), comm=comm)
+    abroad = numbers[~here]
+    border.setValues(abroad, np.full(len(abroad), float(width)), addv=PETSc.InsertMode.ADD_VALUES)
+    border.assemble()
+    from_others = border.array_r.astype(np.int64)
+    border.destroy()
+    within = np.maximum(brought(np.ones(len(numbers), dtype=bool)) + from_others, 2)  # a diagonal
+    across = brought(np.any(~here, axis=1)) + from_others
+    room = np.minimum(within, 2 * owned), np.minimum(across, 2 * comm.allreduce(owned))
+
+    A = PETSc.Mat().create(comm)
+    A.setSizes(((2 * owned, None), (2 * owned, None)), bsize=2)
+    A.setType(PETSc.Mat.Type.AIJ)
+    A.setPreallocationNNZ(tuple(np.repeat(entries, 2).astype(np.int32) for entries in room))
+    # As PETSc does on ranks that have rows; where ranks differ, the assembly waits for ever.
+    A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
+    return A
+
+
+#: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
+#: because next to an edge X/a itself no longer tells the distance.
+Traction = Callable[[NDArray, NDArray], NDArray]
+
+#: Facets at an edge are integrated in τ with distance ~ τ^8: traction grows like a root there.
+_EDGE_POWER = 8
+_POINTS = 48
+
+
+@dataclass(frozen=True)
+class SurfaceNodes:
+    """Nodes of a part of the surface, in order of X, the same on every rank.
+
+    Attributes:
+        s: surface coordinates in the mesh's chart, (n,).
+        owned: positions in ``s`` of the nodes this rank owns.
+        numbers: global numbers of their first unknowns, those along X; the second ones follow.
+    """
+
+    s: NDArray[np.float64]
+    owned: NDArray[np.int64]
+    numbers: NDArray[np.int32]
+
+    def dofs(self, component: int) -> NDArray[np.int32]:
+        """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
+        return self._dofs[component]
+
+    @cached_property
+    def _dofs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return self.numbers, self.numbers + 1
+
+
+@dataclass(frozen=True)
+class SurfaceFacets:
+    """This rank's facets of the surface.
+
+    Attributes:
+        nodes: local node numbers of each facet in order of X, (F, p+1).
+        s: their surface coordinates, (F, p+1).
+    """
+
+    nodes: NDArray[np.int32]
+    s: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NodalForces:
+    """∫ σ φ d(X/a) over N/(2a) of a traction on the contact; a node stands once for each of its facets.
+
+    Attributes:
+        numbers: global numbers of the nodes' first unknowns, (n,).
+        s: their surface coordinates, (n,).
+        forces: this rank's part, (n,).
+    """
+
+    numbers: NDArray[np.int32]
+    s: NDArray[np.float64]
+    forces: NDArray[np.float64]
+
+
+def consistent_forces(
+    s: NDArray, chart: Chart, ends: NDArray, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()
+) -> NDArray[np.float64]:
+    """∫ σ_YY φ d(X/a) on facets under the punch, (F, p+1).
+
+    Args:
+        s: surface coordinates of the facets' nodes, (F, p+1).
+        chart: of the mesh.
+        ends: surface coordinates of both ends of the contact.
+        σ_YY: the load.
+        knots: positions X over a, under the punch, between which it is smooth.
+    """
+    knots = chart.surface_coordinate(np.asarray(knots))
+    forces = np.zeros_like(s)
+    left, right = ends
+    for i, nodes in enumerate(s):
+        length = nodes[-1] - nodes[0]
+        within = (knots[(nodes[0] < knots) & (knots < nodes[-1])] - nodes[0]) / length
+        for a, b in pairwise([0.0, *within, 1.0]):
+            from_a, from_b, w = _rule(nodes[0] == left and a == 0.0, nodes[-1] == right and b == 1.0)
+            # How far from the facet's two ends, over its length; each is exact at its own end.
+            start, end = a + (b - a) * from_a, (1.0 - b) + (b - a) * from_b
+            basis, _ = lagrange((nodes - nodes[0]) / length, start)
+            d_left, d_right, stretch = chart.under_punch(
+                nodes[0] - left + length * start, right - nodes[-1] + length * end
+            )
+            forces[i] += (w * (b - a) * length * stretch * σ_YY(d_left, d_right)) @ basis
+    return forces
+
+
+def _rule(at_left: bool, at_right: bool) -> tuple[NDArray, NDArray, NDArray]:
+    """Distances of the points from both ends of an interval of length 1, and weights."""
+    τ, weight = np.polynomial.legendre.leggauss(_POINTS)
+    τ, weight = (τ + 1.0) / 2.0, weight / 2.0
+    if not (at_left or at_right):
+        return τ, 1.0 - τ, weight
+    τ, weight = τ**_EDGE_POWER, weight * _EDGE_POWER * τ ** (_EDGE_POWER - 1)
+    return (1.0 - τ, τ, weight) if at_right else (τ, 1.0 - τ, weight)
 
 
 class Space:
@@ -62,7 +243,7 @@ class Space:
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        self.V = self._functions(adapter.vector_element(degree))
+        self.V = self._functions(versions.vector_element(degree))
         self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
@@ -133,10 +314,10 @@ class Space:
 
     def _functions(self, element: Any) -> Any:
         with self.clock("forms"):
-            if self.comm.allreduce(adapter.is_compiled(element), MPI.LAND):
-                return adapter.space(self.mesh, element, {})
+            if self.comm.allreduce(versions.is_compiled(element), MPI.LAND):
+                return versions.space(self.mesh, element, {})
             with compiling(self.comm, repr(element), self._say) as options:
-                return adapter.space(self.mesh, element, options)
+                return versions.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""
@@ -208,12 +389,12 @@ class Space:
     @property
     def reference_nodes(self) -> NDArray[np.float64]:
         """Positions of a cell's local nodes in the unit square, the same for every cell, (nodes, 2)."""
-        return adapter.reference_nodes(self.V)
+        return versions.reference_nodes(self.V)
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:
         """Coordinates of the vertices of the cells this rank owns, (cells, 4, 3)."""
-        return adapter.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
+        return versions.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
 
     @cached_property
     def kernel(self) -> CellMatrices:
@@ -225,7 +406,7 @@ class Space:
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
         """Local nodes of the cells this rank owns, (cells, nodes of a cell)."""
-        return adapter.cell_nodes(self.V)[: self.mesh.topology.index_map(2).size_local]
+        return versions.cell_nodes(self.V)[: self.mesh.topology.index_map(2).size_local]
 
     @cached_property
     def outer_numbers(self) -> NDArray[np.int32]:
@@ -336,7 +517,7 @@ class Space:
         """Which of this rank's nodes, ghosts included, lie inside a cell."""
         local = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0), dtype=np.int32)
         result = np.zeros(len(self.coordinates), dtype=bool)
-        result[adapter.cell_nodes(self.V)[:, local]] = True
+        result[versions.cell_nodes(self.V)[:, local]] = True
         return result
 
     @cached_property

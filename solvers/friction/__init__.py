@@ -1,6 +1,6 @@
 """Friction laws, by the name that scenes use, and how they advance along strokes."""
 
-from galinx.solvers.friction import (  # noqa: F401 - each adds its law
+from . import (  # noqa: F401 - each adds its law
     bouc_wen,
     coulomb,
     dahl,
@@ -12,6 +12,6 @@ from galinx.solvers.friction import (  # noqa: F401 - each adds its law
     stribeck,
     table,
 )
-from galinx.solvers.friction.law import LAWS, FrictionLaw
+from .law import LAWS, FrictionLaw
 
 __all__ = ["LAWS", "FrictionLaw"]

@@ -6,9 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.constants import coulomb_coefficient
-from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
-from galinx.solvers.parameters import check, parameter
+from ..parameters import check, parameter
+from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS
-from galinx.solvers.friction.lugre import Bristles
-from galinx.solvers.parameters import parameter
+from ..parameters import parameter
+from .law import LAWS
+from .lugre import Bristles
 
 #: Width in y of a panel of Gauss's rule, its points, and y beyond that of breakaway squared from which
 #: on slip is y and a constant to the last digit.

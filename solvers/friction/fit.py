@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.integrate import exactly
-from galinx.solvers.friction.law import FrictionLaw, Seen
-from galinx.solvers.parameters import Parameter, Range, fields, made, parameters
+from ..parameters import Parameter, Range, fields, made, parameters
+from .integrate import exactly
+from .law import FrictionLaw, Seen
 
 #: Starts of the search, the first from the guess, and how far the others lie from it, as a factor.
 _STARTS, _AWAY = 6, 3.0

@@ -6,10 +6,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, Seen
-from galinx.solvers.friction.maxwell_slip import check_elements, elements, spread
-from galinx.solvers.friction.stribeck import StribeckCurve
-from galinx.solvers.parameters import check, parameter
+from ..parameters import check, parameter
+from .law import LAWS, Seen
+from .maxwell_slip import check_elements, elements, spread
+from .stribeck import StribeckCurve
 
 
 @dataclass(frozen=True, kw_only=True)

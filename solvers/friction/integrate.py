@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import FrictionLaw
+from .law import FrictionLaw
 
 #: Limit of h |∂rate/∂z| on the negative real axis for the classical Runge-Kutta scheme.
 RK4_STABILITY_LIMIT = 2.785293563405282

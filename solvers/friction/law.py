@@ -1,4 +1,7 @@
-"""What a friction law is."""
+"""What a friction law is.
+
+Constants that several friction laws have, each as the field of a dataclass.
+"""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
@@ -7,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.parameters import parameters
+
+from ..parameters import parameter, parameters
 
 
 @dataclass(frozen=True)
@@ -117,11 +121,11 @@ class Laws(Registry[type[FrictionLaw]]):
         self.check(name, model)
         for other, law in self.items():
             known = parameters(law)
-            for key, parameter in parameters(model).items():
-                if other != name and key in known and known[key].unit != parameter.unit:
+            for key, own in parameters(model).items():
+                if other != name and key in known and known[key].unit != own.unit:
                     raise ValueError(
                         f"the parameter {key!r} of the friction law {other!r} has the unit "
-                        f"{known[key].unit or '1'!r}, {name!r} wants {parameter.unit or '1'!r}: name it "
+                        f"{known[key].unit or '1'!r}, {name!r} wants {own.unit or '1'!r}: name it "
                         "apart"
                     )
         return super().register(name, model)
@@ -129,3 +133,8 @@ class Laws(Registry[type[FrictionLaw]]):
 
 #: Laws by the name that scenes use; every law adds itself.
 LAWS = Laws("friction law", kind=FrictionLaw)
+
+
+def coulomb_coefficient() -> Any:
+    """μ_C, dimensionless."""
+    return parameter("mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0))

@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, Seen
-from galinx.solvers.friction.stribeck import StribeckCurve
-from galinx.solvers.parameters import parameter
+from ..parameters import parameter
+from .law import LAWS, Seen
+from .stribeck import StribeckCurve
 
 
 @dataclass(frozen=True, kw_only=True)

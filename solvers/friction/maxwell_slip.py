@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
-from galinx.solvers.parameters import check, rows
+from ..parameters import check, rows
+from .law import LAWS, FrictionLaw, Seen
 
 
 def elements() -> tuple[tuple[float, float], ...]:

@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import LAWS, FrictionLaw, Seen
-from galinx.solvers.parameters import check, choice, parameter
+from ..parameters import check, choice, parameter
+from .law import LAWS, FrictionLaw, Seen
 
 
 @dataclass(frozen=True, kw_only=True)

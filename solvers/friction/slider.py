@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.friction.law import FrictionLaw
+from .law import FrictionLaw
 
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
 #: scales of the motion; the first is for laws that remember nothing, whose motions are not stiff.

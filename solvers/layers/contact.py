@@ -5,22 +5,187 @@
 σ = σ_YY, n̂ = n + g n₁₂ of the surface's solid, K of :mod:`galinx.solvers.layers.kernel`. The dominant
 part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
 their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels take their place.
+
+A contact pressure that was found, by what is read off it: values, transforms, integrals.
+
+Punches on layers with any number of frictions at one speed.
+
+The kernels know no friction, and what is read off a pressure, its weight aside, is an analytic function
+of g = σ_XY/σ_YY: beyond a few frictions the equation is solved at Chebyshev's points in g, and what is
+between them is interpolated.
+
+A pressure that is put in on layers, linear between knots, as what is read off a found one.
+
+Gauss's rule on pieces between knots, cut as short as the kernel asks for; where the kernel has a
+logarithm, graded towards it. What the half-plane of the surface's solid does is known exactly.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import roots_jacobi
 
-from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.kernel import Kernel, Scaled
-from galinx.solvers.layers.panelled import PanelledPressure
-from galinx.solvers.layers.panelled import parts as panelled
-from galinx.solvers.layers.pressure import Polynomial, Pressure, gauss
-from galinx.solvers.sie.collocation import Expansion, jacobi
+from ..errors import SolveError
+from ..sie.collocation import Expansion, jacobi
+from ..sie.prescribed_pressure import LinearPressure
+from .kernel import Kernel, Scaled
+from .layered import Stack
+from .panelled import PanelledPressure, Panels
+from .panelled import parts as panelled
+
+#: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
+_NEAR, _GROWN, _FINE = 1.1, 1e3, 96
+
+
+class Pressure(Protocol):
+    """σ_YY over N/(2a) = (1 - r)^α (1 + r)^β p(r).
+
+    Attributes:
+        α, β: exponents.
+        near: |r| up to which p is known.
+        tips: places under the punch at which it is infinite.
+    """
+
+    @property
+    def α(self) -> float: ...
+    @property
+    def β(self) -> float: ...
+    @property
+    def near(self) -> float: ...
+    @property
+    def tips(self) -> tuple[float, ...]: ...
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        """p at |r| <= near."""
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        """(1/π) ∫ σ/(t - r) dt, where |r| <= near less p(r) times that of the weight."""
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """t and weights times σ_YY for integrals with what varies over ``finest``."""
+
+
+def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss's rule for the weight (1 - t)^α (1 + t)^β."""
+    with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
+        t, w = roots_jacobi(points, α, β)
+    return t, w
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """A pressure by Jacobi polynomials."""
+
+    expansion: Expansion
+
+    tips: ClassVar[tuple[float, ...]] = ()
+
+    @property
+    def near(self) -> float:
+        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.expansion.c))))
+
+    @property
+    def α(self) -> float:
+        return self.expansion.α
+
+    @property
+    def β(self) -> float:
+        return self.expansion.β
+
+    @cached_property
+    def _rule(self) -> tuple[NDArray, NDArray, NDArray]:
+        t, w = gauss(max(_FINE, 2 * len(self.expansion.c)), self.α, self.β)
+        return t, w, self.series(t)
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.expansion.series(r)
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        t, w, p = self._rule
+        known = np.abs(r) <= near
+        taken = np.zeros_like(r)
+        taken[known] = self.series(r[known])
+        difference = t - r[:, None]
+        on = np.abs(difference) < 1e-13
+        return np.asarray(((p - taken[:, None]) / np.where(on, np.inf, difference)) @ w / np.pi)
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        t, w, p = self._rule
+        return np.asarray(np.einsum("rtf,t->rf", kernel(r[:, None] - t), w * p))
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        fine = Panels(self.α, self.β, min(finest, 0.7))
+        return fine.t, fine.weights * self.series(fine.t)
+
+
+#: Points of a panel, and of the coarser rule that measures the error of that.
+FINE, COARSE = 20, 14
+#: Longest panel over what kernels vary over; by what factor, and how often, lengths of panels fall
+#: towards a logarithm.
+_SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
+#: Panels at most.
+_MOST = 200_000
+
+
+@dataclass(frozen=True)
+class Given:
+    """A pressure; see :class:`galinx.solvers.layers.contact.Pressure`, of which it has the integrals.
+
+    Attributes:
+        pressure: σ_YY over N/(2a).
+        nodes: points of a panel.
+        length: over a, over which the kernel on the surface varies.
+        rough: has that a logarithm at 0?
+    """
+
+    pressure: LinearPressure
+    nodes: int
+    length: float
+    rough: bool
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """t and weights times σ_YY for integrals with what varies over ``finest``, (n,) each."""
+        return self._weighted(self._cut(self.pressure.knots, finest))
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+        whole = self.points(self.length)
+        found = []
+        for place in r.tolist():
+            t, σ = self._weighted(self._towards(place)) if self.rough else whole
+            found.append(σ @ kernel(place - t))
+        return np.array(found)
+
+    def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
+        """Ends of panels between others, none longer than what varies over ``finest`` allows."""
+        longest = max(_SHARE * finest, 2.0 / _MOST)
+        found = [ends[:1]]
+        for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
+            count = max(int(np.ceil((high - low) / longest)), 1)
+            found.append(low + (high - low) * np.arange(1, count + 1) / count)
+        return np.concatenate(found)
+
+    def _towards(self, place: float) -> NDArray[np.float64]:
+        """Ends of panels that get shorter towards a place."""
+        near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
+        knots = self.pressure.knots
+        more = np.concatenate([place - near, place + near])
+        inside = more[(more > knots[0]) & (more < knots[-1])]
+        return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
+
+    def _weighted(self, ends: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        x, w = np.polynomial.legendre.leggauss(self.nodes)
+        half = np.diff(ends) / 2.0
+        t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
+        return t, (half[:, None] * w).ravel() * self.pressure(t)
+
 
 #: Polynomials at first, by how much more next time, and at most.
 FIRST, _MORE, MOST = 24, 1.5, 1400
@@ -213,3 +378,119 @@ def change(before: Pressure, now: Pressure) -> float:
         at = at[np.abs(at - tip) > NEAR_TIP]
     one, other = before.series(at), now.series(at)
     return float(np.abs(one - other).max() / np.abs(other).max())
+
+
+#: Chebyshev's points in g at first and at most; the last coefficients tell what is left.
+_FEW, _MANY, _LAST = 9, 65, 2
+
+
+@dataclass(frozen=True)
+class Speed:
+    """What all frictions at a speed share.
+
+    Attributes:
+        response: of the surface's solid.
+        stack: layers with their substrate, lengths over a.
+        slope: μ v,X under the punch over N/(2a) at given r.
+        tolerance: relative.
+    """
+
+    response: Any
+    stack: Stack
+    slope: Callable[[NDArray], NDArray]
+    tolerance: float
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        return Kernel(self.stack, self.tolerance / 1e3)
+
+    def solved(self, g: NDArray) -> tuple["Frictions", NDArray[np.float64]]:
+        """Pressures at frictions from which those at all of ``g`` follow, and the error that leaves.
+
+        Args:
+            g: wanted, sorted, (states,).
+        """
+        if len(g) <= _FEW:
+            return self._together(g, self._each(g)), np.zeros(1)
+        count = _FEW
+        middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
+        while True:
+            nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
+            here = self._together(nodes, self._each(nodes))
+            left = here.unresolved
+            if left <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
+                return here, np.array([left])
+            count = 2 * count - 1
+
+    def _together(self, g: NDArray, each: list[Any]) -> "Frictions":
+        return Frictions(g, each)
+
+    def _each(self, g: NDArray) -> list[Found]:
+        answers: list[Found] = []
+        first = FIRST
+        for value in g.tolist():
+            equation = Equation(self.response, self.kernel, value, self.slope)
+            answers.append(found(equation, self.tolerance, first))
+        return answers
+
+    @property
+    def rounding(self) -> float:
+        """What the kernel's own error does to the pressure, relative."""
+        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
+
+
+@dataclass(frozen=True)
+class Frictions:
+    """Pressures at some frictions, from which those at others are interpolated.
+
+    Attributes:
+        g: σ_XY/σ_YY, (nodes,).
+        each: the pressures.
+    """
+
+    g: NDArray[np.float64]
+    each: list[Found]
+
+    @property
+    def near(self) -> float:
+        """|r| up to which all pressures are known without their weights."""
+        return min(one.near for found in self.each for one in (found.pressure, found.before))
+
+    def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """What is read off every pressure, (nodes, ...)."""
+        return np.array([what(one.pressure) for one in self.each])
+
+    def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """The same, and with fewer unknowns, (2, nodes, ...)."""
+        return np.array([self.read(what), [what(one.before) for one in self.each]])
+
+    @cached_property
+    def unresolved(self) -> float:
+        """Of the pressures as a function of g, by their last Chebyshev coefficients, relative."""
+        values = self.smooth
+        x = np.cos(np.pi * np.arange(len(self.g)) / (len(self.g) - 1))
+        c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
+        return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
+
+    @property
+    def smooth(self) -> NDArray[np.float64]:
+        """What is looked at of every pressure, (nodes, n)."""
+        r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
+        return self.read(lambda pressure: pressure.series(r))
+
+    def at(self, g: NDArray) -> NDArray[np.float64]:
+        """What turns values of every pressure into those at other frictions, (states, nodes)."""
+        difference = g[:, None] - self.g
+        same = difference == 0.0
+        if same.any(axis=1).all():
+            return same / same.sum(axis=1, keepdims=True)
+        weights = (-1.0) ** np.arange(len(self.g))
+        weights[[0, -1]] /= 2.0
+        terms = weights / np.where(same, 1.0, difference)
+        terms = np.where(same.any(axis=1, keepdims=True), same, terms)
+        return np.asarray(terms / terms.sum(axis=1, keepdims=True))
+
+    @property
+    def change(self) -> float:
+        """Largest change with the number of polynomials."""
+        return max(one.change for one in self.each)

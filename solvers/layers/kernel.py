@@ -6,19 +6,234 @@ four functions that no friction changes. ΔŶ falls exponentially under uniform 
 the surface is graded it falls like A/k: that part, with (1 - e^(-bk))/k for 1/k, is
 
     (1/π) [Re A log(1 + b²/x²)/2 - Im A arctan(b/x)].
+
+Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of functions that are smooth piece by piece.
+
+On panels f is a sum of Legendre polynomials, whose integrals with e^(ikx) are spherical Bessel functions:
+what decides about the panels is f alone, and any x costs the same.
+
+Functions on an interval by polynomials on panels, fine towards 0, to be looked up many times.
+
+Strain and tractions at a depth of a layered half-plane, by the pressure on top.
+
+For the field e^(ikX) the tractions t on top displace it by Z⁻¹ t/k; what is carried down to a depth has
+the stiffness Z of what is below there. These transforms fall like e^(-k d): kernels in X follow, as
+regular as the depth d allows.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from galinx.solvers.layers.fourier import Transform, transform
-from galinx.solvers.layers.medium import inverse
-from galinx.solvers.layers.stack import Stack
-from galinx.solvers.layers.table import Table, tabulated
+from ..approximation import legendre_panel
+from ..errors import SolveError
+from .layered import Stack
+from .stiffness import Medium, Uniform, inverse
+
+#: Gauss points of a panel, their weights, from values to coefficients of Legendre polynomials.
+_NODES = 16
+_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
+#: Coefficients that tell how well a panel is resolved; most panels, and rounds of halving them; octaves
+#: that are taken at once.
+_LAST, _MOST, _ROUNDS, _AT_ONCE = 3, 4000, 60, 9
+#: Positions whose integrals are taken at once, in numbers held.
+_TOGETHER = 400_000
+
+
+@dataclass(frozen=True)
+class Transform:
+    """Such integrals of several functions.
+
+    Attributes:
+        middle, half: of the panels, (panels,).
+        coefficients: of Legendre polynomials, (panels, nodes, functions).
+        error: of the integrals, by what the last coefficients and the last panel are.
+        size: integral of the largest |f|.
+    """
+
+    middle: NDArray[np.float64]
+    half: NDArray[np.float64]
+    coefficients: NDArray[np.complex128]
+    error: float
+    size: float
+
+    def __call__(self, x: NDArray) -> NDArray[np.float64]:
+        """The integrals at positions, (..., functions)."""
+        flat = np.ravel(np.asarray(x, dtype=float))
+        found = np.empty((len(flat), self.coefficients.shape[-1]))
+        many = max(_TOGETHER // (len(self.half) * _NODES), 1)
+        turned = self.coefficients * (2.0 * 1j ** np.arange(_NODES))[:, None]
+        for first in range(0, len(flat), many):
+            some = flat[first : first + many]
+            bessel = spherical_bessel(_NODES, np.outer(some, self.half))
+            phase = self.half * np.exp(1j * np.outer(some, self.middle))
+            weights = bessel * phase[..., None]
+            found[first : first + many] = np.tensordot(weights, turned, 2).real / np.pi
+        return found.reshape(*np.shape(x), -1)
+
+
+def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
+    """j₀ … j_(count - 1) of real z, (..., count).
+
+    Upwards where |z| is larger than the order, downwards from where they vanish elsewhere.
+    """
+    size = np.abs(z)
+    found = np.empty((*z.shape, count))
+    far = size > count
+    safe = np.where(far, z, 1.0)
+    found[..., 0] = np.sin(safe) / safe
+    found[..., 1] = (found[..., 0] - np.cos(safe)) / safe
+    for n in range(1, count - 1):
+        found[..., n + 1] = (2 * n + 1) / safe * found[..., n] - found[..., n - 1]
+    near = z[~far]
+    tiny = np.abs(near) < 1e-8
+    safe = np.where(tiny, 1.0, near)
+    start = 2 * count + 14
+    after, value = np.zeros_like(safe), np.full_like(safe, 1e-290)
+    falling = np.empty((len(safe), count))
+    for n in range(start, 0, -1):
+        after, value = value, (2 * n + 1) / safe * value - after
+        big = np.abs(value) > 1e200
+        if big.any():
+            scale = np.where(big, 1e-200, 1.0)
+            after, value = after * scale, value * scale
+            falling[:, n:] *= scale[:, None]
+        if n - 1 < count:
+            falling[:, n - 1] = value
+    j0, j1 = np.sinc(safe / np.pi), np.sin(safe) / safe**2 - np.cos(safe) / safe
+    by_first = np.abs(j0) >= np.abs(j1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        scale = np.where(by_first, j0 / falling[:, 0], j1 / falling[:, 1])
+    falling *= scale[:, None]
+    falling[tiny] = np.eye(1, count)[0]
+    falling[tiny, 1] = near[tiny] / 3.0
+    found[~far] = falling
+    return found
+
+
+def transform(
+    f: Callable[[NDArray], NDArray], first: float, tolerance: float, scale: float = 0.0
+) -> Transform:
+    """Panels on which f is resolved.
+
+    Args:
+        f: of wavenumbers (n,), gives (n, functions).
+        first: end of the first panel; the others double, until f is small.
+        tolerance: of the integrals over that of |f|, or over ``scale`` where that is larger.
+
+    Raises:
+        SolveError: f does not become small, or is not smooth.
+    """
+    edges = first * 2.0 ** np.arange(_AT_ONCE)
+    waiting = list(pairwise([0.0, *edges]))
+    done: list[tuple[float, float, NDArray, float]] = []
+    for _ in range(_ROUNDS):
+        halves, middles = (np.array([(b + sign * a) / 2.0 for a, b in waiting]) for sign in (-1.0, 1.0))
+        values = f((middles[:, None] + halves[:, None] * _τ).ravel())
+        if not np.isfinite(values).all():
+            raise SolveError("the stiffness of the surface is not finite at some wavenumber")
+        c = _TO_LEGENDRE @ values.reshape(len(waiting), _NODES, -1)
+        tails = 2.0 * halves * np.abs(c[:, -_LAST:]).max(axis=(1, 2))
+        done += zip(middles.tolist(), halves.tolist(), c, tails.tolist())
+        wholes = [2.0 * half * np.abs(one).max() for _, half, one, _ in done]
+        size = max(float(sum(wholes)), scale)
+        rough = [tail > tolerance * size / 10.0 for *_, tail in done]
+        last = edges[-1]
+        end = sum(w for w, (middle, *_) in zip(wholes, done) if middle > last / 2.0)
+        waiting = [
+            side
+            for (middle, half, *_), again in zip(done, rough)
+            if again
+            for side in ((middle - half, middle), (middle, middle + half))
+        ]
+        done = [one for one, again in zip(done, rough) if not again]
+        if not waiting and end > tolerance * size / 10.0:
+            edges = last * 2.0 ** np.arange(_AT_ONCE)
+            waiting = list(pairwise(edges))
+        if not waiting:
+            middle, half, coefficients, tail = zip(*done)
+            error = sum(tail) + end
+            return Transform(np.array(middle), np.array(half), np.array(coefficients), error, size)
+        if len(done) + len(waiting) > _MOST:
+            break
+    raise SolveError("the stiffness of the surface is no smooth function of the wavenumber")
+
+
+#: Nodes of a panel, Chebyshev's, and from values there to coefficients.
+_x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+_TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(_x, _NODES - 1))
+#: Coefficients that tell how well a panel is resolved; most panels.
+_LAST_OF_PANEL, _MOST_PANELS = 3, 6000
+
+
+@dataclass(frozen=True)
+class Table:
+    """Functions by position.
+
+    Attributes:
+        ends: of the panels, rising, (panels + 1,).
+        coefficients: of Chebyshev polynomials, (panels, nodes, functions).
+        error: absolute, by the last coefficients.
+    """
+
+    ends: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    error: float
+
+    def __call__(self, x: NDArray) -> NDArray[np.float64]:
+        """Values, (..., functions)."""
+        x = np.asarray(x, dtype=float)
+        flat = x.ravel()
+        panel = np.clip(np.searchsorted(self.ends, flat) - 1, 0, len(self.ends) - 2)
+        left, right = self.ends[panel], self.ends[panel + 1]
+        T = chebyshev.chebvander((2.0 * flat - left - right) / (right - left), _NODES - 1)
+        found = np.empty((len(flat), self.coefficients.shape[-1]))
+        # Panel by panel: to gather coefficients for every position would take longer than to use them.
+        order = np.argsort(panel, kind="stable")
+        met, first = np.unique(panel[order], return_index=True)
+        for i, some in zip(met.tolist(), np.split(order, first[1:])):
+            found[some] = T[some] @ self.coefficients[i]
+        return found.reshape(*x.shape, found.shape[-1])
+
+
+def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:
+    """A table of f over [-reach, reach].
+
+    Args:
+        f: of positions (n,), gives (n, functions); it may be rough at 0.
+        finest: size of the panels next to 0; the others double.
+        reach: where the table ends.
+        tolerance: absolute.
+
+    Raises:
+        SolveError: f is not smooth.
+    """
+    count = max(int(np.ceil(np.log2(reach / finest))), 0)
+    right = np.append(0.0, reach * 0.5 ** np.arange(count, -1, -1.0))
+    ends = np.concatenate([-right[:0:-1], right])
+    waiting = np.column_stack([ends[:-1], ends[1:]])
+    done: list[tuple[float, float, NDArray, float]] = []
+    while len(waiting):
+        middle, half = waiting.mean(axis=1), np.diff(waiting, axis=1)[:, 0] / 2.0
+        values = f((middle[:, None] + half[:, None] * _x).ravel()).reshape(len(waiting), _NODES, -1)
+        c = _TO_CHEBYSHEV @ values
+        tail = np.abs(c[:, -_LAST_OF_PANEL:]).max(axis=(1, 2))
+        good = (tail <= tolerance) | (half <= finest / 1024.0)
+        done += zip(*waiting[good].T.tolist(), c[good], tail[good].tolist())
+        middle, rough = middle[~good, None], waiting[~good]
+        waiting = np.concatenate([np.hstack([rough[:, :1], middle]), np.hstack([middle, rough[:, 1:]])])
+        if len(done) + len(waiting) > _MOST_PANELS:
+            raise SolveError("the kernel of the layers varies too much to be tabulated")
+    done.sort(key=lambda one: one[0])
+    left, _, coefficients, tails = zip(*done)
+    return Table(np.append(left, reach), np.array(coefficients), max(tails))
+
 
 #: Positions over a that are asked for at most: differences of places on the surface.
 REACH = 6.5
@@ -121,3 +336,97 @@ class Scaled:
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels, (..., 4)."""
         return self.size * self.kernel(self.size * np.asarray(x, dtype=float))
+
+
+#: A depth over that of an interface that is still it.
+_AT = 1e-12
+#: Numbers of differences of positions that are looked up at once: some megabytes.
+_DIFFERENCES_AT_ONCE = 60_000
+
+
+@dataclass(frozen=True)
+class Level:
+    """A depth.
+
+    Attributes:
+        stack: layers with their substrate.
+        depth: over a, positive.
+        reach: largest difference of positions over a.
+        tolerance: relative.
+    """
+
+    stack: Stack
+    depth: float
+    reach: float
+    tolerance: float
+
+    @cached_property
+    def _parts(self) -> tuple[Stack, int]:
+        """The stack with an interface at the depth, and how many layers lie above that."""
+        layers, top = list(self.stack.layers), 0.0
+        for i, layer in enumerate(layers):
+            bottom = top + layer.H
+            if abs(bottom - self.depth) <= _AT * bottom:
+                return self.stack, i + 1
+            if self.depth < bottom:
+                return Stack([*layers[:i], *layer.cut(self.depth - top), *layers[i + 1 :]],
+                             self.stack.substrate), i + 1  # fmt: skip
+            top = bottom
+        more = Uniform(self.stack.substrate, self.depth - top)
+        return Stack([*layers, more], self.stack.substrate), len(layers) + 1
+
+    @property
+    def media(self) -> tuple[Medium, Medium]:
+        """The solids above and below the depth; the same one inside a layer."""
+        stack, above = self._parts
+        under = stack.layers[above].top if above < len(stack.layers) else stack.substrate
+        return stack.layers[above - 1].bottom, under
+
+    def _of(self, k: NDArray) -> NDArray:
+        """u,X, σ_YY and σ_XY there by σ_XY and σ_YY on top, (n, 6)."""
+        stack, above = self._parts
+        under = stack.below(k)
+        carried = inverse(stack.top.down + stack.layers[0].excess(k, under[0]))
+        for layer, Z in zip(stack.layers[:above], under):
+            carried = layer.carried(k, Z) @ carried
+        tractions = under[above - 1] @ carried
+        return np.stack(
+            [*(1j * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
+        )  # fmt: skip
+
+    @property
+    def _wanted(self) -> float:
+        return max(self.tolerance / 100.0, ROUNDING)
+
+    @cached_property
+    def _transform(self) -> Transform:
+        first = min(wavenumbers(self.stack), 1.0 / self.depth)
+        return transform(self._of, first, self._wanted)
+
+    @cached_property
+    def _table(self) -> Table:
+        allowed = self._wanted * self._transform.size / np.pi
+        return tabulated(self._transform, self.depth / 4.0, self.reach, allowed)
+
+    @property
+    def error(self) -> float:
+        """Absolute, of u,X, σ_YY and σ_XY under a pressure whose resultant is that of a punch, 2."""
+        return 2.0 * (self._transform.error / np.pi + self._table.error)
+
+    def read(
+        self, t: NDArray, σ: NDArray, g: float, X: NDArray, size: float = 1.0
+    ) -> NDArray[np.float64]:
+        """u,X times μ, σ_YY and σ_XY at positions, (3, n).
+
+        Args:
+            t, σ: of the pressure's rule.
+            g: σ_XY/σ_YY on top.
+            X: positions.
+            size: length over a that ``t`` and ``X`` are over, and stresses.
+        """
+        found, step = np.empty((len(X), 6)), max(_DIFFERENCES_AT_ONCE // len(t), 1)
+        for start in range(0, len(X), step):
+            some = slice(start, start + step)
+            found[some] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[some, None] - t)))
+        by_shear, by_pressure = found[:, 0::2], found[:, 1::2]
+        return np.asarray((g * by_shear + by_pressure).T)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from galinx.solvers.panel import legendre_panel
+from ..approximation import legendre_panel
 
 #: Points of a panel; values there to coefficients of Legendre polynomials, and to their derivative.
 _NODES = 14
@@ -191,7 +191,7 @@ class Panels:
 
 @dataclass(frozen=True)
 class PanelledPressure:
-    """A pressure by values at points of panels, see :class:`galinx.solvers.layers.pressure.Pressure`."""
+    """A pressure by values at points of panels, see :class:`galinx.solvers.layers.contact.Pressure`."""
 
     panels: Panels
     p: NDArray[np.float64]

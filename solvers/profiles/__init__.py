@@ -1,6 +1,6 @@
 """Profiles of punches, by the name that scenes use."""
 
-from galinx.solvers.profiles import (  # noqa: F401 - each adds its profile
+from . import (  # noqa: F401 - each adds its profile
     flat,
     parabolic,
     power,
@@ -8,7 +8,7 @@ from galinx.solvers.profiles import (  # noqa: F401 - each adds its profile
     table,
     wedge,
 )
-from galinx.solvers.profiles.profile import (
+from .profile import (
     PROFILES,
     Profile,
     check_reach,

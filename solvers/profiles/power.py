@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, parameter
-from galinx.solvers.profiles.profile import PROFILES
+from ..parameters import check, parameter
+from .profile import PROFILES
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.errors import SolveError
+
+from ..errors import SolveError
 
 
 class Profile(Protocol):

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, rows
-from galinx.solvers.profiles.profile import PROFILES
+from ..parameters import check, rows
+from .profile import PROFILES
 
 #: Relative difference of slopes that is rounding of the given numbers.
 _ROUNDING = 1e-12

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import eval_jacobi, roots_jacobi
 
-from galinx.solvers.contact import under_punch
-from galinx.solvers.solids.solid import Response
+from ..contact import under_punch
+from ..solids.solid import Response
 
 
 def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.panel import legendre_panel
+from ..approximation import legendre_panel
 
 #: Gauss points of a panel, their weights, and from values there to coefficients of Legendre polynomials.
 _NODES = 20

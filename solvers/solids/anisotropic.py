@@ -7,10 +7,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, numbers
-from galinx.solvers.solids.constants import USUAL_STIFFNESS, density, in_plane
-from galinx.solvers.solids.plane import PlaneSolid, check_minors
-from galinx.solvers.solids.solid import SOLIDS
+from ..parameters import check, numbers
+from .plane import PlaneSolid, check_minors
+from .solid import SOLIDS, USUAL_STIFFNESS, density, in_plane
 
 
 @dataclass(frozen=True)

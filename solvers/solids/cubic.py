@@ -7,10 +7,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, parameter
-from galinx.solvers.solids.constants import angle, density, in_plane, modulus
-from galinx.solvers.solids.plane import PlaneSolid, check_minors, rotated
-from galinx.solvers.solids.solid import SOLIDS
+from ..parameters import check, parameter
+from .plane import PlaneSolid, check_minors, rotated
+from .solid import SOLIDS, angle, density, in_plane, modulus
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.parameters import check, parameter
-from galinx.solvers.solids.constants import density, in_plane, modulus
-from galinx.solvers.solids.line_loads import line_loads
-from galinx.solvers.solids.potentials import stresses
-from galinx.solvers.solids.roots import Roots
-from galinx.solvers.solids.solid import SOLIDS, Potential
+from ..parameters import check, parameter
+from .potentials import Roots, line_loads, stresses
+from .solid import SOLIDS, Potential, density, in_plane, modulus
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04

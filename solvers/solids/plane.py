@@ -1,13 +1,229 @@
-"""Solids given by their stiffness in the plane: what orthotropic, cubic and anisotropic ones share."""
+"""Solids given by their stiffness in the plane: what orthotropic, cubic and anisotropic ones share.
+
+The half-plane of any uniform solid seen from a load that moves over it.
+
+With the stiffness C over c₆₆ in the frame of the scene, c the speed over √(c₆₆/ρ) and
+
+    Q = [[c₁₁ - c², c₁₆], [c₁₆, c₆₆ - c²]],  R = [[c₁₆, c₁₂], [c₆₆, c₂₆]],  T = [[c₆₆, c₂₆], [c₂₆, c₂₂]]
+
+the equations of motion are Q u,XX + (R + Rᵀ) u,XY + T u,YY = 0. Their solutions that decay below the
+surface have u,Y = G u,X, where G solves T G² + (R + Rᵀ) G + Q = 0 and has the two roots p of
+
+    det(Q + p (R + Rᵀ) + p² T) = 0,  Im p > 0,
+
+as eigenvalues. Functions of the matrix G replace eigenvectors, so that nothing happens where roots meet.
+"""
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi, sin, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.solids.anisotropic_frame import AnisotropicFrame, surface_wave
+from .potentials import Roots, line_loads, roots, value_and_change
+from .solid import Potential
+
+
+@dataclass(frozen=True)
+class AnisotropicFrame:
+    """Surface and inside of such a half-plane, see :class:`galinx.solvers.solids.solid.Response`.
+
+    Args:
+        c11, c12, c16, c22, c26: stiffness over c₆₆, positive definite.
+        c: speed over √(c₆₆/ρ), 0 <= c < 1.
+
+    Raises:
+        ValueError: a wave in the solid is not faster.
+    """
+
+    c11: float
+    c12: float
+    c16: float
+    c22: float
+    c26: float
+    c: float
+
+    #: c₆₆ over itself.
+    c66 = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.c < 1.0 or self._found is None:
+            raise ValueError(f"c = {self.c!r}: expected a speed below that of all waves in the solid")
+
+    @cached_property
+    def _matrices(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Q, R and T."""
+        inertia = (self.c * self.c) * np.eye(2)
+        Q = np.array([[self.c11, self.c16], [self.c16, self.c66]]) - inertia
+        R = np.array([[self.c16, self.c12], [self.c66, self.c26]])
+        T = np.array([[self.c66, self.c26], [self.c26, self.c22]])
+        return Q, R, T
+
+    @cached_property
+    def _found(self) -> Roots | None:
+        """The roots, None where there are none."""
+        Q, R, T = self._matrices
+        mixed = R + R.T
+        one, across, other = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
+        return roots(np.convolve(one, other) - np.convolve(across, across))
+
+    @property
+    def roots(self) -> Roots:
+        """Of the planes in which the fields are analytic."""
+        assert self._found
+        return self._found
+
+    @cached_property
+    def G(self) -> NDArray[Any]:
+        """u,Y = G u,X of what decays below the surface: the quadratic less T times that of the roots."""
+        Q, R, T = self._matrices
+        return np.linalg.solve(R + R.T + self.roots.sum * T, self.roots.product * T - Q)
+
+    @cached_property
+    def L(self) -> NDArray[Any]:
+        """Y⁻¹ of the surface: (σ_XY, σ_YY) = Y⁻¹ u,X of what decays."""
+        _, R, T = self._matrices
+        return R.T + T @ self.G
+
+    @cached_property
+    def T_inverse(self) -> NDArray[np.float64]:
+        """T⁻¹, (2, 2)."""
+        return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
+
+    @cached_property
+    def _Y(self) -> NDArray[Any]:
+        return np.linalg.inv(self.L)
+
+    @cached_property
+    def n(self) -> float:
+        """Slope v,X by the Hilbert transform of σ_YY."""
+        return float(-self._Y[1, 1].imag)
+
+    @cached_property
+    def m(self) -> float:
+        """Strain u,X by the Hilbert transform of σ_XY."""
+        return float(-self._Y[0, 0].imag)
+
+    @cached_property
+    def n12(self) -> float:
+        """Slope v,X by the Hilbert transform of σ_XY, and strain by that of σ_YY."""
+        return float(-(self._Y[0, 1] + self._Y[1, 0]).imag / 2.0)
+
+    @cached_property
+    def q(self) -> float:
+        """Strain u,X by σ_YY, slope -v,X by σ_XY."""
+        return float((self._Y[0, 1] - self._Y[1, 0]).real / 2.0)
+
+    @cached_property
+    def least_stiffness(self) -> float:
+        """Smallest eigenvalue of the surface's stiffness -iY⁻¹, Hermitian; it falls with speed."""
+        Z = -1j * self.L
+        return float(np.linalg.eigvalsh((Z + Z.conj().T) / 2.0)[0])
+
+    @cached_property
+    def margin(self) -> float:
+        """That over its value at rest; 0 at the speed of a wave along the surface."""
+        return self.least_stiffness / self.at(0.0).least_stiffness
+
+    @property
+    def contraction(self) -> complex:
+        """Midway between the roots."""
+        return self.roots.midpoint
+
+    @property
+    def spread(self) -> float:
+        """Hyperbolic distance of the roots."""
+        return self.roots.apart
+
+    @property
+    def mirrored(self) -> bool:
+        """Is it its own mirror image in X = 0?"""
+        return self.c16 == 0.0 == self.c26
+
+    def at(self, c: float) -> "AnisotropicFrame":
+        """The same solid at another speed."""
+        return AnisotropicFrame(self.c11, self.c12, self.c16, self.c22, self.c26, c)
+
+    @cached_property
+    def _C(self) -> NDArray[np.float64]:
+        """Stiffness, (3, 3)."""
+        return np.array(
+            [
+                [self.c11, self.c12, self.c16],
+                [self.c12, self.c22, self.c26],
+                [self.c16, self.c26, self.c66],
+            ]
+        )
+
+    @cached_property
+    def _along(self) -> NDArray[np.float64]:
+        """σ_XX by u,X, σ_YY and σ_XY where two of these vanish: Hooke's law, u,Y and v,Y eliminated."""
+        s11, s12, s16 = np.linalg.inv(self._C)[0]
+        return np.array([1.0, -s12, -s16]) / s11
+
+    def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
+        """In-plane stress where strain and tractions are known."""
+        by_u_X, by_σ_YY, by_σ_XY = self._along
+        return by_u_X * u_X + by_σ_YY * σ_YY + by_σ_XY * σ_XY
+
+    def stresses(self, G: NDArray) -> NDArray[np.float64]:
+        """Hooke's law: σ_XX, σ_YY, σ_XY over c₆₆ of displacement gradients (..., 2, 2)."""
+        strains = [G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]]
+        return np.einsum("ij,j...->i...", self._C, np.array(strains))
+
+    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
+        """Displacements far away by moments of tractions."""
+        return line_loads(self, X, Y, terms)
+
+    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Stresses below a pressure by its potential at the matrix X + Y G; Y < 0.
+
+        u,X = Re iΦ(X + Y G) 𝐘 (g, 1)ᵀ, and the tractions are those of the surface with 𝐘⁻¹ G 𝐘 for G.
+
+        Raises:
+            ValueError: a point has Y >= 0; the surface has formulas of its own.
+        """
+        X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
+        if np.any(Y >= 0.0):
+            raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use the formulas of the surface there")
+        p, other = self.roots.each
+        z = X + p * Y
+        # Φ of a matrix with two eigenvalues: Φ(z₁) + Φ[z₁, z₂] Y (G - p₁).
+        at, change = (1j * part for part in value_and_change(Φ, z, Y + 0j, other - p))
+        beyond = self.G - p * np.eye(2)
+        strain = self._Y[0], (beyond @ self._Y)[0]
+        tractions = np.eye(2), self.L @ beyond @ self._Y
+
+        def part(one: NDArray, two: NDArray) -> NDArray[np.float64]:
+            return ((one[0] * g + one[1]) * at + (two[0] * g + two[1]) * change).real
+
+        u_X = part(*strain)
+        σ_XY, σ_YY = (part(tractions[0][i], tractions[1][i]) for i in (0, 1))
+        return np.array([self.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
+
+
+def surface_wave(solid: AnisotropicFrame) -> float:
+    """Speed over √(c₆₆/ρ) of the wave along the surface, to the last digits.
+
+    The surface's stiffness falls with speed until it has a zero, before that of the slowest wave inside
+    is reached: bisection.
+    """
+    low, high = 0.0, 1.0
+    while low < (middle := (low + high) / 2.0) < high:
+        low, high = (middle, high) if _stands(solid, middle) else (low, middle)
+    return low
+
+
+def _stands(solid: AnisotropicFrame, c: float) -> bool:
+    """Is the surface's stiffness positive at this speed?"""
+    try:
+        return solid.at(c).least_stiffness > 0.0
+    except ValueError:
+        return False
+
 
 #: A minor over the product of its diagonal that rounding alone could leave.
 _ROUNDING = 1e-13
@@ -58,8 +274,10 @@ class PlaneSolid(ABC):
     @cached_property
     def flutter(self) -> tuple[float, float]:
         """Least σ_XY/σ_YY of either sign from which on short waves grow, infinite for none."""
-        from galinx.solvers.transient.admittance import Admittance  # loaded where it is needed
-        from galinx.solvers.transient.flutter import thresholds
+        from ..transient.admittance import (
+            Admittance,  # loaded where it is needed
+            thresholds,
+        )
 
         return thresholds(Admittance.of(self._at_rest))
 

@@ -2,14 +2,30 @@
 
 The two potentials live at z_j = (X + i β_j Y)/a. At slow speed they nearly coincide, and what counts
 is their difference over c², which is therefore computed as such.
+
+The complex planes X + pY in which the parts of a solid's fields are analytic: two roots of a quartic.
+
+Only their sum and their product are found, which stay smooth where the roots meet; so do they in every
+isotropic solid at rest.
+
+A half-plane's displacement far from loads on its surface: of line loads, and of their moments.
+
+Tractions t(s) at |s| <= a move a point z = X + Y G, a matrix with the eigenvalues X + pY, by
+
+    u = Im[log(z) 𝐘 M₀ - Σ z⁻ⁿ 𝐘 Mₙ/n]/π,   Mₙ = ∫ sⁿ t ds,   𝐘 = L⁻¹,
+
+where all |X + pY| > a. Functions of matrices by those of eigenvalues: nothing happens where these meet.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import log1p
 
-from galinx.solvers.solids.solid import Potential
+from .solid import Potential
 
 #: c² below which its part in the difference of the potentials, over c², has no digit left.
 _AT_REST = 1e-30
@@ -96,3 +112,103 @@ def field(frame: Any, g: Any, s_s: Any, h_s: Any, s: Any, h: Any) -> tuple[Any, 
     σ_XX = u_X - v_Y + 2.0 * dilatation  # Eq 6
     σ_YY = v_Y - u_X + 2.0 * dilatation  # Eq 7
     return σ_XX, σ_YY, σ_XY
+
+
+#: Steps of Newton's method at most: it begins with half the digits where the roots meet.
+_STEPS = 10
+
+
+@dataclass(frozen=True)
+class Roots:
+    """Two roots p₁, p₂ with Im p > 0.
+
+    Attributes:
+        sum, product: of the two.
+    """
+
+    sum: complex
+    product: complex
+
+    @cached_property
+    def each(self) -> tuple[complex, complex]:
+        """p₁ and p₂; half the digits where they meet, but sum and product stay."""
+        middle = self.sum / 2.0
+        half = np.sqrt(middle**2 - self.product + 0j)
+        return complex(middle + half), complex(middle - half)
+
+    @cached_property
+    def midpoint(self) -> complex:
+        """Midway between them in the hyperbolic metric of the upper half-plane."""
+        p, other = self.each
+        seen = (other - p.real) / p.imag  # where p is at i
+        ζ = (seen - 1j) / (seen + 1j)
+        ζ /= 1.0 + np.sqrt(1.0 - abs(ζ) ** 2)
+        return complex(p.real + p.imag * 1j * (1.0 + ζ) / (1.0 - ζ))
+
+    @cached_property
+    def apart(self) -> float:
+        """Their hyperbolic distance; 0 where they meet."""
+        p, other = self.each
+        return float(2.0 * np.arcsinh(abs(p - other) / (2.0 * np.sqrt(p.imag * other.imag))))
+
+
+def roots(coefficients: NDArray) -> Roots | None:
+    """The two roots with Im p > 0 of a real quartic, or None where it has real ones.
+
+    Args:
+        coefficients: of p⁴ to p⁰, (5,).
+    """
+    b3, b2, b1, b0 = coefficients[1:] / coefficients[0]
+    upper = [p for p in np.roots(coefficients) if p.imag > 0.0]
+    if len(upper) != 2:
+        return None
+    # p⁴ + … = (p² - s p + d)(p² - s̄ p + d̄), where Re s = -b₃/2 is known.
+    s, d = sum(upper), np.prod(upper)
+    a, x = -b3 / 2.0, np.array([s.imag, d.real, d.imag])
+    for _ in range(_STEPS):
+        b, e, f = x
+        rest = [a * a + b * b + 2.0 * e - b2, -2.0 * (a * e + b * f) - b1, e * e + f * f - b0]
+        slopes = [[2.0 * b, 2.0, 0.0], [-2.0 * f, -2.0 * a, -2.0 * b], [0.0, 2.0 * e, 2.0 * f]]
+        try:
+            step = np.linalg.solve(slopes, rest)
+        except np.linalg.LinAlgError:  # all four meet on the real axis
+            return None
+        x = x - step
+        if np.abs(step).max() <= 1e-15 * np.abs(x).max():
+            break
+    return Roots(complex(a, x[0]), complex(x[1], x[2]))
+
+
+#: Distance over a of the surface to which displacements are relative: that of the study's walls.
+DATUM = 100.0
+#: Unit loads: ∫σ_YY = 1 and ∫σ_XY = 1, as (σ_XY, σ_YY).
+LOADS = np.array([[0.0, 1.0], [1.0, 0.0]])
+
+
+def line_loads(
+    solid: Any, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM
+) -> NDArray[np.float64]:
+    """Displacements over 1/μ of moments of surface tractions, normal and tangential, (terms, 2, 2, n).
+
+    Args:
+        solid: has G, L and roots of the half-plane at its speed.
+        X, Y: positions with Y <= 0, (n,).
+        terms: how many: line loads alone, their first moment besides, ….
+        datum: distance over a at which a line load does not move the surface, the mean of both sides.
+    """
+    p, other = solid.roots.each
+    z = X + p * np.minimum(Y, 0.0) - 0.0j
+    z = np.where(Y < 0.0, z, X + np.where(X < 0.0, -1e-300j, 0.0))
+    step = (other - p) * Y / z
+    # The argument goes from 0 ahead of the load to -π behind it; half of that is a translation.
+    log = np.log(z / datum) + 0.5j * np.pi
+    change = np.where(step == 0.0, Y / z, log1p(step) / np.where(step == 0, 1, other - p))
+    one = np.eye(2)
+    function = log[:, None, None] * one + change[:, None, None] * (solid.G - p * one)
+    inverse = np.linalg.inv(X[:, None, None] * one + Y[:, None, None] * solid.G)
+    of_loads = np.linalg.solve(solid.L, LOADS.T)
+    found, power = [function], one
+    for n in range(1, terms):
+        power = power @ inverse
+        found.append(-power / n)
+    return np.moveaxis(np.array(found) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi

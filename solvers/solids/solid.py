@@ -1,4 +1,7 @@
-"""What solvers ask of an elastic solid, at rest and at speed."""
+"""What solvers ask of an elastic solid, at rest and at speed.
+
+Constants that several kinds of solid have, each as the field of a dataclass.
+"""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol, runtime_checkable
@@ -7,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+
+from ..parameters import choice, parameter
 
 
 class Potential(Protocol):
@@ -100,8 +105,8 @@ class ByCells(Protocol):
     def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
         """The weak form's constants in each solid from the top down, (n, names) each.
 
-        They stand at :func:`galinx.solvers.panel.chebyshev_points` of the share of the change from the
-        solid's upper face to its lower one; at a single point where the solid is uniform.
+        They stand at :func:`galinx.solvers.approximation.chebyshev_points` of the share of the
+        change from the solid's upper face to its lower one; at a single point where the solid is uniform.
 
         Args:
             names: what the form calls them.
@@ -166,7 +171,8 @@ class Solid(Protocol):
     @property
     def flutter(self) -> tuple[float, float]:
         """Least σ_XY/σ_YY > 0, and least -σ_XY/σ_YY > 0, from which on short waves along a surface that
-        slides on something rigid grow; infinite for none, see :mod:`galinx.solvers.transient.flutter`."""
+        slides on something rigid grow; infinite for none, see
+        :func:`galinx.solvers.transient.admittance.thresholds`."""
 
     def limit(self) -> float:
         """Highest speed over ``c_s``: that of a wave along the surface."""
@@ -187,3 +193,29 @@ class Solid(Protocol):
 
 #: Solids by the name that scenes use; every solid adds itself.
 SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)
+
+
+#: Where stiffnesses usually lie [Pa].
+USUAL_STIFFNESS = (1e3, 2e12)
+
+
+def modulus(key: str, about: str, symbol: str = "") -> Any:
+    """A stiffness that is positive [Pa]."""
+    return parameter(key, about, "Pa", symbol=symbol, above=0.0, usual=USUAL_STIFFNESS)
+
+
+def density() -> Any:
+    """ρ [kg/m³]."""
+    return parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
+
+
+def angle(axis: str) -> Any:
+    """From X to an axis of the solid [°]."""
+    note = "counterclockwise, Y upwards"
+    return parameter("angle", f"angle from X to {axis}", "deg", symbol=r"\theta", default=0.0, note=note)
+
+
+def in_plane() -> Any:
+    """Plane strain or plane stress."""
+    note = '`"stress"` is a thin sheet'
+    return choice("plane", "plane strain or stress", ("strain", "stress"), note=note)

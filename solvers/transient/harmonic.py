@@ -11,9 +11,9 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.solids.solid import Response
-from galinx.solvers.transient.admittance import Admittance
-from galinx.solvers.transient.transform import Transformed
+from ..solids.solid import Response
+from .admittance import Admittance
+from .transform import Transformed
 
 #: Polynomials of the pressure without waves, and for each radian of the shortest wave along the
 #: contact's half-width; so many of them, as a share, tell the error.

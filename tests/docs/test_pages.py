@@ -29,9 +29,9 @@ from support import HOME, clean_environment
 
 from galinx.app.cli import cli
 from galinx.app.scene.changes import changed
+from galinx.app.scene.library import templates
 from galinx.app.scene.read import parse
 from galinx.app.scene.sections import SECTIONS
-from galinx.app.scene.templates import templates
 from galinx.postprocess.quantities import table
 
 README = HOME / "README.md"

@@ -11,8 +11,7 @@ import pytest
 
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import read
-from galinx.app.scene.schema import schema
-from galinx.app.scene.sections import SECTIONS
+from galinx.app.scene.sections import SECTIONS, schema
 from galinx.postprocess.quantities import QUANTITIES
 
 SCENES = {path.stem: path for path in sorted(Path(__file__).parent.glob("*.toml"))}

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from galinx.meshes import MESHES, Wanted
-from galinx.meshes.cells import check_cells
 from galinx.meshes.graded import BOX_DEPTH, BOX_WIDTH
+from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS, QuadMesh
 
 TOLERANCES = [1e-2, 1e-6, 1e-9]

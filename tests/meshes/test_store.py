@@ -45,7 +45,7 @@ def made_again(pattern):
 def test_gmsh_gives_the_pattern_back_and_is_not_asked_twice(pattern, monkeypatch):
     assert not store.is_kept(pattern)
     assert not made_again(pattern)
-    monkeypatch.setitem(sys.modules, "galinx.meshes.gmsh_model", None)  # its import would raise
+    monkeypatch.setitem(sys.modules, "galinx.meshes.store", None)  # its import would raise
     assert not made_again(pattern)
 
 
@@ -86,7 +86,7 @@ def test_the_mesh_of_another_pattern_is_no_mesh(pattern, kept):
 
 def test_a_flipped_bit_is_no_other_mesh(pattern, kept, monkeypatch):
     quick = types.SimpleNamespace(through_gmsh=lambda mesh: mesh)  # proved above, and slow
-    monkeypatch.setitem(sys.modules, "galinx.meshes.gmsh_model", quick)
+    monkeypatch.setitem(sys.modules, "galinx.meshes.store", quick)
     chance, whole = random.Random(4), kept.read_bytes()
     for _ in range(FLIPS):
         data, bit = bytearray(whole), chance.randrange(8 * len(whole))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.meshes.strata import Strata, between, fitted
+from galinx.meshes.layered import Strata, between, fitted
 
 ISOTROPIC = (1j,)
 OBLIQUE = (0.6 + 0.8j, -2.0 + 0.5j)

@@ -7,13 +7,11 @@ from support import space_on
 
 from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import Refinement
-from galinx.solvers.fem import surface
+from galinx.solvers.fem import fields
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
-from galinx.solvers.fem.interior import InteriorGradients
-from galinx.solvers.fem.linear_loads import LinearLoads
-from galinx.solvers.fem.pieces import Pieces
+from galinx.solvers.fem.fields import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.traction import LoadedHalfPlane
+from galinx.solvers.fem.traction import LinearLoads, LoadedHalfPlane, Pieces
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -32,7 +30,7 @@ def test_a_shared_mesh_gives_what_one_rank_gives(mesh, form):
         space = space_on(mesh, REFINEMENT, 5, comm, form)
         punch = SlidingPunch(space, MovingFrame(2.0, 0.6))
         states.append(punch.states(-0.66))
-        trace = surface.gather(space, punch.fields[:3])
+        trace = fields.gather(space, punch.fields[:3])
         traces.append(trace.derivative(np.array([-1.9, -0.7, 0.3, 1.2, 1.8])))
         inside = InteriorGradients(space, MovingFrame(2.0, 0.6), punch.fields, points)
         gradients.append(inside.of(states[-1].weights))
@@ -51,7 +49,7 @@ def test_shared_tractions_give_what_one_rank_gives():
         solver = LoadedHalfPlane(space_on("confocal", REFINEMENT, 5, comm), MovingFrame(2.0, 0.6))
         solver.load(load)
         assert solver.resultants[0] == pytest.approx(-2.0, rel=1e-12)
-        slopes.append(surface.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))
+        slopes.append(fields.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))
         solver.destroy()
     np.testing.assert_allclose(slopes[1], slopes[0], rtol=1e-8, atol=1e-10)
 

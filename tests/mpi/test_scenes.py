@@ -8,11 +8,10 @@ from support import HOME
 from galinx import template
 from galinx.app.plan import fem
 from galinx.app.plan.plan import make_plan
-from galinx.app.run.flow import compute
+from galinx.app.run.flow import Memory, compute
 from galinx.app.run.methods.error import ROUNDING
-from galinx.app.run.sinks import Memory
+from galinx.app.scene.library import templates
 from galinx.app.scene.read import parse
-from galinx.app.scene.templates import templates
 
 #: What ranks agree on they agree on at every tolerance.
 SCENES = {name: template(name, {"solve.tolerance": 1e-3}) for name in templates()}

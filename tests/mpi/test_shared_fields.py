@@ -9,12 +9,11 @@ from mpi4py import MPI
 from support import space_on
 
 from galinx import template
-from galinx.app.results import paraview
-from galinx.app.results.one_state import chosen, solved
-from galinx.app.results.paraview import state_field, write_fields
+from galinx.app.results import fields
+from galinx.app.results.fields import chosen, solved, state_field, write_fields
 from galinx.meshes.rings import Refinement
+from galinx.solvers.fem.fields import sample
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.sampling import sample
 from galinx.solvers.solids.isotropic import MovingFrame
 
 
@@ -52,8 +51,8 @@ def test_rank_0_writes_what_all_ranks_have(tmp_path, monkeypatch):
     path, scene = tmp_path / "state.hdf", template("tables4_5")
     # One solution for both: what rounding does next to an edge differs from run to run on two ranks.
     with closing(solved(chosen(scene, [0], [5]))) as states:
-        found = paraview._sampled(next(states), 2.0)
-    monkeypatch.setattr(paraview, "_sampled", lambda *_: found)
+        found = fields._sampled(next(states), 2.0)
+    monkeypatch.setattr(fields, "_sampled", lambda *_: found)
     write_fields(scene, [0], path, extent=2.0, degrees=[5])
     whole = state_field(scene, 0, extent=2.0, degree=5)
     assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)

@@ -6,9 +6,8 @@ from mpi4py import MPI
 import galinx
 from galinx.app import ranks
 from galinx.app.plan.plan import make_plan
-from galinx.app.run.flow import compute
+from galinx.app.run.flow import Memory, compute
 from galinx.app.run.over_time import follow
-from galinx.app.run.sinks import Memory
 from galinx.clock import Clock
 
 QUICK = {"motion.c": [0.2, 0.5], "time.end": 2.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}

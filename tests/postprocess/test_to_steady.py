@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.to_steady import from_steady, told, within
+from galinx.postprocess.over_time import distances_from_steady, from_steady, within
 
 
 def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
@@ -30,7 +30,7 @@ def test_where_K_I_cannot_be_told_nothing_is_near():
         "time/steady_centre": np.array([0.0]), "time/fem/K_I_left": nan, "time/fem/K_I_right": nan,
         "time/fem/centre_of_pressure": np.zeros((1, 3)),
     }  # fmt: skip
-    assert all(np.isnan(values).all() for values in told(data, "fem").values())
+    assert all(np.isnan(values).all() for values in distances_from_steady(data, "fem").values())
 
 
 def test_the_largest_difference_is_taken():

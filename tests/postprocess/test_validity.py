@@ -10,7 +10,7 @@ from support import computed
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids import Isotropic
-from galinx.solvers.transient.approach import approach
+from galinx.solvers.transient.late_time import approach
 
 SOLID = Isotropic(193e9, 0.25, 7860.0)
 CLOSED = {"solve.methods": ["closed_form"]}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.solvers.rational import barycentric, chebyshev_nodes, fitted, leja, polynomial_weights
+from galinx.solvers.approximation import barycentric, chebyshev_nodes, fitted, leja, polynomial_weights
 
 
 def chosen(z, count, first=0):

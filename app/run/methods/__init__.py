@@ -1,12 +1,13 @@
 """Methods that solve the contact: each is made for a plan, and imports what only it needs when it is."""
 
-from galinx.app.console.progress import Progress
-from galinx.app.errors import finite_elements_installed
-from galinx.app.methods import METHODS, MethodKind
-from galinx.app.plan.task import Plan
-from galinx.app.run.methods.method import Method
 from galinx.clock import Clock
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
+
+from ...console import Progress
+from ...errors import finite_elements_installed
+from ...methods import METHODS, MethodKind
+from ...plan.task import Plan
+from .method import Method
 
 __all__ = ["METHODS", "Method", "MethodKind", "make"]
 
@@ -27,24 +28,24 @@ def make(name: str, plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
+    from .closed_form import ClosedForm, with_given_ends
 
     if plan.body.found:
-        from galinx.app.run.methods.found_ends import FoundPunches
+        from .closed_form import FoundPunches
 
         return ClosedForm(FoundPunches)
     return ClosedForm(with_given_ends)
 
 
 def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from galinx.app.run.methods.on_layers import Layers
+    from .on_layers import Layers
 
     return Layers(plan.tolerance)
 
 
 def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
     with clock("import of dolfinx"), finite_elements_installed():
-        from galinx.app.run.methods.fem import FiniteElements
+        from .fem import FiniteElements
 
         return FiniteElements(plan, progress, clock)
 

@@ -9,21 +9,21 @@ from typing import Any
 
 from mpi4py import MPI
 
-from galinx.app.console.progress import Progress
-from galinx.app.methods import DOLFINX, TENSOR
-from galinx.app.plan.fem import FemPlan
-from galinx.app.plan.task import Plan
 from galinx.clock import Clock
-from galinx.meshes.cells import check_cells
+from galinx.meshes.kind import check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.meshes.store import obtain
+from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import FEM
-from galinx.postprocess.quantities.strata import AT_INTERFACES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
-from galinx.solvers.fem.distributed import distribute
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
+
+from ...console import Progress
+from ...methods import DOLFINX, TENSOR
+from ...plan.fem import FemPlan
+from ...plan.task import Plan
 
 #: Spaces by the assembler of their matrices.
 SPACES: dict[str, type[Space]] = {TENSOR: Space, DOLFINX: DolfinxSpace}

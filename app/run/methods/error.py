@@ -1,19 +1,21 @@
-"""The error of finite elements, measured on solutions of lower degree, and the degree it asks for."""
+"""The error of finite elements, measured on solutions of lower degree, and the degree it asks for.
+
+What the error of finite elements is measured on: numbers of states, and what they are relative to.
+
+Solutions of rising degree at one speed: what the error is measured on.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import levels
-from galinx.app.plan.task import Task
-from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.gauge import Gauge
-from galinx.app.run.methods.ladder import Ladder
 from galinx.meshes.kind import DEGREES
+from galinx.postprocess import stresses
 from galinx.postprocess.estimate import (
     AT_DEPTHS,
     SAFETY,
@@ -24,9 +26,288 @@ from galinx.postprocess.estimate import (
     of_degrees,
     remaining,
 )
+from galinx.postprocess.pressure import JacobiPressure
+from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import INTENSITIES
-from galinx.postprocess.quantities.strata import AT_INTERFACES
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.solvers.fem.space import Space
+
+from ...plan.fem import FemPlan, levels
+from ...plan.task import Task
+from .discretisation import Discretisation
+from .displacement import Displacement
+
+#: Points inside on which the error is measured; of more, so many are picked.
+_POINTS = 400
+
+#: Positions r under the punch at which the pressure's smooth factor is measured, both edges among them.
+_ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
+
+
+#: What rounding does to stresses over what the last digits of the displacements alone can, times the root
+#: of the response's margin: 0.2 to 2.8 times what breaks mirror images where solids have them.
+_SOLVED = 100.0
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """Numbers of some states that stand for a word of output.quantities.
+
+    Attributes:
+        word: the word.
+        values: (states, n).
+        scale: what they are relative to, (states, n).
+        left: relative error that a level knows of itself, (states,) or 0.
+    """
+
+    word: str
+    values: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    left: Any = 0.0
+
+    def change(self, coarse: "Gauge") -> NDArray[np.float64]:
+        """Largest relative difference of each state from the same gauge of another level, (states,)."""
+        return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
+
+
+def of_pressure(pressure: JacobiPressure, moments: NDArray) -> Gauge:
+    """K_I, the pressure all over the contact, and its moments 1 to 5 over the load."""
+    factor = pressure.factor(_ACROSS)
+    values = np.concatenate([factor, moments[:, 1:6]], axis=1)
+    return Gauge(
+        INTENSITIES,
+        values,
+        np.concatenate([stresses.of_factor(factor), 2.0 + 0.0 * moments[:, 1:6]], axis=1),
+        pressure.unresolved,
+    )
+
+
+def of_intensities(K_I: NDArray) -> Gauge:
+    """K_I at both ends, (states, 2)."""
+    return Gauge(INTENSITIES, K_I, np.abs(K_I))
+
+
+def of_in_plane(σ_XX: NDArray, X: NDArray) -> Gauge:
+    """σ_XX on the surface, (states, n)."""
+    return Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, X))
+
+
+def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
+    """Stresses inside, (3, states, m), and the word that asks for them."""
+    size = stresses.of_inside(σ, *points.T)
+    return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
+
+
+def of_interfaces(σ: NDArray) -> Gauge:
+    """Stresses along interfaces, (4, states, interfaces, n)."""
+    size = np.broadcast_to(stresses.of_interfaces(σ), σ.shape)
+    values, of = (np.moveaxis(part, 1, 0).reshape(σ.shape[1], -1) for part in (σ, size))
+    return Gauge(AT_INTERFACES, values, of)
+
+
+class StressGauges:
+    """Stresses that are asked for, of combinations of some fields; derivatives are taken at once.
+
+    Args:
+        work: knows what is asked for.
+        task: the speed, and the places.
+        displaced: gives the displacement at a task's places.
+    """
+
+    def __init__(
+        self, work: Discretisation, task: Task, displaced: Callable[[Task], Displacement]
+    ) -> None:
+        self._words, self._task = work.stresses, gauged(task)
+        self._displacement = displaced(self._task)
+        self._displacement.prepare(self._words)
+
+    @property
+    def wanted(self) -> bool:
+        """Are there any?"""
+        return bool(self._words)
+
+    @property
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is asked for."""
+        return self._displacement.slopes if self._words else None
+
+    def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
+        """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""
+        found, places = [], self._task.places
+        if ON_SURFACE in self._words:
+            surface = self._displacement.surface(g, weights, σ_YY)
+            found.append(of_in_plane(surface.σ_XX, places.X))
+        if BELOW in self._words:
+            found.append(of_inside(self._displacement.inside(weights), places.points))
+        if YIELD in self._words:
+            found.append(of_inside(self._displacement.around(weights), places.around, YIELD))
+        if AT_INTERFACES in self._words:
+            found.append(of_interfaces(self._displacement.interfaces(weights)))
+        return found
+
+    def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
+        """The same, seen from the other side where the sign is negative.
+
+        Points inside have no mirror image, those on the surface have: σ_XX there stands for both.
+        """
+        if not self._words:
+            return []  # no derivative is taken that nobody asks for
+        surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
+        return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
+
+    def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
+        """What the fields' last digits can do to stresses, relative; those on the surface for all."""
+        if not self._words:
+            return []
+        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+        noise = self._displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self._task.places.X)
+        solved = _SOLVED / self._task.response.margin**0.5
+        return [solved * float(noise.max())] * len(self._words)
+
+
+def gauged(task: Task) -> Task:
+    """The task at fewer points inside: some at all distances from the edges, from nearest to farthest."""
+    points, around = (_some(all_) for all_ in (task.places.points, task.places.around))
+    if points is task.places.points and around is task.places.around:
+        return task
+    return replace(task, places=replace(task.places, points=points, around=around))
+
+
+def _some(points: NDArray) -> NDArray[np.float64]:
+    if len(points) <= _POINTS:
+        return points
+    X, Y = points.T
+    order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
+    picked = order[np.unique(np.linspace(0, len(order) - 1, _POINTS).astype(int))]
+    return points[np.sort(picked)]
+
+
+#: Levels that are held at once: two differences measure the error.
+_HELD = 3
+
+
+class Spaces(Protocol):
+    """What gives the spaces of a ladder."""
+
+    @property
+    def plan(self) -> FemPlan: ...
+
+    def space(self, degree: int, cuts: int = 1) -> Space: ...
+
+    def warn(self, text: str) -> None:
+        """What the user should know."""
+
+
+class Level(Protocol):
+    """A solution at one degree; what it measures can be asked for after its release."""
+
+    @property
+    def space(self) -> Space: ...
+    @property
+    def factor(self) -> Any:
+        """Of the linear system, with numbers of its work."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Does ``rounding`` say what mirror images show, and not only what rounding might do?"""
+
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        """What the error is measured on of states with these values of σ_XY/σ_YY.
+
+        Args:
+            g: σ_XY/σ_YY, (states,).
+            load: of each state [N/m], (states,); that of the task if not given.
+        """
+
+    def rounding(self, g: NDArray) -> list[float]:
+        """What rounding alone is seen to do to each of these, relative."""
+
+    def release(self) -> None:
+        """Free factor and fields."""
+
+    def destroy(self) -> None:
+        """Free everything."""
+
+
+class Ladder:
+    """Solutions of rising degree, or on meshes cut more and more finely, at one speed.
+
+    Args:
+        work: gives spaces.
+        task: the speed.
+        solved: solves on a space for all values of g.
+        degree: to begin with; the plan's if not given.
+
+    Attributes:
+        degree: of the last level.
+        levels: the last ones.
+        changes: largest change from the degree before of what the error is measured on, by degree and by
+            word of output.quantities.
+    """
+
+    def __init__(
+        self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any],
+        degree: int | None = None,
+    ) -> None:  # fmt: skip
+        self.work, self.task = work, task
+        self.degree = degree or work.plan.degrees[task.number]
+        self.levels: list[Any] = []
+        self.changes: dict[int, dict[str, float]] = {}
+        self._solved = solved
+        self._work = WorkDone()
+
+    def add(self, g: NDArray, degree: int, cuts: int = 1) -> None:
+        """Solve at a degree for all values of g; the factor before makes room."""
+        for level in self.levels[-1:]:
+            level.release()
+        self.levels.append(self._solved(self.work.space(degree, cuts), g))
+        self.degree = degree
+        if len(self.levels) > _HELD:
+            old = self.levels.pop(0)
+            self._work.count(old)
+            old.destroy()
+
+    def record(self) -> dict[str, Any]:
+        """Numbers of the work on all levels, and the size of the last."""
+        space = self.levels[-1].space
+        return {"cells": space.cells, "unknowns": space.size, "degree": space.degree} | vars(self.done)
+
+    @property
+    def done(self) -> "WorkDone":
+        """Numbers of the work on all levels."""
+        total = WorkDone(**vars(self._work))
+        for level in self.levels:
+            total.count(level)
+        return total
+
+    def destroy(self) -> None:
+        for level in self.levels:
+            level.destroy()
+
+
+@dataclass
+class WorkDone:
+    """Numbers of linear algebra, as they are archived."""
+
+    factorisations: int = 0
+    back_substitutions: int = 0
+    iterations: int = 0
+    largest_residual: float = 0.0
+    largest_condition: float = 0.0
+
+    def count(self, level: Any) -> None:
+        """Count the work of what has a factor."""
+        factor = level.factor
+        self.add(WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition))
+
+    def add(self, other: "WorkDone") -> None:
+        """Count other work, too."""
+        self.factorisations += other.factorisations
+        self.back_substitutions += other.back_substitutions
+        self.iterations = max(self.iterations, other.iterations)
+        self.largest_residual = max(self.largest_residual, other.largest_residual)
+        self.largest_condition = max(self.largest_condition, other.largest_condition)
+
 
 #: What rounding does, over what of it breaks the mirror image.
 ROUNDING = 3.0

@@ -3,35 +3,32 @@
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
-from types import ModuleType
 from typing import Any
 
 from numpy.typing import NDArray
 
-from galinx.app.console.progress import Progress
-from galinx.app.plan.fem import FOLLOWED, LOADS, OWN_MESHES
-from galinx.app.plan.task import Plan, Task
-from galinx.app.run.methods import (
-    followed_punch,
-    found_punch,
-    given,
-    kinked_punch,
-    loads_on_layers,
-    own_pressure,
-    punch,
-)
-from galinx.app.run.methods.discretisation import Discretisation, quiet_compiler
-from galinx.app.run.methods.method import Pressure, Solver
-from galinx.app.run.methods.sweep import Trained, train
 from galinx.clock import Clock
 from galinx.postprocess.quantities.quantity import FOUND, OWN_PRESSURE
 from galinx.solvers.fem.space import Space
 
-#: What solves at one speed, by the plan's mode: a module with functions ``solver`` and ``one_state``.
-MODES: dict[str, ModuleType] = {
-    "contact": punch, "traction": given, OWN_PRESSURE: own_pressure, FOUND: found_punch,
-    OWN_MESHES: kinked_punch, FOLLOWED: followed_punch, LOADS: loads_on_layers,
-}  # fmt: skip
+from ...console import Progress
+from ...plan.fem import FOLLOWED, LOADS, OWN_MESHES
+from ...plan.task import Plan, Task
+from . import followed, kinked, prescribed_pressure, punch
+from .discretisation import Discretisation, quiet_compiler
+from .method import Mode, Pressure, Solver
+from .sweep import Trained, train
+
+#: By the plan's mode.
+MODES = {
+    "contact": Mode(punch.solver, punch.one_state, punch.PunchLevel, punch.PunchesAtSpeed),
+    "traction": Mode(prescribed_pressure.formula_solver, prescribed_pressure.formula_state),
+    OWN_PRESSURE: Mode(prescribed_pressure.solver, prescribed_pressure.one_state),
+    FOUND: Mode(punch.free_solver, punch.free_state, punch.FoundLevel, punch.FoundAtSpeed),
+    OWN_MESHES: Mode(kinked.solver),
+    FOLLOWED: Mode(followed.solver),
+    LOADS: Mode(prescribed_pressure.layered_solver),
+}
 
 
 class FiniteElements:

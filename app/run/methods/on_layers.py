@@ -1,14 +1,581 @@
-"""The singular integral equation of layered and graded half-planes as a method."""
+"""The singular integral equation of layered and graded half-planes as a method.
 
-from collections.abc import Iterator
+The singular integral equation of layered and graded half-planes.
+
+The singular integral equation of layers under punches whose contact ends where the pressure says.
+
+Every friction has a contact of its own, and lengths are over its half-width; kernels and depths are
+those of all of them, over one length.
+
+A pressure of the user's own over layers: what transforms of its tractions say, without an equation.
+
+All is linear in σ_XY/σ_YY: two frictions tell those of all states.
+"""
+
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.task import Task
-from galinx.app.run.methods import found_layers, given_layers, layers
-from galinx.app.run.methods.method import Solver
+from galinx.postprocess import stresses
+from galinx.postprocess.free_ends import turns_at_ends, turns_at_knots
+from galinx.postprocess.pressure import largest
+from galinx.postprocess.quantities.layers import AT_INTERFACES
+from galinx.postprocess.quantities.quantity import INTENSITIES
+from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
+from galinx.solvers.layers.contact import COARSE, FINE, Found, Frictions, Given, Speed
+from galinx.solvers.layers.free_contact import Contacts, FoundSpeed, Punch
+from galinx.solvers.layers.kernel import Kernel, Level
+from galinx.solvers.layers.layered import Stack
+from galinx.solvers.layers.stiffness import Medium
+from galinx.solvers.profiles import cusp, jumps, kinks
+from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.collocation import weights_hilbert
+from galinx.solvers.sie.free_contact import Exponents
+from galinx.solvers.sie.free_contact import largest as largest_next_to_kinks
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
+from galinx.solvers.solution import Places, Surface, Turns, together
+
+from ...plan.task import Task
+from .method import Solver
+
+
+def sharp_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "AtSpeed":
+    """Punches with two sharp edges at one speed, with frictions from which all others follow.
+
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
+        tolerance: relative.
+        g: all values of σ_XY/σ_YY that will be asked for, sorted.
+    """
+    speed = Speed(task.response, stack, task.body.slope, tolerance)
+    return AtSpeed(task, speed, *speed.solved(g))
+
+
+@dataclass(frozen=True)
+class AtSpeed:
+    """Punches at one speed.
+
+    Attributes:
+        task: the speed.
+        speed: kernels.
+        nodes: pressures.
+        interpolated: error that interpolation over frictions leaves, relative.
+    """
+
+    task: Task
+    speed: Speed
+    nodes: Frictions
+    interpolated: NDArray[np.float64]
+
+    def states(self, g: NDArray) -> Any:
+        return Punches(self, g)
+
+    def record(self) -> dict[str, Any]:
+        return {}
+
+    @cached_property
+    def estimate(self) -> float:
+        """Of the pressure, relative."""
+        return float(self.nodes.change + self.interpolated.max() + self.speed.rounding)
+
+    @cached_property
+    def near(self) -> NDArray[np.bool_]:
+        """Positions on the surface at which the pressure without its weight is known."""
+        return np.abs(self.task.places.X) <= self.nodes.near
+
+    # Whatever is read off pressures is read off those with fewer unknowns as well: (2, nodes, ...).
+
+    @cached_property
+    def series(self) -> NDArray[np.float64]:
+        """Pressures without their weights there, (2, nodes, n)."""
+        X = self.task.places.X[self.near]
+        return self.nodes.both(lambda pressure: pressure.series(X))
+
+    @cached_property
+    def rest(self) -> NDArray[np.float64]:
+        """What is regular of their Hilbert transforms, (2, nodes, n)."""
+        return self.nodes.both(lambda pressure: pressure.rest(self.task.places.X, self.nodes.near))
+
+    def level(self, depth: float, X: NDArray) -> tuple[Level, NDArray[np.float64]]:
+        """A depth, and u,X, σ_YY and σ_XY there, (3, 2, nodes, n)."""
+        reach = 1.0 + float(np.abs(X).max())
+        here = Level(self.speed.stack, depth, reach, self.speed.tolerance)
+        g = iter(np.tile(self.nodes.g, 2).tolist())
+
+        def read(pressure: Any) -> NDArray[np.float64]:
+            t, σ = pressure.points(depth)
+            return here.read(t, σ, next(g), X)
+
+        return here, np.moveaxis(self.nodes.both(read), 2, 0)
+
+    @cached_property
+    def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, and the tables' error.
+
+        Arrays (4, 2, nodes, interfaces, n) and (interfaces,).
+        """
+        places, found, errors = self.task.places, [], []
+        for depth in places.interfaces.tolist():
+            level, (u_X, σ_YY, σ_XY) = self.level(depth, places.along)
+            both = [in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
+            found.append([σ_YY, σ_XY, *both])
+            errors.append(level.error * max(1.0, *(medium.modulus for medium in level.media)))
+        return np.moveaxis(np.array(found), 0, 3), np.array(errors)
+
+    @cached_property
+    def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_XX, σ_YY, σ_XY at points inside, and the tables' error; at an interface those above it.
+
+        Arrays (3, 2, nodes, m) and (m,).
+        """
+        points = self.task.places.points
+        found, errors = np.empty((3, 2, len(self.nodes.g), len(points))), np.empty(len(points))
+        for Y in np.unique(points[:, 1]).tolist():
+            some = points[:, 1] == Y
+            level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[some, 0])
+            found[..., some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+            errors[some] = level.error * max(1.0, level.media[0].modulus)
+        return found, errors
+
+    @cached_property
+    def regular(self) -> NDArray[np.float64]:
+        """Strains μ u,X that the layers add, (2, nodes, n)."""
+        return self.regular_at(self.task.places.X)
+
+    def regular_at(self, X: NDArray) -> NDArray[np.float64]:
+        """Strains μ u,X that the layers add at positions (n,) on the surface, (2, nodes, n)."""
+        kernel = self.speed.kernel
+        by_kernel = self.nodes.both(lambda pressure: pressure.integral(kernel, X))
+        return np.asarray(by_kernel[..., 1] + self.nodes.g[:, None] * by_kernel[..., 0])
+
+
+@dataclass(frozen=True)
+class Punches:
+    """Punches with several frictions.
+
+    Attributes:
+        at: their speed.
+        g: σ_XY/σ_YY, (states,).
+    """
+
+    at: AtSpeed
+    g: NDArray[np.float64]
+
+    @cached_property
+    def edges(self) -> FlatPunch:
+        """Sharp edges, like those on a half-plane of the surface's solid."""
+        return FlatPunch(self.at.task.response, self.g)
+
+    @property
+    def local(self) -> Any:
+        """Exponents at the ends."""
+        return self.edges
+
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (states, k)."""
+        return np.empty((len(self.g), 0))
+
+    @cached_property
+    def _by_nodes(self) -> NDArray[np.float64]:
+        return self.at.nodes.at(self.g)
+
+    @cached_property
+    def K_I(self) -> NDArray[np.float64]:
+        """At X = -a and X = a, (states, 2)."""
+        ends = self.at.nodes.read(lambda pressure: pressure.series(np.array([-1.0, 1.0])))
+        return -0.5 * self._by_nodes @ ends
+
+    @cached_property
+    def estimates(self) -> "Estimates":
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        return Estimates(self)
+
+    @property
+    def places(self) -> Places:
+        """Where stresses are."""
+        return self.at.task.places
+
+    def _of_both(self, by_nodes: NDArray) -> NDArray[np.float64]:
+        """Of states, and with fewer unknowns, by what was read off nodes, (..., 2, nodes, n)."""
+        return np.asarray(self._by_nodes @ by_nodes)
+
+    @cached_property
+    def both_interfaces(self) -> NDArray[np.float64]:
+        """Stresses along interfaces, and with fewer unknowns, (4, 2, states, interfaces, n)."""
+        return np.einsum("sg,cbgin->cbsin", self._by_nodes, self.at.interfaces[0])
+
+    @property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self.both_interfaces[:, 0]
+
+    @cached_property
+    def both_inside(self) -> NDArray[np.float64]:
+        """Stresses inside, and with fewer unknowns, (3, 2, states, m)."""
+        return self._of_both(self.at.inside[0])
+
+    @property
+    def inside(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self.both_inside[:, 0]
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane there, (states, m)."""
+        return self.at.task.body.σ_ZZ(self.inside, self.places.points[:, 1])
+
+    @cached_property
+    def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY, 0 beside the punch, and σ_XX; each with fewer unknowns besides, (2, states, n)."""
+        at, places, response = self.at, self.at.task.places, self.at.task.response
+        X, g, local = places.X, self.g[:, None], self.edges
+        α, β = local.α[:, None], local.β[:, None]
+        p = np.zeros((2, len(self.g), len(X)))
+        p[..., at.near] = self._of_both(at.series)
+        with np.errstate(invalid="ignore"):
+            σ = np.where(places.under, (1.0 - X) ** α * (1.0 + X) ** β * p, 0.0)
+        H = p * np.where(at.near, weights_hilbert(α, β, X), 0.0) + self._of_both(at.rest)
+        u_X = response.q * σ + (response.n12 + response.m * g) * H + self._of_both(at.regular)
+        return σ, response.σ_XX(u_X, σ, g * σ)
+
+    @cached_property
+    def surface(self) -> Surface:
+        (σ, _), (σ_XX, _) = self.both_on_surface
+        return Surface(self.places, np.where(self.places.under, σ, np.nan), σ_XX)
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """Relative errors of the integral equation, by the word of output.quantities they belong to.
+
+    What changes with the number of unknowns, what the kernels' and the tables' errors do, and what is
+    left of the interpolation over frictions.
+    """
+
+    of: Punches
+
+    def __getitem__(self, word: str) -> NDArray[np.float64]:
+        return _ESTIMATES[word](self)
+
+    @property
+    def _pressure(self) -> NDArray[np.float64]:
+        return np.full(len(self.of.g), self.of.at.estimate)
+
+    def _on_surface(self) -> NDArray[np.float64]:
+        _, (now, before) = self.of.both_on_surface
+        size = stresses.of_in_plane(now, self.of.places.X)
+        kernel = 2.0 * self.of.at.speed.kernel.error
+        # Next to a tip stresses are infinite, and what they are is that of the distance to it.
+        told = stresses.off_tips(self.of.places.X, self.of.tips)
+        return self._changed(np.where(told, now, 0.0), np.where(told, before, 0.0), size, kernel)
+
+    def _at_interfaces(self) -> NDArray[np.float64]:
+        now, before = np.moveaxis(self.of.both_interfaces, 1, 0)
+        size = np.broadcast_to(stresses.of_interfaces(now), now.shape)
+        tables = np.broadcast_to(self.of.at.interfaces[1][:, None], now.shape)
+        parts = (
+            np.moveaxis(part, 1, 0).reshape(len(self.of.g), -1) for part in (now, before, size, tables)
+        )
+        now, before, size, tables = parts
+        return self._changed(now, before, size, tables)
+
+    def _inside(self) -> NDArray[np.float64]:
+        now, before = np.moveaxis(self.of.both_inside, 1, 0)
+        size = stresses.of_inside(now, *self.of.places.points.T)
+        change = stresses.largest(one - other for one, other in zip(now, before))
+        return self._changed(change, 0.0, size, self.of.at.inside[1])
+
+    def _changed(self, now: NDArray, before: Any, size: NDArray, tables: Any) -> NDArray[np.float64]:
+        """What changed, and what tables add, over the size of it, (states,)."""
+        at = self.of.at
+        shared = at.interpolated.max() + at.speed.rounding
+        return ((np.abs(now - before) + tables) / size).max(axis=1) + shared
+
+
+#: By word.
+_ESTIMATES: dict[str, Callable[[Estimates], NDArray[np.float64]]] = {
+    INTENSITIES: lambda one: one._pressure,
+    ON_SURFACE: Estimates._on_surface,
+    AT_INTERFACES: Estimates._at_interfaces,
+    BELOW: Estimates._inside,
+}
+
+
+def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
+    M = medium.modulus
+    return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
+
+
+def free_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAtSpeed":
+    """Contacts at one speed, with frictions from which all others follow.
+
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
+        tolerance: relative.
+        g: all values of σ_XY/σ_YY that will be asked for, sorted.
+    """
+    body = task.body
+    punch = Punch(body.profile, body.half_width, body.compression)
+    # A place inside is in one layer with one friction and in another with the next.
+    every = bool(len(task.places.points))
+    speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
+    nodes, left = speed.solved(g)
+    assert isinstance(nodes, Contacts)
+    return FoundAtSpeed(task, speed, nodes, left)
+
+
+@dataclass(frozen=True)
+class FoundAtSpeed(AtSpeed):
+    """Contacts at one speed; positions are over each one's half-width, from its middle."""
+
+    nodes: Contacts
+    speed: FoundSpeed
+
+    def states(self, g: NDArray) -> Any:
+        return FoundPunches(self, g)
+
+    def _level(self, depth: float, farthest: float) -> Level:
+        """A depth over the length of all."""
+        return Level(self.speed.stack, depth, farthest, self.speed.tolerance)
+
+    @cached_property
+    def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        X, found, errors = self.task.places.along, [], []
+        largest = float(self.nodes.half_width.max())
+        for depth in self.speed.stack.depths.tolist():
+            level = self._level(depth, largest * (1.0 + float(np.abs(X).max())))
+
+            def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
+                t, σ = pressure.points(depth / h)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
+                return np.array([σ_YY, σ_XY, *(in_plane(one, u_X, σ_YY, σ_XY) for one in level.media)])  # noqa: B023
+
+            found.append(self.nodes.of_each(read))
+            errors.append(largest * _error(level))
+        return np.moveaxis(np.array(found), (3, 0), (0, 3)), np.array(errors)
+
+    @cached_property
+    def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        points, sizes = self.task.places.points, self.nodes.half_width
+        found, errors = np.empty((3, 2, len(sizes), len(points))), np.zeros(len(points))
+        for Y in np.unique(points[:, 1]).tolist():
+            some = points[:, 1] == Y
+            X = points[some, 0]
+            for i, (one, h) in enumerate(zip(self.nodes.each, sizes.tolist())):
+                level = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))
+                for j, pressure in enumerate((one.pressure, one.before)):
+                    g = float(self.nodes.g[i])
+                    t, σ = pressure.points(-Y)
+                    u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)
+                    found[:, j, i, some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+                errors[some] = np.maximum(errors[some], h * _error(level))
+        return found, errors
+
+    @cached_property
+    def regular(self) -> NDArray[np.float64]:
+        X = self.task.places.X
+        return self.nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
+
+    def strain(self, pressure: Any, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
+
+        Args:
+            pressure: of a contact.
+            g: σ_XY/σ_YY.
+            h: half-width of the contact over the length of all.
+            X: positions over the half-width.
+        """
+        by_kernel = pressure.integral(self.speed.scaled(h), X)
+        return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
+
+
+def _error(level: Level) -> float:
+    """Absolute, of stresses there over those of a contact whose half-width is the length of all."""
+    return level.error * max(1.0, *(medium.modulus for medium in level.media))
+
+
+@dataclass(frozen=True)
+class FoundPunches(Punches):
+    """Punches with several frictions, each with its own half-width and middle."""
+
+    at: FoundAtSpeed
+
+    @cached_property
+    def free(self) -> NDArray[np.bool_]:
+        """Were the left and the right end found? (states, 2)."""
+        return self._by_nodes @ self.at.nodes.free > 0.5
+
+    @property
+    def local(self) -> Exponents:
+        """Exponents at the ends."""
+        left, right = self.free.T
+        return Exponents(self.edges.α + right, self.edges.β + left)
+
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (states, k)."""
+        tips = self.at.nodes.tips
+        # They are those of one node each: with kinks each friction is solved.
+        return tips[self._by_nodes.argmax(axis=1)] if tips.shape[1] else np.empty((len(self.g), 0))
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the contact [m], (states,)."""
+        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.half_width)
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
+
+    @cached_property
+    def surface(self) -> Surface:
+        profile, found = self.at.task.body.profile, super().surface
+        if jumps(profile) or not len(kinks(profile)):
+            return found
+        ends = turns_at_ends(found, self.local)
+        each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]
+        return replace(found, turns=together(each))
+
+    def _at_kinks(self, i: int) -> Turns:
+        """Stresses of one state under the punch's kinks.
+
+        They are those of its node: with kinks each friction is solved.
+        """
+        node, response, g = int(self._by_nodes[i].argmax()), self.at.task.response, float(self.g[i])
+        pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
+        X, α, β = self._kinks(i), self.edges.α[i], self.edges.β[i]
+        p = pressure.series(X)
+        σ_YY = (1.0 - X) ** α * (1.0 + X) ** β * p
+        H = p * weights_hilbert(α, β, X) + pressure.rest(X, self.at.nodes.near)
+        u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + self.at.strain(pressure, g, h, X)
+        σ = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+        return Turns(X[None], σ[:, None])
+
+    def _kinks(self, i: int) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over a in the contact of one state."""
+        at = (np.array(kinks(self.at.task.body.profile)) - self.centre[i]) / self.half_width[i]
+        return np.asarray(at[np.abs(at) < 1.0])
+
+    @cached_property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end: none at those that are found, by condition, (states, 2)."""
+        return np.where(self.free, 0.0, super().K_I)
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        profile = self.at.task.body.profile
+        if self.tips.shape[1] or not self.free.all():
+            finite = np.asarray(self.free.all(axis=1) & np.isinf(self.tips).all(axis=1))
+            value, place = self._largest if finite.any() else np.zeros((2, len(finite)))
+            return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
+        if not len(kinks(profile)):
+            return self._largest
+        each = []
+        for i in range(len(self.g)):
+            at = self._kinks(i).tolist(), cusp(profile)
+            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at))  # noqa: B023
+        value, place = np.array(each).T
+        return value, place
+
+    @property
+    def _largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Of pressures that are smooth."""
+        return largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
+
+    def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
+        """Of one state or of all of them, (states, n)."""
+        some = slice(None) if i is None else slice(i, i + 1)
+        p = self._by_nodes[some] @ self.at.nodes.read(lambda pressure: pressure.series(r))
+        α, β = self.edges.α[some, None], self.edges.β[some, None]
+        return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        body, Y = self.at.task.body, self.places.points[:, 1]
+        shares = self.half_width / body.half_width
+        return np.array([body.σ_ZZ(self.inside[:, i], h * Y) for i, h in enumerate(shares.tolist())])
+
+
+#: The frictions.
+_NODES = np.array([0.0, 1.0])
+
+
+def prescribed_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "GivenAtSpeed":
+    """The pressure at one speed.
+
+    Args:
+        task: the speed.
+        stack: layers with lengths over the body's half-width.
+        tolerance: relative.
+        g: σ_XY/σ_YY, of which all is a linear function.
+    """
+    pressure = task.body.pressure
+    assert pressure
+    speed = Speed(task.response, stack, np.zeros_like, tolerance)
+    kernel: Kernel = speed.kernel
+    length = float(stack.layers[0].H)
+    one, other = (Given(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
+    found = Found(one, other, 0.0)  # type: ignore[arg-type]
+    return GivenAtSpeed(task, speed, Frictions(_NODES, [found] * len(_NODES)), np.zeros(1))
+
+
+@dataclass(frozen=True)
+class GivenAtSpeed(AtSpeed):
+    """A pressure put in at one speed."""
+
+    def states(self, g: NDArray) -> Any:
+        return GivenPressures(self, g)
+
+
+@dataclass(frozen=True)
+class GivenPressures(Punches):
+    """States with a pressure of the user's own."""
+
+    at: GivenAtSpeed
+
+    @property
+    def _pressure(self) -> LinearPressure:
+        pressure = self.at.task.body.pressure
+        assert pressure
+        return pressure
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return np.full(len(self.g), self._pressure.resultant)
+
+    @cached_property
+    def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self._on_surface(self.places.X, self.at.regular)
+
+    def _on_surface(
+        self, X: NDArray, regular: NDArray
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY and σ_XX at X, by strains that the layers add there."""
+        response, g = self.at.task.response, self.g[:, None]
+        σ = np.tile(self._pressure(X), (2, len(self.g), 1))
+        u_X = response.q * σ + (response.n12 + response.m * g) * self._pressure.hilbert(X)
+        u_X = u_X + self._of_both(regular)
+        return σ, response.σ_XX(u_X, σ, g * σ)
+
+    @cached_property
+    def surface(self) -> Surface:
+        def σ_XX(X: NDArray) -> NDArray[np.float64]:
+            _, (now, _) = self._on_surface(X, self.at.regular_at(X))
+            return now
+
+        return replace(super().surface, turns=turns_at_knots(self._pressure, self.g, σ_XX))
 
 
 @dataclass(frozen=True)
@@ -25,5 +592,7 @@ class Layers:
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         body = task.body
         stack = task.response.stack(body.half_width)  # type: ignore[attr-defined]
-        of = given_layers if body.pressure else found_layers if body.found else layers
-        yield of.at_speed(task, stack, self.tolerance, g)
+        at_speed = (
+            prescribed_at_speed if body.pressure else free_at_speed if body.found else sharp_at_speed
+        )
+        yield at_speed(task, stack, self.tolerance, g)

@@ -1,38 +1,59 @@
-"""Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring."""
+"""Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring.
+
+Punches whose contact ends where the pressure says, by finite elements at one speed.
+
+The half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its width is, and
+what is held under the punch is a combination of few shapes: 1 and s for a tilted flat base, 1, s and s²
+for a parabola, as many polynomials as it takes for any other smooth profile. Load and vanishing
+intensities at free ends are linear in their amplitudes, from which half-width and middle follow; of a
+parabola directly, of other profiles by the conditions of :mod:`galinx.postprocess.free_ends`. Every
+friction and every load is found in the basis of the speed.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import FemPlan
-from galinx.app.plan.task import Task
-from galinx.app.run.methods import gauge
-from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.displacement import Displacement
-from galinx.app.run.methods.error import reached
-from galinx.app.run.methods.gauge import Gauge, StressGauges
-from galinx.app.run.methods.method import Pressure
+from galinx.postprocess.free_ends import (
+    SHAPES,
+    free_ends,
+    heights_of_shapes,
+    slopes_of_shapes,
+    turns_at_ends,
+)
 from galinx.postprocess.pressure import (
     ContactRecovery,
     JacobiPressure,
     chebyshev,
     contact_recovery,
     from_moments,
+    largest,
+    without_zeros,
 )
-from galinx.postprocess.stretched import from_moments as from_stretched
-from galinx.postprocess.yielding.strength import Strength
-from galinx.solvers.fem.fitted import FittedPunch
-from galinx.solvers.fem.punch import SlidingPunch
+from galinx.postprocess.pressure import stretched_from_moments as from_stretched
+from galinx.postprocess.yielding import Strength
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
 from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.states import ContactStates, Punch
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.residual import of_contact
 from galinx.solvers.solution import Body, Places, Surface
+
+from ...plan.fem import FemPlan
+from ...plan.task import Task
+from . import error
+from .discretisation import Discretisation
+from .displacement import Displacement
+from .error import Gauge, StressGauges, reached
+from .method import Pressure
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
 #: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
@@ -148,7 +169,7 @@ class PunchLevel:
     def gauges(self, states: ContactStates, pressure: JacobiPressure) -> list[Gauge]:
         """What the error is measured on of states and their pressure."""
         moments = states.tested(self.recovery.moments)
-        found = [gauge.of_pressure(pressure, moments)]
+        found = [error.of_pressure(pressure, moments)]
         if self._gauges.wanted:
             found += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
         return found
@@ -173,7 +194,7 @@ class PunchLevel:
             pressure = self.pressure(states)
             σ_YY = pressure.σ_YY(self.task.places.X)
             gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY)
-            found.append([gauge.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
+            found.append([error.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
         return [float(one.change(other).max()) for one, other in zip(*found)]
 
     def release(self) -> None:
@@ -320,5 +341,290 @@ class Punches:
         )
 
 
-#: What a fit through speeds puts together: a level, and the punches that it tells of.
-Level, AtSpeed = PunchLevel, PunchesAtSpeed
+#: Distance over a from a free end from which on stresses are looked at, the end itself besides.
+_NEAREST = 1e-6
+
+
+@contextmanager
+def free_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FoundAtSpeed"]:
+    """Raise the degree until the measured error of sample states is within tolerance."""
+    with reached(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
+        yield FoundAtSpeed(ladder, error)
+
+
+@contextmanager
+def free_state(
+    work: Discretisation, task: Task, g: float, degree: int
+) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    """Space, fields, weights and pressure of one state, lengths over its half-width from its middle."""
+    level = FoundLevel(work, task, work.space(degree, work.plan.cuts), np.array([g]))
+    try:
+        found = level.found(np.array([g]))
+        yield (
+            level.space,
+            level.punch.fields,
+            found.contact.weights[0],
+            lambda X: found.pressure.σ_YY(X)[0],
+        )
+    finally:
+        level.destroy()
+
+
+@dataclass(frozen=True)
+class FoundStates:
+    """States whose ends are found.
+
+    Attributes:
+        contact: nodal forces and weights; v₀ of the punch's lowest point.
+        half_width, centre: of the contact [m], (states,).
+        free: which of the left and the right end are free, (states, 2).
+        factor: Chebyshev coefficients of the pressure over a flat punch's weight, (states, moments).
+        local: exponents of a flat punch.
+        left: of the profile's slope beyond the shapes, relative, (states,).
+    """
+
+    contact: ContactStates
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    factor: NDArray[np.float64]
+    local: FlatPunch
+    left: NDArray[np.float64]
+
+    @property
+    def exponents(self) -> Exponents:
+        """Of the pressure at the right and the left end."""
+        return Exponents(self.local.α + self.free[:, 1], self.local.β + self.free[:, 0])
+
+    @cached_property
+    def pressure(self) -> JacobiPressure:
+        ends = self.exponents
+        return JacobiPressure(ends.α, ends.β, without_zeros(self.factor, self.free))
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end, 0 at a free one, (states, 2)."""
+        found = -0.5 * self.factor @ chebyshev(np.array([-1.0, 1.0])).T
+        return np.where(self.free, 0.0, found)
+
+
+class FoundLevel(PunchLevel):
+    """Punches at one degree; see :class:`PunchLevel`."""
+
+    def heights(self) -> NDArray[np.float64]:
+        s = self.space.chart.surface_position(self.space.contact.s)
+        return heights_of_shapes(s, self._work.plan.shapes)
+
+    def found(self, g: NDArray, load: Any = None) -> FoundStates:
+        """The states with these values of σ_XY/σ_YY, under the task's load or others [N/m].
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
+        K = np.stack([self._over_flat(part, local).K_I for part in parts], axis=2)
+        loads = np.stack([part.load for part in parts], axis=1)
+        body = self.task.body.loaded(load)
+        solve = _SOLVES.get(type(body.profile), _smooth)
+        amplitudes, h, m, free, lowest, left = solve(body, loads, K, local)
+        if not np.all((h > 0.0) & np.isfinite(h)):
+            raise SolveError("no contact of a finite half-width carries the load")
+        contact = combined(g, parts, amplitudes)
+        factor = self._over_flat(contact, local).c
+        deeper = replace(contact, v0=contact.v0 + lowest)
+        return FoundStates(deeper, h, m, free, factor, local, left)
+
+    def _over_flat(self, part: Part, local: FlatPunch) -> JacobiPressure:
+        """Its pressure over a flat punch's weight."""
+        return from_moments(part.tested(self.recovery.moments), local.α, local.β)
+
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        found = self.found(g, load)
+        moments = found.contact.tested(self.recovery.moments)
+        whole = JacobiPressure(found.local.α, found.local.β, found.factor)
+        of_pressure = error.of_pressure(whole, moments)
+        lengths = np.column_stack([found.half_width, found.centre])
+        size = np.tile(found.half_width[:, None], 2)
+        return [
+            Gauge(
+                of_pressure.word,
+                np.concatenate([of_pressure.values, lengths], axis=1),
+                np.concatenate([of_pressure.scale, size], axis=1),
+            ),
+            *self._gauges.of(g, found.contact.weights, found.pressure.σ_YY(self.task.places.X)),
+        ]
+
+
+#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, by how much the lowest point
+#: of the punch lies below the level of the first shape, over N/(2μ), and what is left of the slope.
+_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
+
+
+def _parabola(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
+    """v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
+
+    Args:
+        body: what slides over what.
+        loads: ∫σ_YY of every part, (states, parts).
+        K: intensities of every part at both ends, (states, 2, parts).
+        local: exponents of a flat punch.
+    """
+    punch = body.profile
+    assert isinstance(punch, Parabolic)
+    A = np.concatenate([loads[:, None, :3], K[..., :3]], axis=1)
+    first = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
+    amplitudes = np.concatenate([first, np.zeros((len(A), loads.shape[1] - 3))], axis=1)
+    _, c1, c2 = first.T
+    with np.errstate(invalid="ignore"):
+        h = np.sqrt(punch.radius * c2 * body.displacement)
+    free = np.ones((len(A), 2), dtype=bool)
+    return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
+
+
+def _smooth(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
+    """v = -v₀ + the punch's height with the load, and without intensity at both ends."""
+    punch, few = body.profile, slice(1 + SHAPES)
+    units = np.broadcast_to(body.displacement, len(loads)).tolist()
+    known, near = free_ends(local, K[..., few], loads[:, few]), None
+    ends, slopes = [], []
+    for condition, unit in zip(known, units):
+        near = condition.found(punch, unit, near)
+        ends.append(near)
+        slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
+    (m, h), size, count = np.transpose(ends), np.abs(slopes), loads.shape[1] - 1
+    shapes = np.array(slopes)[:, :count]
+    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
+    lowest = np.asarray(punch.height(m)) / units
+    left = size[:, count:].sum(axis=1) / size.max(axis=1)
+    free = np.ones((len(m), 2), dtype=bool)
+    return np.column_stack([v0, shapes]), h, m, free, lowest, left
+
+
+def _tilted(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
+    """v = -v₀ + c₁ s with the load; c₁ is known, or what leaves no intensity at the higher edge."""
+    punch = body.profile
+    assert isinstance(punch, Flat)
+    side = 1 if punch.rise > 0.0 else 0
+    c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
+    v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
+    lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
+    A = np.stack([loads, K[:, side]], axis=1)
+    given_up = np.linalg.solve(A, np.tile([-2.0, 0.0], (len(A), 1))[..., None])[..., 0]
+    amplitudes = np.where(lifted[:, None], given_up, np.column_stack([v0, c1]))
+    h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
+    free = np.zeros((len(loads), 2), dtype=bool)
+    free[:, side] = lifted
+    centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
+    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1]), 0.0 * h
+
+
+#: Of those profiles whose conditions are linear.
+_SOLVES = {Flat: _tilted, Parabolic: _parabola}
+
+
+class FoundAtSpeed(PunchesAtSpeed):
+    """Punches at one speed, found to the tolerance."""
+
+    def states(self, g: NDArray, load: Any = None) -> Any:
+        body = self.task.body.loaded(load)
+        return FoundPunches(self, g, self.level.found(g, load), body)
+
+
+@dataclass(frozen=True)
+class FoundPunches:
+    """Punches with several frictions, each with its own half-width and middle.
+
+    Attributes:
+        at: their speed.
+        g: σ_XY/σ_YY, (states,).
+        found: ends, nodal forces and weights.
+        body: what slides over what, under the load of each.
+    """
+
+    at: FoundAtSpeed
+    g: NDArray[np.float64]
+    found: FoundStates
+    body: Body
+
+    @property
+    def local(self) -> Exponents:
+        return self.found.exponents
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the contact [m], (states,)."""
+        return self.found.half_width
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.found.centre
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """At the left and the right end, (states, 2)."""
+        return self.found.K_I
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        σ_YY = self.found.pressure.σ_YY
+        value, top = largest(lambda x: -σ_YY(x), lambda i, x: -σ_YY(x)[i])
+        infinite = ~self.found.free.all(axis=1)
+        return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What the pressure leaves of the integral equation, relative, (states,)."""
+        found = self.found
+        return of_contact(
+            self.at.task.response, self.g, self.local, self.body, found.pressure.σ_YY,
+            (found.centre, found.half_width),
+        )  # fmt: skip
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return self.found.contact.load
+
+    @property
+    def tangential_force(self) -> NDArray[np.float64]:
+        """Resultant over N/2, (states,)."""
+        return self.found.contact.tangential.sum(axis=1)
+
+    @property
+    def v0(self) -> NDArray[np.float64]:
+        """Indentation of the punch's lowest point over N/(2μ), (states,)."""
+        return self.found.contact.v0
+
+    @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        return np.full(len(self.g), float(self.at.fitted))
+
+    @cached_property
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        found = self.at.error.of(self.g, self.body.load)
+        return {word: values + self.found.left for word, values in found.items()}
+
+    @cached_property
+    def surface(self) -> Surface:
+        contact, places = self.found.contact, self.at.task.places
+        raw = contact.tested(self.at.level.recovery.raw)
+        σ_YY = self.found.pressure.σ_YY(places.X)
+        return self.at.displacement.surface(self.g, contact.weights, σ_YY, raw)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        return self.at.displacement.inside(self.found.contact.weights)
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield."""
+        at, weights = self.at, self.found.contact.weights
+        field = at.displacement.at
+        return Strength(
+            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
+            self.half_width, turns_at_ends(self.surface, self.local), _NEAREST,
+        )  # fmt: skip

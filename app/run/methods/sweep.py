@@ -4,37 +4,242 @@ What is fitted are the parts of a punch at a few frictions: nodal forces, slopes
 which its states of all frictions and loads follow. One rational function serves all of these numbers.
 Speeds are solved far from those before, or where the fit changed most, and each is first told by the fit:
 how far that was off, and how much the fit then changes all over the sweep, is its error.
+
+A fit through speeds that were solved: one rational function for all numbers of a punch's parts.
+
+How far punches are off that other speeds tell of: by their discretisation, and by the fit.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from types import ModuleType
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.app.plan.fem import levels
-from galinx.app.plan.sweep import LADDERS, MOST, Sweep
-from galinx.app.plan.task import Task
-from galinx.app.run.methods.discretisation import Discretisation
-from galinx.app.run.methods.error import PROBES, climbed
-from galinx.app.run.methods.fit import Fit
-from galinx.app.run.methods.fit_error import Estimates, FitError, largest_changes
-from galinx.app.run.methods.gauge import Gauge
-from galinx.app.run.methods.ladder import WorkDone
-from galinx.app.run.share import by_turns
-from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.fitted import Frictions, Sampled
-from galinx.solvers.fem.space import Space
-from galinx.solvers.rational import (
+from galinx.postprocess.quantities.layers import AT_INTERFACES
+from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.approximation import (
     Rational,
     chebyshev_nodes,
+    fitted,
     leja,
     polynomial_weights,
     rotated,
 )
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.punch import FittedPunch, Frictions, Sampled, Singular, sampled, together
+from galinx.solvers.fem.space import Space
+from galinx.solvers.sie.closed_form import FlatPunch
+
+from ...plan.fem import LADDERS, MOST, Sweep, levels
+from ...plan.task import Task
+from ..share import by_turns
+from .discretisation import Discretisation
+from .error import PROBES, Gauge, WorkDone, climbed
+from .method import Mode
+
+#: Sum of shares in absolute value from which a fit is worth nothing: a pole is near.
+_LARGEST = 1e4
+
+#: What may be rounding in the numbers of a sample, which are over their largest.
+_NOISE = 3e-9
+
+
+@dataclass
+class Fit:
+    """A fit through the speeds that have been solved so far.
+
+    Attributes:
+        work, mode: give spaces; what the punches are.
+        tasks: all speeds, in the order of the plan.
+        sweep: what the plan knows of them.
+        space: of the last degree.
+        at: frictions at which punches are sampled.
+        recovery: how pressure is read off nodal forces.
+        solved: numbers of the speeds, in the order in which they were solved.
+        samples: of these, without what edges do.
+        records: of the work, by a speed's number.
+        rational: through the samples; None for less than three.
+    """
+
+    work: Discretisation
+    mode: Mode
+    tasks: list[Task]
+    sweep: Sweep
+    space: Space
+    at: Frictions
+    recovery: Any
+    solved: list[int] = field(default_factory=list)
+    samples: list[Sampled] = field(default_factory=list)
+    records: dict[int, dict[str, Any]] = field(default_factory=dict)
+    rational: Rational | None = None
+
+    def singular(self, task: Task) -> Singular:
+        """What edges do at a speed: powers of the distance whose exponents the local analysis knows."""
+        s, places = self.space.contact.s, task.places.X
+        left, right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
+        # At the edge itself the force is that of a piece of half the innermost distance or so.
+        left, right = np.maximum(left, left[1] / 2.0), np.maximum(right, right[-2] / 2.0)
+        local = FlatPunch(task.response, self.at.g)
+
+        def power(from_left: NDArray, from_right: NDArray) -> NDArray[np.float64]:
+            logs = np.outer(local.α, np.log(from_right)) + np.outer(local.β, np.log(from_left))
+            return np.asarray(np.exp(logs))
+
+        slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
+        return Singular(power(left, right), slopes if self.work.stresses else slopes[:, :0])
+
+    def sampled(self, task: Task, level: Any) -> Sampled:
+        """What the fit is made of at a speed that was solved."""
+        fields = bool({BELOW, YIELD, AT_INTERFACES} & self.work.stresses)
+        found = sampled(level.punch, self.at, level.slopes, fields)
+        return found.smooth(self.singular(task))
+
+    def take(self, solved: Sequence[tuple[int, Sampled, dict[str, Any]]]) -> None:
+        """Take in speeds that were solved: number, sample and record of each."""
+        for number, sample, record in solved:
+            self.samples.append(sample)
+            self.solved.append(number)
+            self.records[number] = record
+        if len(self.samples) > 2:
+            self.rational = self._rational()
+
+    def _rational(self) -> Rational:
+        """One without poles among the speeds, else the polynomial."""
+        z = self.sweep.z[self.solved]
+        found = fitted(z, self.values, _NOISE)
+        if np.abs(found.shares(self.sweep.z)).sum(axis=1).max() < _LARGEST:
+            return found
+        return Rational(z, polynomial_weights(z))
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """All numbers of the samples, each kind over its largest, (samples, numbers)."""
+        blocks = []
+        for kinds in zip(*(one.numbers() for one in self.samples)):
+            values = np.array(kinds)
+            size = np.abs(values).max(initial=0.0)
+            if size > 0.0:
+                blocks.append(values / (size * values.shape[1] ** 0.5))
+        return np.concatenate(blocks, axis=1)
+
+    def shares(self, number: int) -> NDArray[np.float64]:
+        """What of the samples makes a speed, (samples,)."""
+        if number in self.solved:
+            return np.eye(len(self.solved))[self.solved.index(number)]
+        assert self.rational
+        return self.rational.shares(self.sweep.z[[number]])[0]
+
+    @contextmanager
+    def level(self, task: Task, shares: NDArray | None = None) -> Iterator[Any]:
+        """A speed as the fit, or other shares of the samples, tell it."""
+        shares = self.shares(task.number) if shares is None else shares
+        known = together(self.samples, shares).singular(self.singular(task))
+        punch = FittedPunch(self.space, task.response, self.at, known)
+        try:
+            yield self.mode.level(self.work, task, self.space, self.at.g, punch, self.recovery)
+        finally:
+            punch.destroy()
+
+    def record(self, number: int) -> dict[str, Any]:
+        """Numbers of the work at a speed; none was done where it is fitted."""
+        space = self.space
+        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
+        return self.records.get(number) or size | vars(WorkDone())
+
+
+def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
+    """Largest relative difference of two lists of gauges, by word of output.quantities."""
+    return {one.word: float(one.change(other).max()) for one, other in zip(gauges, others)}
+
+
+class Estimates:
+    """Estimated errors of the discretisation at some speeds and frictions.
+
+    Args:
+        g: the frictions, rising, (frictions,).
+
+    Attributes:
+        numbers: of the speeds.
+    """
+
+    def __init__(self, g: NDArray) -> None:
+        self._g, self.numbers = g, list[int]()
+        self._z: list[float] = []
+        self._errors: dict[str, list[NDArray]] = {}
+
+    def add(self, number: int, z: float, errors: dict[str, NDArray]) -> None:
+        """Those at a speed: its number, its place in the variable of the fit.
+
+        Args:
+            number, z: the speed.
+            errors: by word, (n frictions,), those of some loads one after the other.
+        """
+        self.numbers.append(number)
+        self._z.append(z)
+        for word, values in errors.items():
+            of_loads = values.reshape(-1, len(self._g)).max(axis=0)
+            self._errors.setdefault(word, []).append(of_loads)
+
+    def least(self, word: str) -> float:
+        """The smallest of all."""
+        return float(np.min(self._errors[word]))
+
+    def covers(self, z: float) -> bool:
+        """Were errors measured there, or on both sides of it?"""
+        return min(self._z) <= z <= max(self._z)
+
+    def beyond(self, tolerance: float) -> bool:
+        """Are all of a word beyond it? Then no speed can be told to the tolerance."""
+        return any(self.least(word) > tolerance for word in self._errors)
+
+    def around(self, z: float, g: NDArray) -> dict[str, NDArray[np.float64]]:
+        """The largest of those around a speed and frictions, (len(g),), by word.
+
+        Of the solved speeds on both sides, and of the frictions: an error that falls from one to the
+        other is not told smaller than it may be.
+        """
+        order = np.argsort(self._z, kind="stable")
+        places = np.array(self._z)[order]
+        beside = order[_around(places, np.array([z]))[0]]
+        frictions = _around(self._g, g)
+        return {
+            word: np.array(errors)[beside][:, frictions].max(axis=(0, 2))
+            for word, errors in self._errors.items()
+        }
+
+
+def _around(places: NDArray, x: NDArray) -> NDArray[np.int64]:
+    """Numbers of the places on both sides of each x, twice the same where it is one, (len(x), 2)."""
+    last = len(places) - 1
+    right = np.clip(np.searchsorted(places, x), 0, last)
+    left = np.where(places[right] > x, right - 1, right)
+    return np.column_stack([np.clip(left, 0, last), right])
+
+
+class FitError:
+    """Errors at a speed that others tell of, as of :class:`.error.MeasuredError`.
+
+    Args:
+        estimates: of the discretisation.
+        z: the speed in the variable of the fit.
+        fit: error of the fit, by word of output.quantities; none where the speed was solved.
+    """
+
+    def __init__(self, estimates: Estimates, z: float, fit: dict[str, float]) -> None:
+        self._estimates, self._z, self._fit = estimates, z, fit
+
+    def of(self, g: NDArray, load: Any = None, last: Any = None) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
+        around = self._estimates.around(self._z, g)
+        return {word: values + self._fit.get(word, 0.0) for word, values in around.items()}
+
+    def record(self) -> dict[str, Any]:
+        """None: what was measured is in the records of the speeds that were solved."""
+        return {}
+
 
 #: Share of the tolerance that the discretisation may take, and that of the larger of both which the fit
 #: may: together they stay below.
@@ -92,7 +297,7 @@ class Trained:
             yield None
             return
         with fit.level(task) as level:
-            yield fit.mode.AtSpeed(_Told(task, [level], fit.record(number)), error, told)
+            yield fit.mode.at_speed(_Told(task, [level], fit.record(number)), error, told)
 
 
 @dataclass(frozen=True)
@@ -108,7 +313,7 @@ class _Told:
 
 
 def train(
-    work: Discretisation, tasks: list[Task], mode: ModuleType, say: Callable[[str], None]
+    work: Discretisation, tasks: list[Task], mode: Mode, say: Callable[[str], None]
 ) -> Trained | None:
     """Solve speeds until a fit tells the others to the tolerance.
 
@@ -117,7 +322,7 @@ def train(
     Args:
         work: gives spaces.
         tasks: all speeds.
-        mode: what punches are: a module with a ``Level`` and an ``AtSpeed``.
+        mode: what punches are: a mode with a level and its punches at a speed.
         say: is told what is done.
     """
     assert work.plan.sweep
@@ -182,7 +387,7 @@ class _Training:
     """
 
     def __init__(
-        self, work: Discretisation, tasks: list[Task], mode: ModuleType, sweep: Sweep,
+        self, work: Discretisation, tasks: list[Task], mode: Mode, sweep: Sweep,
         say: Callable[[str], None], degree: int | None, lost: float = 0.0,
     ) -> None:  # fmt: skip
         self.spent = lost
@@ -329,7 +534,7 @@ class _Training:
         expected = self._expected(task)
 
         def solved(space: Space, g: NDArray) -> Any:
-            return mode.Level(work, task, space, g)
+            return mode.level(work, task, space, g)
 
         with climbed(work, task, self._all, solved, self._degree, DISCRETISATION) as (ladder, error):
             level = ladder.levels[-1]
@@ -378,7 +583,7 @@ class _Training:
         assert fit
         self._tell(task)
         expected = self._expected(task)
-        level = self._mode.Level(work, task, fit.space, self._all)
+        level = self._mode.level(work, task, fit.space, self._all)
         try:
             off = self._off(level, expected)
             done = WorkDone()

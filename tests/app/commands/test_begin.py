@@ -2,8 +2,8 @@
 
 from support import HOME, here
 
+from galinx.app.scene.library import templates
 from galinx.app.scene.read import read
-from galinx.app.scene.templates import templates
 
 
 def test_init_writes_a_scene_once(tmp_path):

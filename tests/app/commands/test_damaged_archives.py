@@ -14,12 +14,12 @@ from tampering import archived, numbers, opened, texts
 
 from galinx.app.cli import cli
 from galinx.app.errors import BadInput
-from galinx.postprocess.attributes import ATTRIBUTES
 from galinx.postprocess.errors import UnreadableArchive
-from galinx.postprocess.hdf5 import archive, reader, seal
+from galinx.postprocess.hdf5 import archive
 from galinx.postprocess.quantities import large, table
 from galinx.postprocess.quantities.quantity import NUMBER, TEXT, WHOLE
 from galinx.postprocess.quantities.runs import LINE
+from galinx.postprocess.schema import ATTRIBUTES
 
 FLIPS, TAMPERED, WITHOUT_SEAL = (5000, 2000, 300) if THOROUGH else (60, 40, 6)
 #: Those that read all of an archive come first.
@@ -184,7 +184,7 @@ def test_tampered_archives(content, path, capsys):
 @pytest.fixture
 def older(map_run, path, monkeypatch):
     """An archive as schema version 1 had it: without digest, without a list of its datasets."""
-    monkeypatch.setattr(seal, "put", lambda *_: None)
+    monkeypatch.setattr(archive, "put", lambda *_: None)
     monkeypatch.setattr(archive, "VERSION", 1)
     map_run.save(path)
     with opened(path, sealed=False) as file:
@@ -193,19 +193,19 @@ def older(map_run, path, monkeypatch):
             if row.since > 1 and name in file.attrs:
                 del file.attrs[name]
         del file["states/speed"], file["states/wave_crossings"]
-    path.write_bytes(path.read_bytes()[seal.ROOM :])
+    path.write_bytes(path.read_bytes()[archive.ROOM :])
     return path
 
 
 def test_an_archive_of_the_first_layout_is_read(older, map_run):
-    data, attributes = reader.read(older)
+    data, attributes = archive.read(older)
     assert attributes["schema_version"] == 1
     assert data.keys() == map_run.data.keys() - {"states/speed", "states/wave_crossings"}
     assert cli.main(["check", str(older)], standalone_mode=False) == 0
     with opened(older, sealed=False) as file:
         file.attrs["schema_version"] = 2
     with pytest.raises(UnreadableArchive, match="its digest: missing"):
-        reader.read(older)
+        archive.read(older)
 
 
 def test_a_crash_of_hdf5_is_that_of_another_process(older, map_run, capsys):
@@ -214,7 +214,7 @@ def test_a_crash_of_hdf5_is_that_of_another_process(older, map_run, capsys):
     metadata = [
         i for i in range(len(content) - 8) if content[i : i + 4] in (b"TREE", b"SNOD", b"HEAP", b"OHDR")
     ]
-    whole = reader.read(older)
+    whole = archive.read(older)
     for i in range(WITHOUT_SEAL):
         damaged = bytearray(content)
         damaged[choose.choice(metadata) + choose.randrange(256)] ^= 1 << choose.randrange(8)
@@ -224,6 +224,6 @@ def test_a_crash_of_hdf5_is_that_of_another_process(older, map_run, capsys):
         except (UnreadableArchive, BadInput) as error:
             assert str(error)
         else:
-            data = reader.read(older)[0]
+            data = archive.read(older)[0]
             for dataset in data:
                 np.testing.assert_array_equal(data[dataset], whole[0][dataset])

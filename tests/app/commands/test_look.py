@@ -13,7 +13,7 @@ from tampering import opened
 
 from galinx.app.commands import options
 from galinx.app.errors import BadInput
-from galinx.postprocess.hdf5 import seal
+from galinx.postprocess.hdf5 import archive as seal
 
 
 def test_show_as_json(archive):

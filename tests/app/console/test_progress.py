@@ -1,6 +1,6 @@
 """What a run tells while it goes on."""
 
-from galinx.app.console.progress import Progress
+from galinx.app.console import Progress
 
 
 def test_warnings_are_heard_however_quiet_the_run_is(capsys, tmp_path):

@@ -9,9 +9,15 @@ import sys
 import pytest
 from support import called
 
-from galinx.app.console.progress import Progress
-from galinx.app.console.sheets import new_console, print_sheet, print_verdict
-from galinx.app.console.streams import bare, plain, plain_streams
+from galinx.app.console import (
+    Progress,
+    bare,
+    new_console,
+    plain,
+    plain_streams,
+    print_sheet,
+    print_verdict,
+)
 from galinx.postprocess.tables import Sheet
 
 #: ESC, C1, the other controls, what turns the direction of writing, and bytes that are not UTF-8.

@@ -9,7 +9,7 @@ from support import HOME, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.pictures import thicknesses
+from galinx.app.pictures import sweep
 from galinx.app.pictures.choice import Choice, size
 from galinx.app.results.drawings import names, of_archive
 from galinx.app.results.si import drawn_in_si
@@ -168,7 +168,7 @@ def test_where_the_equation_has_no_answer_curves_have_a_gap(monkeypatch):
             raise SolveError("no answer")
         return np.arange(6.0)
 
-    monkeypatch.setattr(thicknesses, "_at", solved)
+    monkeypatch.setattr(sweep, "_at_thickness", solved)
     (line,) = curves(drawn(here, "thicknesses").figure.axes[3])
     assert np.isnan(line.get_ydata()[0]) and set(line.get_ydata()[1:].tolist()) == {3.0}
     assert line.get_xdata() == pytest.approx(np.array(found) / here.scene.body.half_width)

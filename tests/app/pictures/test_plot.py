@@ -10,11 +10,10 @@ from matplotlib.text import Text
 from support import computed, here
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures.choice import Choice, size
-from galinx.app.pictures.files import Files
+from galinx.app.pictures.choice import Choice, Files, size
 from galinx.app.results.drawings import of_archive, write
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.figures import film
+from galinx.postprocess.figures import maps
 from galinx.postprocess.target import GIF, MP4, SVG
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
@@ -190,11 +189,11 @@ def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
     if shutil.which("ffmpeg"):
         (one,) = write(strokes.data, strokes.scene, Choice(), files)
         assert MP4.of(one.path)
-    monkeypatch.setattr(film.shutil, "which", lambda _: None)
+    monkeypatch.setattr(maps.shutil, "which", lambda _: None)
     with pytest.raises(BadInput, match=r"mp4 needs ffmpeg, which is not installed; gif does not"):
         write(strokes.data, strokes.scene, Choice(), files)
     assert Files(tmp_path).endings("film") == ("gif",)
-    monkeypatch.setattr(film.shutil, "which", lambda _: "/usr/bin/ffmpeg")
+    monkeypatch.setattr(maps.shutil, "which", lambda _: "/usr/bin/ffmpeg")
     assert Files(tmp_path).endings("film") == ("mp4",)
 
 
@@ -279,7 +278,7 @@ def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
 
 
 def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
-    from galinx.app.commands.draw import plot
+    from galinx.app.commands.look import plot
     from galinx.app.results import drawings
 
     fast.save(tmp_path / "a.h5")

@@ -8,8 +8,7 @@ import pytest
 
 from galinx import template
 from galinx.app.plan import cost
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.words import expense, lines
+from galinx.app.plan.plan import expense, lines, make_plan
 
 #: A mesh whose factor takes some 5 GB.
 LARGE = {"solve.degree": 2, "solve.cuts": 64}

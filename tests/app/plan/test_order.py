@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from galinx.app.plan.order import Order
+from galinx.app.plan.states import Order
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -11,9 +11,8 @@ from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan import cost, task
 from galinx.app.plan import states as states_of
-from galinx.app.plan.plan import make_plan
+from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import enumerate_states, speeds
-from galinx.app.plan.words import lines
 from galinx.app.scene.read import read
 from galinx.solvers.solids.isotropic import Isotropic
 

@@ -5,9 +5,8 @@ import pytest
 from random_solids import random_solid
 
 from galinx import template
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.sweep import LEAST, swept, variable
-from galinx.app.plan.words import expense, lines
+from galinx.app.plan.fem import LEAST, swept, variable
+from galinx.app.plan.plan import expense, lines, make_plan
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 

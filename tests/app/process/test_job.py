@@ -9,7 +9,7 @@ from support import SCENE, clean_environment, command
 from galinx.app import errors
 
 #: Starts a job whose mpirun is the command given.
-JOB = "import sys; from galinx.app.process.job import Job; sys.exit(Job(sys.argv[1:]).run())"
+JOB = "import sys; from galinx.app.job import Job; sys.exit(Job(sys.argv[1:]).run())"
 #: A rank that says that all is well.
 RANK = """
 import os, socket
@@ -54,7 +54,7 @@ def test_a_job_that_is_killed_leaves_nothing_behind(tmp_path):
     mpirun.chmod(0o700)
     words = [mpirun, "2", sys.executable, "plan", "/dev/stdin"]
     done = subprocess.run(
-        [sys.executable, "-m", "galinx.app.process.job", *words], input=b"a scene", timeout=60,
+        [sys.executable, "-m", "galinx.app.job", *words], input=b"a scene", timeout=60,
         env=clean_environment() | {"TMPDIR": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == -signal.SIGKILL and [*tmp_path.iterdir()] == [mpirun]

@@ -8,9 +8,8 @@ import sys
 import pytest
 from support import HOME, SCENE, clean_environment, here
 
-from galinx.app import ranks
-from galinx.app.process import begin
-from galinx.postprocess.hdf5 import reader
+from galinx.app import job, ranks
+from galinx.postprocess.hdf5 import archive
 
 #: A run that needs no finite elements.
 RUN = ("run", str(SCENE), "-o", "x.h5", "--set", 'solve.methods=["closed_form"]')
@@ -42,7 +41,7 @@ def is_refused(done, status, *words):
 def test_closed_streams_are_the_null_device(tmp_path, count):
     done = galinx(tmp_path, *count, *RUN, shell='"$@" <&- >&- 2>&-')
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
-    assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
+    assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
     is_refused(galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
     assert galinx(tmp_path, "-n", "many", *PLAN, shell='"$@" 2>&-').returncode == 2
@@ -72,7 +71,7 @@ def test_no_folder_for_temporary_files_is_told(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(os, "mkdir", refuse)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     with pytest.raises(SystemExit) as ended:
-        begin._find_temporary_folder()
+        job._find_temporary_folder()
     assert ended.value.code == 3
     assert f"none can be made in {tmp_path}, /tmp, /var/tmp" in capsys.readouterr().err
 
@@ -86,7 +85,7 @@ def test_what_cannot_be_written_is_named(tmp_path, count, words):
 
 def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
     is_refused(galinx(tmp_path, *RUN, shell='"$@" >/dev/full'), 3, "cannot write the output")
-    assert reader.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
+    assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
     done = galinx(tmp_path, "show", "x.h5", shell='"$@" | head -c 5')
     assert len(done.stdout) == 5
     assert all(line.startswith(b"warning: ") for line in done.stderr.splitlines())

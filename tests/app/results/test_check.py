@@ -11,9 +11,9 @@ from support import computed
 from tampering import attribute, opened, value
 
 from galinx.app.plan.plan import make_plan
-from galinx.app.results import check, recomputed
+from galinx.app.results import check
 from galinx.postprocess.errors import UnreadableArchive
-from galinx.postprocess.hdf5 import seal
+from galinx.postprocess.hdf5 import archive
 
 
 @pytest.fixture
@@ -94,7 +94,7 @@ def test_what_does_not_fit_is_said(whole, changed, message):
         changed(file)
     with pytest.raises(UnreadableArchive, match="damaged"):
         check.faults(whole)
-    seal.put(whole)
+    archive.put(whole)
     assert any(message in fault for fault in check.faults(whole))
 
 
@@ -201,6 +201,6 @@ def test_v0_is_that_of_the_closed_form_of_any_punch():
         result = computed(name, changes | {"output.quantities": ["sif"]})
         rows = np.arange(len(result.data["states/g"]))
         plan = make_plan(result.scene)
-        assert not list(recomputed._of_indentations(result.data, plan, rows))
+        assert not list(check._of_indentations(result.data, plan, rows))
         wrong = result.data | {"states/fem/v0": result.data["states/fem/v0"] * (1.0 + 3e-3)}
-        assert len(list(recomputed._of_indentations(wrong, plan, rows))) == len(plan.tasks)
+        assert len(list(check._of_indentations(wrong, plan, rows))) == len(plan.tasks)

@@ -9,7 +9,7 @@ from support import computed, here
 
 from galinx.app.errors import BadInput
 from galinx.app.results import csv as tables
-from galinx.postprocess.hdf5 import reader
+from galinx.postprocess.hdf5 import archive
 
 MAP = {"X": [-2, 2, 5], "Y": [-2, -0.1, 4]}
 INSIDE = {
@@ -141,13 +141,13 @@ def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
 @pytest.mark.parametrize("together", [1, 7, 45, 10**6])
 def test_few_rows_are_read_and_written_at_once(path, which, together, monkeypatch):
     whole = "".join(tables.pieces(path, which))
-    asked, rows = [], reader.Archive.rows
+    asked, rows = [], archive.Archive.rows
 
     def recorded(self, some, names):
         asked.append((some, {name.split("/")[0] for name in names}))
         return rows(self, some, names)
 
-    monkeypatch.setattr(reader.Archive, "rows", recorded)
+    monkeypatch.setattr(archive.Archive, "rows", recorded)
     monkeypatch.setattr(tables, "_TOGETHER", together)
     head, *pieces = tables.pieces(path, which)
     assert head.count("\n") == 1 and all(1 <= piece.count("\n") <= together for piece in pieces)

@@ -73,7 +73,7 @@ def test_it_is_that_of_the_punch(tables_run):
 
 
 def test_what_has_no_displacement_is_bad_input():
-    from galinx.app.results.one_state import displacement
+    from galinx.app.results.fields import displacement
 
     with pytest.raises(BadInput, match="state 99: no such state; expected 0 to 11"):
         displacement(template("tables4_5"), 99)

@@ -7,9 +7,9 @@ from support import areas
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
-from galinx.app.results import paraview as fields
-from galinx.app.results.paraview import ABOUT, state_field, write_fields
-from galinx.app.scene.templates import templates
+from galinx.app.results import fields
+from galinx.app.results.fields import ABOUT, state_field, write_fields
+from galinx.app.scene.library import templates
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 

@@ -13,10 +13,10 @@ import pytest
 from support import computed
 
 from galinx import compute, template
-from galinx.app.results import answers
+from galinx.app.results import report
+from galinx.app.results.report import curves, states_table
 from galinx.app.results.si import scaling
-from galinx.app.results.tabulated import curves, states_table
-from galinx.postprocess.page.symbols import markup
+from galinx.postprocess.page import markup
 
 CHROMIUM = shutil.which("chromium")
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -227,7 +227,7 @@ def test_everything_on_a_page_does_what_it_says(name, si, tmp_path):
     ],
 )  # fmt: skip
 def test_numbers_have_prefixes(value, shown):
-    assert answers._engineering(value, "Pa") == shown
+    assert report._engineering(value, "Pa") == shown
 
 
 def test_in_si_the_table_and_the_curves_have_units(map_run):
@@ -253,7 +253,7 @@ def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
             "output.quantities": ["sif", "yield"],
         },
     )
-    found = {answer.name: answer.value for answer in answers.answers(result.data, result.scene)}
+    found = {answer.name: answer.value for answer in report.answers(result.data, result.scene)}
     depth = result.data["states/closed_form/yield_depth"]
     assert (
         found["Depth of the yielded zone"]

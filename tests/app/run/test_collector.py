@@ -6,10 +6,8 @@ from support import computed
 
 from galinx import template
 from galinx.app.plan import task
-from galinx.app.run import collector
-from galinx.app.run.flow import compute
-from galinx.app.run.judge import Judge
-from galinx.app.run.sinks import Memory
+from galinx.app.run import flow
+from galinx.app.run.flow import Judge, Memory, compute
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.journal import Journal, Part, joined
 
@@ -25,7 +23,7 @@ MANY = {
 def alone():
     """Results of which every speed was taken in alone."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(collector, "_PATIENCE", -1.0)
+        patch.setattr(flow, "_PATIENCE", -1.0)
         return computed("tables4_5", MANY).data
 
 
@@ -52,7 +50,7 @@ class Counting(Memory):
 
 
 def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, monkeypatch):
-    monkeypatch.setattr(collector, "_PATIENCE", 1e9)
+    monkeypatch.setattr(flow, "_PATIENCE", 1e9)
     data = Counting()
     with Journal(tmp_path / "a.h5", "key") as journal:
         compute(template("tables4_5", MANY), data, None, journal)
@@ -63,7 +61,7 @@ def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, mon
 
 def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypatch):
     """Interrupted after the first part, then gone on with."""
-    monkeypatch.setattr(collector, "_PATIENCE", 1e9)
+    monkeypatch.setattr(flow, "_PATIENCE", 1e9)
     scene, target = template("tables4_5", MANY), tmp_path / "a.h5"
 
     def once(self, part, keep=Journal.keep):
@@ -74,9 +72,9 @@ def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypat
         interrupted.setattr(Journal, "keep", once)
         with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
             compute(scene, Memory(), None, journal)
-    solved, states = [], collector.Collector.take
+    solved, states = [], flow.Collector.take
     monkeypatch.setattr(
-        collector.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)
+        flow.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)
     )
     data = Memory()
     with Journal(target, "key", resume=True) as journal:
@@ -89,7 +87,7 @@ def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypat
 def test_nobody_waits_for_a_second(monkeypatch):
     """With a clock that jumps, every part is taken in at once."""
     now = iter(range(0, 10**9, 10))
-    monkeypatch.setattr(collector, "perf_counter", lambda: next(now))
+    monkeypatch.setattr(flow, "perf_counter", lambda: next(now))
     data = Counting()
     compute(template("tables4_5", MANY | {"motion.c": [0.1, 0.2, 0.3]}), data)
     assert data.writes == 3

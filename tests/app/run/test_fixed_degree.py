@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed
 
-from galinx.solvers.fem.multigrid import LIMIT, available
+from galinx.solvers.fem.linear import LIMIT, available
 
 
 def cut(degree, cuts, c, solver="auto"):

@@ -14,8 +14,7 @@ from galinx.app.errors import BadInput
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.solvers.friction import LAWS, FrictionLaw
-from galinx.solvers.friction.motion import Partial
-from galinx.solvers.friction.strokes import friction_along
+from galinx.solvers.friction.motion import Partial, friction_along
 from galinx.solvers.parameters import made
 
 STROKES = '["forward", {to = 0.2}, {to = 0.6}, {to = 0.2}, {to = 1.0}]'

@@ -17,7 +17,7 @@ from support import HOME, THOROUGH, clean_environment, command, computed
 
 from galinx import template
 from galinx.app.results import check
-from galinx.postprocess.hdf5 import reader
+from galinx.postprocess.hdf5 import archive
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 
@@ -57,7 +57,7 @@ def on_two_ranks(sweep, tmp_path_factory):
 
 def contents(path):
     """Datasets and attributes of an archive, but for date and times, and what a full cache skipped."""
-    data, attributes = reader.read(path)
+    data, attributes = archive.read(path)
     del data["run/seconds"], data["run/steps"], data["run/skipped"]
     del attributes["created"], attributes["versions"]  # gmsh is met where no mesh is kept
     return data, attributes
@@ -241,7 +241,7 @@ def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(tables_run, monkey
 
     monkeypatch.setattr(SlidingPunch, "__init__", punch)
     computed().save(tmp_path / "out.h5")
-    data, attributes = reader.read(tmp_path / "out.h5")
+    data, attributes = archive.read(tmp_path / "out.h5")
     assert attributes["verdict"] == "FAIL" and list(data["run/failures"]) == ["c = 0.6: provoked"]
     assert "not solved, c = 0.6: provoked" in json.loads(attributes["verdict_reasons"])
     np.testing.assert_array_equal(data["states/fem/v0"][:6], whole["states/fem/v0"][:6])

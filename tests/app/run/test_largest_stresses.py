@@ -8,8 +8,8 @@ import galinx
 from galinx.app.scene.read import parse
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.profiles import cusp
-from galinx.solvers.sie.found import contacts
-from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.free_contact import contacts
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
 MISSED, NEXT_TO_CUSP = 1e-6, 1e-4

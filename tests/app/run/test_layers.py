@@ -10,9 +10,9 @@ from scipy.integrate import trapezoid
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
-from galinx.app.results.answers import answers
+from galinx.app.results.report import answers
 from galinx.app.scene.read import parse
-from galinx.app.scene.schema import schema
+from galinx.app.scene.sections import schema
 from galinx.solvers.errors import SolveError
 
 SCENE = """

@@ -10,15 +10,14 @@ from support import THOROUGH
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
-from galinx.meshes.cells import check_cells
-from galinx.meshes.kind import Wanted
+from galinx.meshes.kind import Wanted, check_cells
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.line_loads import DATUM, line_loads
+from galinx.solvers.solids.potentials import DATUM, line_loads
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers import COAT, GRADED, scene
@@ -104,7 +103,7 @@ def test_stresses_at_interfaces_are_those_of_the_integral_equation(layers, toler
     both = [
         np.array([data[f"interfaces/{method}/{name}"] for name in PARTS]) for method in ("fem", "sie")
     ]
-    error = compared(*both, scale.of_interfaces(both[1]))
+    error = compared(*both, stresses.of_interfaces(both[1]))
     estimates = [data[f"states/{method}/estimate_interfaces"][0] for method in ("fem", "sie")]
     assert error <= sum(estimates) <= 2.0 * tolerance
     above, below = both[0][2:]

@@ -12,14 +12,12 @@ from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.words import expense
+from galinx.app.plan.plan import expense, make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.layers.contact import Equation
-from galinx.solvers.layers.ends import Punch, conditions
-from galinx.solvers.layers.found import FoundSpeed
+from galinx.solvers.layers.free_contact import FoundSpeed, Punch, conditions
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.solution import Body
 
@@ -69,11 +67,11 @@ def apart(data):
     }
     if "surface/fem/sigma_XX" in data:
         σ = [data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie")]
-        size = scale.of_in_plane(σ[1], data["surface/X_over_a"])
+        size = stresses.of_in_plane(σ[1], data["surface/X_over_a"])
         found["_sigma_XX"] = float((np.abs(σ[0] - σ[1]) / size).max())
     if "interfaces/fem/sigma_YY" in data:
         both = [np.array([data[f"interfaces/{by}/{name}"] for name in PARTS]) for by in ("fem", "sie")]
-        found["_interfaces"] = float((np.abs(both[0] - both[1]) / scale.of_interfaces(both[1])).max())
+        found["_interfaces"] = float((np.abs(both[0] - both[1]) / stresses.of_interfaces(both[1])).max())
     return found
 
 

@@ -10,13 +10,12 @@ from support import computed
 
 import galinx
 from galinx.app.methods import METHODS
-from galinx.app.plan.plan import make_plan
+from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import enumerate_states
-from galinx.app.plan.words import lines
-from galinx.app.results.answers import answers, summary
 from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
-from galinx.app.results.one_state import displacement
+from galinx.app.results.fields import displacement
+from galinx.app.results.report import answers, summary
 from galinx.app.results.si import drawn_in_si
 from galinx.app.run.methods.closed_form import ClosedForm, with_given_ends
 from galinx.solvers.parameters import parameter

@@ -5,10 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from galinx.app.run.methods import gauge
-from galinx.app.run.methods.error import MeasuredError, climb, reached
-from galinx.app.run.methods.gauge import Gauge
-from galinx.app.run.methods.ladder import Ladder
+from galinx.app.run.methods import error
+from galinx.app.run.methods.error import Gauge, Ladder, MeasuredError, climb, reached
 from galinx.meshes import MESHES, Wanted
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.pressure import MOMENTS, JacobiPressure
@@ -139,13 +137,13 @@ def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
 def test_the_pressure_and_its_moments_are_gauged():
     smooth = np.array([[-0.3, 0.1, *[0.0] * (MOMENTS - 2)]])
     pressure = JacobiPressure(np.array([-0.4]), np.array([-0.6]), smooth)
-    one = gauge.of_pressure(pressure, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]))
+    one = error.of_pressure(pressure, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]))
     for i in range(1, 6):
         moments = np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])
         moments[0, i] += 2e-3
-        assert gauge.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
+        assert error.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
     steeper = JacobiPressure(pressure.α, pressure.β, smooth + 1e-3 * (np.arange(MOMENTS) == 2))
-    assert gauge.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
+    assert error.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
 
 
 @pytest.mark.parametrize("component", range(3))
@@ -154,7 +152,7 @@ def test_every_stress_inside_is_gauged(component):
     σ = np.array([[[-1.0, 0.2]], [[-0.5, 0.1]], [[0.3, 0.0]]])
     other = σ.copy()
     other[component, 0, 0] += 0.01
-    change = gauge.of_inside(other, points).change(gauge.of_inside(σ, points))
+    change = error.of_inside(other, points).change(error.of_inside(σ, points))
     assert change[0] == pytest.approx(0.01, rel=0.02)
 
 
@@ -167,7 +165,7 @@ def test_stresses_are_no_better_than_the_last_digits_of_displacements():
     )
     places = SimpleNamespace(X=np.array([-2.0, 2.0]), points=np.empty((0, 2)), around=np.empty((0, 2)))
     task = SimpleNamespace(places=places, response=SimpleNamespace(margin=0.04))
-    gauges = gauge.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
+    gauges = error.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
     (found,) = gauges.rounding(G, np.ones((1, 1)), np.zeros((1, 2)))
     assert found == pytest.approx(100.0 / 0.2 * 2e-13)
 

@@ -14,8 +14,8 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess.compare import RULES
-from galinx.postprocess.compare_over_time import BOTH, OF_FEM
-from galinx.postprocess.energy_over_time import WORKS
+from galinx.postprocess.over_time import BOTH, OF_FEM
+from galinx.postprocess.surface_over_time import WORKS
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: What verdicts say of both methods, and of finite elements.

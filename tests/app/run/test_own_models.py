@@ -10,7 +10,7 @@ from support import command, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.run.sinks import Memory, Nowhere
+from galinx.app.run.flow import Memory, Nowhere
 from galinx.solvers.errors import SolveError
 
 

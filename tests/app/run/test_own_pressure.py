@@ -9,9 +9,9 @@ from support import THOROUGH, computed, here
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
-from galinx.app.run.methods import own_pressure
+from galinx.app.run.methods import prescribed_pressure
 from galinx.solvers.contact import from_edge
-from galinx.solvers.fem.linear_loads import LinearLoads
+from galinx.solvers.fem.traction import LinearLoads
 from galinx.solvers.solids import Isotropic
 
 TRIANGLE = [[-1, 0], [0.3, -2], [1, 0]]
@@ -133,13 +133,13 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
 
 
 def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
-    solved, true = [], own_pressure.PiecesLevel.__init__
+    solved, true = [], prescribed_pressure.PiecesLevel.__init__
 
     def counted(self, work, task, space):
         solved.append(space.degree)
         true(self, work, task, space)
 
-    monkeypatch.setattr(own_pressure.PiecesLevel, "__init__", counted)
+    monkeypatch.setattr(prescribed_pressure.PiecesLevel, "__init__", counted)
     result = put_in(HUMP, {"solve.tolerance": 1e-4, "motion.c": 0.91})
     assert solved == list(range(solved[0], solved[0] + len(solved))) and len(solved) > 3
     assert result.data["run/fem/degree"] == [solved[-1]]

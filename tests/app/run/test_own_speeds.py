@@ -9,8 +9,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan import task
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
-from galinx.app.run.flow import compute
-from galinx.app.run.sinks import Memory
+from galinx.app.run.flow import Memory, compute
 from galinx.postprocess.journal import Journal
 
 #: The second stroke is the faster one; a law that knows the speed remembers it.
@@ -97,7 +96,7 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
 
 def test_fields_of_a_state_are_those_of_its_speed(run):
     """Energy: twice the work that the load does is in no other state the same."""
-    from galinx.app.results.one_state import chosen
+    from galinx.app.results.fields import chosen
 
     numbers = [0, 2, 12]
     states = chosen(run.scene, numbers)

@@ -16,8 +16,7 @@ from support import HOME, THOROUGH, at_most
 
 from galinx import compute
 from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.words import expense, lines
+from galinx.app.plan.plan import expense, lines, make_plan
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.dahl import Dahl

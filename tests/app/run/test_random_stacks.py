@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import galinx
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.contact import under_punch
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
@@ -35,8 +35,8 @@ def differences(data):
     both = [np.array([data[f"interfaces/{by}/{name}"] for name in PARTS]) for by in ("fem", "sie")]
     return {
         "": off(data),
-        "_sigma_XX": float((np.abs(σ[0] - σ[1]) / scale.of_in_plane(σ[1], X)).max()),
-        "_interfaces": float((np.abs(both[0] - both[1]) / scale.of_interfaces(both[1])).max()),
+        "_sigma_XX": float((np.abs(σ[0] - σ[1]) / stresses.of_in_plane(σ[1], X)).max()),
+        "_interfaces": float((np.abs(both[0] - both[1]) / stresses.of_interfaces(both[1])).max()),
     }
 
 

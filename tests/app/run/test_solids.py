@@ -11,7 +11,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
-from galinx.postprocess.attributes import ATTRIBUTES
+from galinx.postprocess.schema import ATTRIBUTES
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
 

@@ -9,7 +9,7 @@ from support import HOME, THOROUGH, command
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.parameters import values
 from galinx.solvers.solids import SOLIDS, Isotropic
@@ -59,7 +59,7 @@ def differences(result, other):
         found["estimate"] = np.maximum(found["estimate"] * 0.0, np.abs(h / other_h - 1.0))
     if "surface/fem/sigma_XX" in data:
         σ, other_σ = of("surface/fem/sigma_XX")
-        off = np.abs(σ - other_σ) / scale.of_in_plane(other_σ, data["surface/X_over_a"])
+        off = np.abs(σ - other_σ) / stresses.of_in_plane(other_σ, data["surface/X_over_a"])
         found["estimate_sigma_XX"] = off.max(axis=1)
     return found, {name: sum(of(f"states/fem/{name}")) for name in found}
 

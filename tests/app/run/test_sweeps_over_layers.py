@@ -9,7 +9,7 @@ import pytest
 from support import THOROUGH
 
 import galinx
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -38,11 +38,11 @@ def differences(data):
     found = {"": np.abs(K[0] / K[1] - 1.0).max(axis=0)}
     if "surface/fem/sigma_XX" in data:
         fem, sie = (data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie"))
-        found["_sigma_XX"] = largest((fem - sie) / scale.of_in_plane(sie, data["surface/X_over_a"]))
+        found["_sigma_XX"] = largest((fem - sie) / stresses.of_in_plane(sie, data["surface/X_over_a"]))
     if "interfaces/fem/sigma_YY" in data:
         of = (f"interfaces/{by}/" for by in ("fem", "sie"))
         fem, sie = (np.array([data[path + name] for name in PARTS]) for path in of)
-        found["_interfaces"] = largest(np.moveaxis((fem - sie) / scale.of_interfaces(sie), 1, 0))
+        found["_interfaces"] = largest(np.moveaxis((fem - sie) / stresses.of_interfaces(sie), 1, 0))
     return found
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from galinx.app.errors import BadInput
-from galinx.app.scene import files_of_rows
+from galinx.app.scene import read as files_of_rows
 from galinx.app.scene.read import parse, read
 
 PUNCH = '[punch]\nprofile = "table"\nshape = {shape}  # measured\nload = 5e4\n'

@@ -4,7 +4,7 @@ import pytest
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.scene.materials import LIBRARY
+from galinx.app.scene.library import LIBRARY
 from galinx.app.scene.read import parse
 
 

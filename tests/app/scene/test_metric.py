@@ -5,9 +5,8 @@ import random
 import pytest
 
 from galinx.app.scene import units
-from galinx.app.scene.metric import _UNITS, in_units
-from galinx.app.scene.quantity import quantity
-from galinx.app.scene.quantity import units as units_of
+from galinx.app.scene.units import _UNITS, in_units, quantity
+from galinx.app.scene.units import units as units_of
 
 
 def in_unit(text, unit):

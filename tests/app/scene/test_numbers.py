@@ -8,8 +8,8 @@ from support import SCENE
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import from_words
-from galinx.app.scene.numbers import Numbers
 from galinx.app.scene.read import parse, read
+from galinx.app.scene.values import Numbers
 from galinx.solvers.parameters import Range
 
 

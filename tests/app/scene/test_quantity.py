@@ -5,8 +5,7 @@ from math import pi
 
 import pytest
 
-from galinx.app.scene.quantity import LONGEST, Quantity, quantity
-from galinx.app.scene.units import to_si
+from galinx.app.scene.units import LONGEST, Quantity, quantity, to_si
 
 
 @pytest.mark.parametrize(

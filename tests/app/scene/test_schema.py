@@ -5,7 +5,7 @@ import tomllib
 import pytest
 from support import HOME
 
-from galinx.app.scene.schema import schema
+from galinx.app.scene.sections import schema
 
 jsonschema = pytest.importorskip("jsonschema")
 

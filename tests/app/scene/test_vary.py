@@ -10,8 +10,8 @@ from support import HOME, SCENE
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import from_words
 from galinx.app.scene.read import parse, read
-from galinx.app.scene.schema import schema
-from galinx.app.scene.sense import oddities
+from galinx.app.scene.scene import oddities
+from galinx.app.scene.sections import schema
 from galinx.solvers.parameters import values
 
 _REST = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n'

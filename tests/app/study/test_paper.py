@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 from support import THOROUGH, command, here, widest
 
-from galinx.app.results.one_state import under_punch
+from galinx.app.results.fields import displacement_under_punch
 from galinx.app.scene import read as scenes
 from galinx.app.study import paper, published
 from galinx.postprocess.compare import RULES
@@ -107,7 +107,7 @@ def test_tables_1_and_3_are_in_the_verdict(wrong, monkeypatch):
 def test_displacement_under_the_punch_is_that_of_the_strain():
     """v is the same everywhere; u changes as the closed form's u,X says (Eqs 17-18)."""
     scene = scenes.read(paper.SCENES / "tables4_5.toml")
-    X, (slow, fast) = under_punch(scene, [1, 7], 8)
+    X, (slow, fast) = displacement_under_punch(scene, [1, 7], 8)
     assert X[0] == -1.0 and X[-1] == 1.0 and np.all(np.diff(X) > 0.0)
     for (u, v), c, v_0 in ((slow, 4.786e-7, 0.9130e-6), (fast, 0.6, 1.3217e-6)):
         response, f = scene.solid.response(c), 0.7 * (1.0 - np.exp(-25.0 / 7.0 * 0.8))

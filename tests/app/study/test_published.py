@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support import widest
 
-from galinx.app.console.sheets import new_console, print_sheet
+from galinx.app.console import new_console, print_sheet
 from galinx.app.study.published import (
     FAST,
     INTENSITIES,

@@ -199,7 +199,7 @@ def test_files_have_the_resolution_and_the_size_that_are_asked_for(drawings):
 def test_style_is_left_as_it_was():
     import matplotlib
 
-    from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
+    from galinx.postprocess.figures.friction import Loop, Panel, loops_figure
 
     before = dict(matplotlib.rcParams)
     loops_figure([Panel("", [Loop("", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])])])
@@ -211,7 +211,7 @@ def test_what_somebody_has_set_for_other_figures_is_not_for_these(monkeypatch):
     import matplotlib
 
     from galinx.postprocess.figures.canvas import content
-    from galinx.postprocess.figures.loops import Loop, Panel, loops_figure
+    from galinx.postprocess.figures.friction import Loop, Panel, loops_figure
 
     def drawn():
         loop = Loop("f", np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101), ["FM1"])

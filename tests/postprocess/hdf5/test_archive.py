@@ -9,7 +9,7 @@ import support
 
 from galinx import files
 from galinx.postprocess.errors import UnwritableArchive
-from galinx.postprocess.hdf5 import archive, reader, seal
+from galinx.postprocess.hdf5 import archive
 from galinx.postprocess.target import Target
 
 DATA = {
@@ -48,7 +48,7 @@ def test_anyone_can_verify_the_seal(tmp_path):
     content = path.read_bytes()
     assert content[512:].startswith(b"\x89HDF")
     assert hashlib.sha256(content[512:]).hexdigest().encode() in content[:512]
-    assert seal.is_sealed(path)
+    assert archive.is_sealed(path)
 
 
 def test_every_dataset_has_unit_and_name(tmp_path):
@@ -131,7 +131,7 @@ def test_rows_are_written_without_reading_what_is_there(tmp_path, monkeypatch):
 
 def test_an_archive_tells_what_slides_over_what(tmp_path):
     support.computed("fig5", {"solve.methods": ["closed_form"]}).save(tmp_path / "a.h5")
-    _, told = reader.read(tmp_path / "a.h5")
+    _, told = archive.read(tmp_path / "a.h5")
     assert told["material"] == "T302" and told["schema_version"] == 4
     assert json.loads(told["solid"]) == {
         "kind": "isotropic", "E": 193e9, "nu": 0.25, "rho": 7860.0, "plane": "strain",

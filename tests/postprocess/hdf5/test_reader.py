@@ -9,7 +9,8 @@ from tampering import archived, attribute, gone, made, numbers, opened, renamed,
 
 from galinx.postprocess import schema
 from galinx.postprocess.errors import UnreadableArchive
-from galinx.postprocess.hdf5 import reader, seal
+from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.hdf5 import archive as reader
 
 
 @pytest.fixture(scope="module")
@@ -190,7 +191,7 @@ def test_what_was_changed_is_named_though_its_digest_was_made_again(path, how):
         change(file)
     with pytest.raises(UnreadableArchive, match="damaged"):
         reader.read(path)
-    seal.put(path)
+    archive.put(path)
     with pytest.raises(UnreadableArchive, match=message):
         reader.read(path)
 

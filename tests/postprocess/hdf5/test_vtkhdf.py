@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from support import full_disk
 
-from galinx.app.results.paraview import StateField
+from galinx.app.results.fields import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
 from galinx.postprocess.target import FIELDS, Target

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.postprocess.stresses import von_mises
-from galinx.postprocess.yielding.strength import Strength
+from galinx.postprocess.yielding import Strength
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids import Isotropic

@@ -5,9 +5,9 @@ import pytest
 from scipy.optimize import brentq
 
 from galinx.postprocess.stresses import von_mises
-from galinx.postprocess.yielding.strength import Strength
+from galinx.postprocess.yielding import Strength
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solution import Body
 

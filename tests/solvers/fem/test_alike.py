@@ -9,9 +9,8 @@ from galinx.meshes.kind import Wanted
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem import space as spaces
-from galinx.solvers.fem.alike import alike, standing_for
-from galinx.solvers.fem.distributed import distribute
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.cells import alike, standing_for
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic

@@ -17,10 +17,10 @@ from mpi4py import MPI
 from support import FEW_DEGREES, HOME, SCENE, clean_environment, command, space_on
 
 from galinx.meshes.rings import Refinement
-from galinx.postprocess.hdf5 import reader
+from galinx.postprocess.hdf5 import archive
 from galinx.solvers.errors import CompilerError
-from galinx.solvers.fem import compiler
-from galinx.solvers.fem.compiler import compiling
+from galinx.solvers.fem import versions
+from galinx.solvers.fem.versions import compiling
 
 #: Bits that are flipped in what is kept of a form, and in forms that are compiled, which takes seconds
 #: each; GALINX_THOROUGH=1 asks for as many as a release does.
@@ -136,7 +136,7 @@ def test_a_run_with_damaged_caches(cache, compiles):
     assert second.returncode == 0, second.stderr
     assert second.stderr.count("warning: the compiled form in ") == 2
     assert second.stderr.count("warning: the mesh kept in ") == 1
-    v0, again = (reader.read(cache / f"{name}.h5")[0]["states/fem/v0"] for name in ("one", "two"))
+    v0, again = (archive.read(cache / f"{name}.h5")[0]["states/fem/v0"] for name in ("one", "two"))
     np.testing.assert_array_equal(v0, again)
 
 
@@ -217,7 +217,7 @@ def test_a_cache_that_cannot_be_written(cache, ranks):
 def compiling_elsewhere():
     """Another process that has begun to compile the form; it is killed after the block."""
     script = (
-        "import sys; from mpi4py import MPI; from galinx.solvers.fem.compiler import compiling\n"
+        "import sys; from mpi4py import MPI; from galinx.solvers.fem.versions import compiling\n"
         "with compiling(MPI.COMM_SELF, 'form') as options:\n"
         "    open(options['cache_dir'] + '/theirs.so', 'x')\n"
         "    print('in', flush=True); sys.stdin.read()\n"
@@ -250,8 +250,8 @@ def test_two_processes_do_not_compile_the_same_form(cache):
 def test_a_stopped_process_is_not_waited_for_for_ever(cache, monkeypatch):
     with compiling_elsewhere() as other:
         other.send_signal(signal.SIGSTOP)
-        monkeypatch.setattr(compiler, "_SAID", 0.1)
-        monkeypatch.setattr(compiler, "_PATIENCE", 0.5)
+        monkeypatch.setattr(versions, "_SAID", 0.1)
+        monkeypatch.setattr(versions, "_PATIENCE", 0.5)
         found, (said,) = compiled()
         assert not found and f"process {other.pid} on " in said and "or is stopped" in said
         assert "form.so" in compiled()[0]

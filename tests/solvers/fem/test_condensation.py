@@ -5,7 +5,7 @@ import pytest
 from support import computed, space_on
 
 from galinx.meshes.rings import Refinement
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 
@@ -29,5 +29,5 @@ def test_stresses_next_to_the_rayleigh_speed_keep_their_digits():
     """At 0.99989 c_R; where translations are left with forces of rounding, 1e-4 of σ_XX is lost."""
     data = computed("tables4_5", {"motion.c": 0.9193, "motion.X_over_L": [0.4, 0.8]}).data
     found, exact = (data[f"surface/{method}/sigma_XX"] for method in ("fem", "closed_form"))
-    off = np.abs(found - exact) / scale.of_in_plane(exact, data["surface/X_over_a"])
+    off = np.abs(found - exact) / stresses.of_in_plane(exact, data["surface/X_over_a"])
     assert off.max() <= 2e-5

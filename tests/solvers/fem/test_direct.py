@@ -8,8 +8,8 @@ from support import small_punch
 
 from galinx.clock import Clock
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem import direct as linear
-from galinx.solvers.fem.direct import Factor
+from galinx.solvers.fem import linear
+from galinx.solvers.fem.linear import Factor
 
 
 @pytest.mark.parametrize("entry", [0.0, float("nan")])

@@ -6,14 +6,14 @@ from support import clean_environment, mpirun
 def test_more_ranks_than_cells():
     script = (
         "from mpi4py import MPI\n"
-        "from galinx.solvers.fem.distributed import distribute\n"
+        "from galinx.solvers.fem.space import distribute\n"
         "from galinx.meshes import MESHES\n"
         "from galinx.meshes.rings import TAGS, Refinement\n"
         "from galinx.solvers.fem.punch import SlidingPunch\n"
         "from galinx.solvers.fem.space import Space\n"
         "from galinx.solvers.solids.isotropic import MovingFrame\n"
         "import numpy as np\n"
-        "from galinx.solvers.fem.interior import InteriorGradients\n"
+        "from galinx.solvers.fem.fields import InteriorGradients\n"
         "kind, v0 = MESHES['confocal'], []\n"
         "for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):\n"
         "    piece = kind.build(Refinement(0, 0.3, 1, (2.0,)), 1, comm.rank, comm.size)\n"

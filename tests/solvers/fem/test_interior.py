@@ -8,8 +8,8 @@ from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem import interior
-from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem import fields
+from galinx.solvers.fem.fields import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -41,7 +41,7 @@ def test_batches_of_points_give_the_same(punch, states, monkeypatch):
     weights = random.standard_normal((states, len(punch.fields)))
     arguments = punch.space, MovingFrame(2.0, 0.6), punch.fields, points
     whole = InteriorGradients(*arguments).of(weights)
-    monkeypatch.setattr(interior, "TOGETHER", 7)
+    monkeypatch.setattr(fields, "TOGETHER", 7)
     gradients = InteriorGradients(*arguments)
     pieces = [*gradients.by_batches(weights)]
     assert [some.stop - some.start for some, _ in pieces] == [7] * 7 + [2]

@@ -9,13 +9,11 @@ from mpi4py import MPI
 from scipy.integrate import quad
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.even import Even
-from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
-from galinx.solvers.fem.distributed import distribute
+from galinx.meshes.waves import Even, Reached
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.loaded_in_time import LoadedInTime
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.in_time import LoadedInTime
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 from galinx.solvers.transient.punch import smooth
 

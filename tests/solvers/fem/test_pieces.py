@@ -7,10 +7,9 @@ from support import space_on
 from galinx.meshes import MESHES, Wanted
 from galinx.solvers import rays
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem import pieces
-from galinx.solvers.fem.linear_loads import LinearLoads
-from galinx.solvers.fem.pieces import Pieces
-from galinx.solvers.sie.linear import LinearPressure
+from galinx.solvers.fem import traction
+from galinx.solvers.fem.traction import LinearLoads, Pieces
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
 from galinx.solvers.solids.isotropic import MovingFrame
 
 FRAME = MovingFrame(2.0, 0.6)
@@ -85,7 +84,7 @@ def test_below_knots_and_ends_too(loads, pressure, depth):
 def test_many_pieces_are_looked_at_some_at_a_time(loads, pressure, monkeypatch):
     X = np.linspace(-0.9, 1.9, 7)
     whole = strain(loads, X)
-    monkeypatch.setattr(pieces, "_AT_ONCE", 10)
+    monkeypatch.setattr(traction, "_AT_ONCE", 10)
     np.testing.assert_allclose(strain(loads, X), whole, atol=1e-13)
 
 

@@ -7,9 +7,8 @@ from scipy.spatial import cKDTree
 from support import areas, space_on
 
 from galinx.meshes.rings import Refinement
-from galinx.solvers.fem.interior import InteriorGradients
+from galinx.solvers.fem.fields import InteriorGradients, sample
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.fem.sampling import sample
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 

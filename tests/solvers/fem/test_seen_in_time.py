@@ -6,15 +6,12 @@ from mpi4py import MPI
 from scipy.special import roots_jacobi
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
-from galinx.solvers.fem.distributed import distribute
-from galinx.solvers.fem.dynamic import Motion, of_both
-from galinx.solvers.fem.energies import BOX, Energies
-from galinx.solvers.fem.in_time import Phase, SlidingInTime
-from galinx.solvers.fem.lagrange import lagrange
-from galinx.solvers.fem.space import Space
-from galinx.solvers.fem.surface_in_time import SurfaceInTime
+from galinx.meshes.waves import Reached
+from galinx.solvers.fem.cells import lagrange
+from galinx.solvers.fem.dynamic import BOX, Energies, Motion, of_both
+from galinx.solvers.fem.in_time import Phase, SlidingInTime, SurfaceInTime
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.admittance import Admittance

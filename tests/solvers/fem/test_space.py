@@ -6,8 +6,7 @@ from galinx.app.plan.fem import unknowns
 from galinx.meshes import MESHES, Wanted
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.distributed import distribute
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 
 
 def test_a_missing_boundary_part_is_named():

@@ -1,6 +1,6 @@
 import numpy as np
 
-from galinx.solvers.fem.surface import SurfaceTrace
+from galinx.solvers.fem.fields import SurfaceTrace
 
 
 def test_between_facets_the_right_one_counts_whatever_rounding_does():

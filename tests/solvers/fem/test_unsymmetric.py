@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import diags, identity, kron
 
 from galinx.clock import Clock
-from galinx.solvers.fem.unsymmetric import UnsymmetricFactor
+from galinx.solvers.fem.linear import UnsymmetricFactor
 
 N = 150
 

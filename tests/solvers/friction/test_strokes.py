@@ -7,7 +7,7 @@ import random_laws as random
 
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.friction.strokes import friction_along
+from galinx.solvers.friction.motion import friction_along
 from galinx.solvers.parameters import made, parameters
 
 STROKES = ["forward", "backward", "forward"]

@@ -7,11 +7,9 @@ from layers_cases import COAT, SUBSTRATE, equation, flat
 from layers_reference import plane_strain, punch
 from support import THOROUGH
 
-from galinx.solvers.layers.contact import found
+from galinx.solvers.layers.contact import Polynomial, Speed, found
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.panelled import solved as panelled
-from galinx.solvers.layers.pressure import Polynomial
-from galinx.solvers.layers.states import Speed
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import Expansion, solve, weights_hilbert
 from galinx.solvers.solids.isotropic import Isotropic

@@ -7,7 +7,7 @@ from layers_cases import COAT, SUBSTRATE, constants, equation
 from layers_reference import system
 
 from galinx.solvers.layers.contact import found
-from galinx.solvers.layers.inside import Level
+from galinx.solvers.layers.kernel import Level
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 

@@ -9,11 +9,10 @@ from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
 from support import THOROUGH
 
-from galinx.solvers.layers.ends import Punch
-from galinx.solvers.layers.found import FoundSpeed, local_exponents
+from galinx.solvers.layers.free_contact import FoundSpeed, Punch, local_exponents
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.sie.found import contacts
+from galinx.solvers.sie.free_contact import contacts
 
 COATED = Layered((Layer(1.0, COAT),), SUBSTRATE)
 SAME = Layered((Layer(1.0, SUBSTRATE), Layer(0.3, SUBSTRATE)), SUBSTRATE)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE
 
-from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.layers.speed import dispersion
+from galinx.solvers.layers.layered import Layer, Layered, dispersion
 from galinx.solvers.solids.isotropic import Isotropic
 
 

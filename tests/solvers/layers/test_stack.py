@@ -9,10 +9,9 @@ from random_solids import orthotropic
 from support import THOROUGH
 
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.fourier import spherical_bessel, transform
-from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.layers.medium import inverse
-from galinx.solvers.layers.speed import weakest
+from galinx.solvers.layers.kernel import spherical_bessel, transform
+from galinx.solvers.layers.layered import Layer, Layered, weakest
+from galinx.solvers.layers.stiffness import inverse
 from galinx.solvers.solids.isotropic import Isotropic
 
 

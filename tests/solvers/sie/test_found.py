@@ -13,9 +13,8 @@ from support import THOROUGH
 
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.found import contacts
-from galinx.solvers.sie.weighted import Weighted
+from galinx.solvers.sie.closed_form import FlatPunch, Weighted
+from galinx.solvers.sie.free_contact import contacts
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 flat, parabolic, wedge, power, rounded, table = (

@@ -11,8 +11,8 @@ from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.profiles.power import Power
 from galinx.solvers.profiles.table import Table
 from galinx.solvers.profiles.wedge import Wedge
-from galinx.solvers.sie.found import contacts
-from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.free_contact import contacts
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 
 
 def parabola(rng):

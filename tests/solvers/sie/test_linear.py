@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 from galinx.solvers.solids.isotropic import MovingFrame
 from galinx.solvers.solids.potentials import field
 

@@ -7,7 +7,7 @@ from random_solids import random_solid
 from galinx.solvers.profiles.parabolic import Parabolic
 from galinx.solvers.profiles.wedge import Wedge
 from galinx.solvers.sie import residual
-from galinx.solvers.sie.found import contacts
+from galinx.solvers.sie.free_contact import contacts
 from galinx.solvers.solids.isotropic import Isotropic
 
 POINTS = np.array([[0.3, -0.01], [-1.5, -0.4], [0.9, -3.0], [4.0, -2.0]])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from random_solids import isotropic_as, random_solid, stiffness
 
-from galinx.postprocess import scale
+from galinx.postprocess import stresses
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.linear import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
@@ -30,7 +30,7 @@ def relative(found, wanted):
 def off(found, wanted, X, Y):
     """Largest error of stresses inside, over what errors of these are relative to."""
     found, wanted = (np.reshape(σ, (3, -1, len(X))) for σ in (found, wanted))
-    return (np.abs(found - wanted) / scale.of_inside(wanted, X, Y)).max()
+    return (np.abs(found - wanted) / stresses.of_inside(wanted, X, Y)).max()
 
 
 @pytest.mark.parametrize("seed", range(40))

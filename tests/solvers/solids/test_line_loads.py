@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import trapezoid
 
 from galinx.solvers.solids.isotropic import MovingFrame
-from galinx.solvers.solids.line_loads import DATUM, line_loads
 from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.potentials import DATUM, line_loads
 
 OBLIQUE = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 40.0)
 RESPONSES = [

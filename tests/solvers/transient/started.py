@@ -6,13 +6,12 @@ import pytest
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
-from galinx.postprocess.over_time import told
-from galinx.solvers.fem.distributed import distribute
+from galinx.meshes.waves import Reached
+from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
@@ -43,4 +42,4 @@ class ByFiniteElements:
         return self.solver.run([way], law, lambda t: float(load(t)))
 
     def told(self, run, α, β):
-        return told(self.motion.X, run.forces, α, β, self.degree)
+        return contact_numbers(self.motion.X, run.forces, α, β, self.degree)

@@ -6,8 +6,7 @@ from random_solids import random_solid
 
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.punch import ON_SURFACE
-from galinx.solvers.transient.surface import AlongSurface
+from galinx.solvers.transient.punch import ON_SURFACE, AlongSurface
 from galinx.solvers.transient.transform import Transformed
 
 SOLID = Isotropic(1.0, 0.25, 1.0)

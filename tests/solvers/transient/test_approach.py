@@ -7,7 +7,7 @@ from started import THOROUGH, by_integral_equation
 
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.approach import approach
+from galinx.solvers.transient.late_time import approach
 
 RAMP = 4.0
 

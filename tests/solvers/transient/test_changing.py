@@ -6,13 +6,12 @@ from random_solids import random_solid
 from scipy.interpolate import make_interp_spline
 from started import THOROUGH, ByFiniteElements
 
-from galinx.postprocess.over_time import told
+from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.basis import Basis
-from galinx.solvers.transient.between import Between
+from galinx.solvers.transient.march import Between
 from galinx.solvers.transient.punch import StartingPunch, smooth
-from galinx.solvers.transient.transform import Transformed
+from galinx.solvers.transient.transform import Basis, Transformed
 
 SOLID = Isotropic(1.0, 0.25, 1.0)
 
@@ -115,7 +114,7 @@ def differences(solid, c, g, end, steps, **mesh):
     run, expected = started.run(g, load), found.course_along(g, load)
     by_time = [FlatPunch(started.response, g(t)) for t in run.t]
     read = [
-        told(started.motion.X, run.forces[n : n + 1], one.α, one.β, started.degree)
+        contact_numbers(started.motion.X, run.forces[n : n + 1], one.α, one.β, started.degree)
         for n, one in enumerate(by_time)
     ]
     K = max(np.abs(expected.K_left).max(), np.abs(expected.K_right).max())

@@ -9,8 +9,7 @@ import galinx
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
-from galinx.solvers.transient.admittance import Admittance
-from galinx.solvers.transient.flutter import thresholds
+from galinx.solvers.transient.admittance import Admittance, thresholds
 
 #: Solid, angle, smaller of both thresholds, and a speed near that at which waves neither grow nor decay.
 TABLE = [

@@ -6,7 +6,7 @@ from random_solids import isotropic_as, random_solid, stiffness
 
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 from galinx.solvers.transient.admittance import Admittance
-from galinx.solvers.transient.kernel import Kernel
+from galinx.solvers.transient.line_load import Kernel
 
 
 def panels(edges):

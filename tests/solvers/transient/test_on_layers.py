@@ -7,18 +7,17 @@ from layers_reference import admittance, plane_strain
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
-from galinx.postprocess.over_time import told
-from galinx.solvers.fem.distributed import distribute
+from galinx.meshes.waves import Reached
+from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.layered import Echoes, Sheets
+from galinx.solvers.transient.line_load import Echoes, Sheets
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
 ONE, COAT, SOFT = Isotropic(2.5, 0.25, 1.0), Isotropic(7.5, 0.3, 1.2), Isotropic(1.5, 0.1, 0.7)
@@ -98,7 +97,7 @@ def test_finite_elements_agree_over_layers():
     run = solver.run([Phase(1, end, steps)], lambda t: g, lambda t: float(smooth(t, 2.0)))
     by_sie = StartingPunch(response, STACK.limit(), end, steps, 16).course(g, lambda t: smooth(t, 2.0))
     steady = FlatPunch(response, g)  # its exponents alone
-    found = told(motion.X, run.forces, steady.α, steady.β, degree)
+    found = contact_numbers(motion.X, run.forces, steady.α, steady.β, degree)
     np.testing.assert_allclose(run.v0, by_sie.v0, atol=1e-4 * by_sie.v0[-1])
     lean = by_sie.centre * by_sie.load
     np.testing.assert_allclose(found.centre * found.load, lean, atol=2e-3 * np.abs(lean).max())

@@ -3,8 +3,7 @@
 import numpy as np
 
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.panels import divided
-from galinx.solvers.transient.transform import Transformed
+from galinx.solvers.transient.transform import Transformed, divided
 
 
 def test_waves_within_a_short_time_are_held():

@@ -5,14 +5,12 @@ import pytest
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.reached import Reached
 from galinx.meshes.rings import TAGS
-from galinx.postprocess.over_time import told
-from galinx.solvers.fem.coarse import damping
-from galinx.solvers.fem.distributed import distribute
-from galinx.solvers.fem.dynamic import Motion, of_both
+from galinx.meshes.waves import Reached
+from galinx.postprocess.over_time import contact_numbers
+from galinx.solvers.fem.dynamic import Motion, damping, of_both
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
-from galinx.solvers.fem.space import Space
+from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import StartingPunch, smooth
@@ -50,7 +48,7 @@ class Started:
 
     def told(self, run, g):
         exact = FlatPunch(self.response, g)
-        return told(self.motion.X, run.forces, exact.α, exact.β, self.degree)
+        return contact_numbers(self.motion.X, run.forces, exact.α, exact.β, self.degree)
 
 
 @pytest.fixture(scope="module")

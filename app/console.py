@@ -1,0 +1,360 @@
+"""What the program says while it works and when it ends.
+
+What commands print at their end.
+
+The one place where text goes to a terminal: what would command it is shown instead.
+
+What a long run tells: a bar on a terminal, lines for who wants them, a log file.
+
+What the command is called.
+
+How tables and verdicts look on a terminal.
+"""
+
+import io
+import json
+import logging
+import os
+import re
+import shutil
+import sys
+import textwrap
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any
+
+from galinx import files
+from galinx.clock import Clock
+from galinx.postprocess.tables import Sheet
+
+from . import process, ranks
+from .errors import MachineFailure
+
+#: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
+#: and what names of files have for bytes that are not UTF-8.
+_COMMANDS = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+
+#: Columns in which a table can be read.
+_NARROWEST = 40
+
+
+def width() -> int:
+    """Columns of the terminal, 80 where it is none; never so few that nothing could be read."""
+    return max(shutil.get_terminal_size().columns, _NARROWEST)
+
+
+def plain(text: str) -> str:
+    r"""A text whose control characters are written out, ``\u001b`` for ESC as in JSON."""
+    return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+class Output(io.FileIO):
+    """The output below Python's buffers: where it cannot be written, the message names it."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number, "w", closefd=False)
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise OSError(
+                f"cannot write the output: {error.strerror}; make room, or send it elsewhere"
+            ) from None
+
+
+class PlainStream:
+    """A text stream that is written plain text only.
+
+    Args:
+        bare: where the text goes; also for those who write control characters of their own.
+    """
+
+    def __init__(self, bare: Any) -> None:
+        self.bare = bare
+
+    def write(self, text: str) -> int:
+        self.bare.write(plain(text))
+        return len(text)
+
+    def writelines(self, lines: list[str]) -> None:
+        for line in lines:
+            self.write(line)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.bare, name)
+
+
+def bare(stream: Any) -> Any:
+    """The stream below, for colours and bars; texts of others have to be made plain before."""
+    return getattr(stream, "bare", stream)
+
+
+@contextmanager
+def plain_streams() -> Iterator[None]:
+    """For a block: whoever prints, what reaches the output and error streams is plain."""
+    out, err = (stream and PlainStream(stream) for stream in (sys.stdout, sys.stderr))
+    with redirect_stdout(out), redirect_stderr(err):
+        yield
+
+
+def program() -> str:
+    """How the user called the program: ``./run.sh`` in the tree, ``galinx`` elsewhere."""
+    return _called() or "galinx"
+
+
+def as_called(text: str) -> str:
+    """A text whose commands begin with ``./run.sh``, as the user would type them.
+
+    An installed galinx is started on several ranks by mpirun itself.
+    """
+    if not _called():
+        text = re.sub(r"\./run\.sh -n (\d+)", r"mpirun -n \1 galinx", text)
+    return text.replace("./run.sh", program())
+
+
+def _called() -> str:
+    return os.environ.get("GALINX_COMMAND", "")
+
+
+#: Level of what is told: above INFO, which is muted because the form compiler floods it.
+_NOTE = logging.INFO + 5
+
+
+class Progress:
+    """Text, share done and remaining time on a terminal's error stream; silent elsewhere.
+
+    Use it as a context manager.
+
+    Args:
+        quiet: no bar.
+        verbose: every step as a line on the error stream, instead of a bar.
+        log: file that every step is added to, with its time.
+
+    Raises:
+        MachineFailure: the log file cannot be written.
+    """
+
+    def __init__(self, quiet: bool = False, verbose: bool = False, log: Path | None = None) -> None:
+        self._quiet, self._verbose, self._log = quiet, verbose, log
+        self._bar: Any = None
+        self._task: Any = None
+        self._last = ""
+        self._logger = logging.Logger("galinx", _NOTE)
+
+    def __enter__(self) -> "Progress":
+        if not ranks.is_root():
+            return self
+        if self._verbose:
+            self._add(logging.StreamHandler(sys.stderr), "%(message)s")
+        elif not self._quiet and sys.stderr.isatty():
+            self._bar, self._task = _start_bar()
+        if self._log:
+            self._add(_LogFile(self._log), "%(asctime)s %(message)s")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar:
+            self._bar.stop()
+        for handler in self._logger.handlers:
+            handler.close()
+
+    def say(self, text: str) -> None:
+        """What is being done now."""
+        if self._bar:
+            self._bar.update(self._task, description=plain(text))
+        self.note(text)
+
+    def note(self, text: str) -> None:
+        """For those who listen closely: verbose runs and log files."""
+        if text != self._last:
+            self._logger.log(_NOTE, "%s", plain(text))
+            self._last = text
+
+    def warn(self, text: str) -> None:
+        """What everybody should know, at once and whatever rank found it."""
+        told = f"warning: {plain(text)}"
+        if self._bar:
+            self._bar.console.print(told, markup=False, highlight=False, soft_wrap=True)
+        elif not self._verbose:
+            print(told, file=sys.stderr, flush=True)
+        self.note(told)
+
+    def done(self, count: float, of: int, what: str = "states") -> None:
+        """So many of them are finished; a share of one moves the bar, and a line tells its tenths."""
+        if self._bar:
+            self._bar.update(self._task, completed=count, total=of)
+        self.note(f"{int(10.0 * count + 1e-9) / 10.0:g} of {of} {what}")
+
+    def _add(self, handler: logging.Handler, form: str) -> None:
+        handler.setFormatter(logging.Formatter(form))
+        self._logger.addHandler(handler)
+
+
+class _LogFile(logging.Handler):
+    """Adds lines to a file; a disk that becomes full ends the log, not the run.
+
+    Args:
+        path: the file; one that is there is added to.
+
+    Raises:
+        MachineFailure: it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path, self._full = path, False
+        try:
+            handle = files.open_file(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+        except OSError as error:
+            raise MachineFailure(f"cannot write the log {path}: {error.strerror}") from None
+        self._file = open(handle, "ab", buffering=0)  # noqa: SIM115 - closed by close
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if self._full:
+            return
+        line, start = memoryview(f"{self.format(record)}\n".encode()), self._file.seek(0, os.SEEK_END)
+        try:
+            while line:  # a disk that becomes full takes a part
+                line = line[self._file.write(line) :]
+        except OSError as error:
+            self._full = True
+            self._file.truncate(start)
+            print(f"warning: the log {self._path} ends here: {error.strerror}", file=sys.stderr)
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+
+def _start_bar() -> tuple[Any, Any]:
+    from rich import progress
+    from rich.console import Console
+
+    bar = progress.Progress(
+        progress.TextColumn("{task.description}", markup=False),
+        progress.BarColumn(bar_width=20),
+        progress.TaskProgressColumn(),
+        progress.TimeRemainingColumn(),
+        console=Console(file=bare(sys.stderr)),
+        transient=True,
+        # What is printed meanwhile goes its own way: rich would take its control characters for colours.
+        redirect_stdout=False,
+        redirect_stderr=False,
+    )
+    task = bar.add_task("", total=None)
+    bar.start()
+    return bar, task
+
+
+def new_console(file: Any = None, colours: bool = False) -> Any:
+    """Rich console that guesses nothing about what numbers are, and wraps no line.
+
+    Its colours are its own: those of texts are shown as the characters they are.
+    """
+    from rich.console import Console  # a slow import
+    from rich.text import Text
+
+    class _PlainConsole(Console):
+        def render_str(self, text: str, **options: Any) -> Text:
+            return super().render_str(plain(text), **options)
+
+    return _PlainConsole(
+        file=bare(file or sys.stdout), highlight=False, markup=False, soft_wrap=True, width=width(),
+        color_system="auto" if colours else None,
+    )  # fmt: skip
+
+
+def print_sheet(console: Any, sheet: Sheet) -> None:
+    """Print a table, labels to the left and numbers to the right, in parts where it is too wide."""
+    from rich import box
+    from rich.table import Table
+
+    for number, columns in enumerate(_parts(sheet, console.width)):
+        table = Table(
+            title=None if number else sheet.title, box=box.SIMPLE_HEAD, title_justify="left",
+            title_style="", header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
+        )  # fmt: skip
+        for i in columns:
+            words = sheet.words or not i
+            table.add_column(sheet.columns[i], justify="left" if words else "right", no_wrap=not words)
+        for row in sheet.rows:
+            table.add_row(*(row[i] for i in columns))
+        console.print(table)
+    for note in sheet.notes:
+        text = textwrap.fill(plain(note), console.width, subsequent_indent="  ", break_on_hyphens=False)
+        console.print(text)
+
+
+def _parts(sheet: Sheet, width: int) -> list[list[int]]:
+    """Columns that stand side by side, the first of all in every part."""
+    from rich.cells import cell_len
+
+    if sheet.words:
+        return [list(range(len(sheet.columns)))]
+    wide = [max(map(cell_len, column)) + 2 for column in zip(sheet.columns, *sheet.rows)]
+    wide[0] = min(wide[0], max(width // 2, 12))  # labels may take several lines
+    parts = [[0]]
+    for i in range(1, len(wide)):
+        if len(parts[-1]) > 1 and sum(wide[k] for k in parts[-1]) + wide[i] > width:
+            parts.append([0])
+        parts[-1].append(i)
+    return parts
+
+
+def print_verdict(console: Any, attributes: dict[str, Any]) -> None:
+    """Print the comparisons and the verdict of an archive."""
+    for text, value in json.loads(attributes["comparisons"]).items():
+        console.print(f"  {text}: {value:.1e}")
+    styles = {"PASS": "bold green", "FAIL": "bold red"}
+    console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
+    for reason in json.loads(attributes["verdict_reasons"]):
+        console.print(f"  {reason}")
+
+
+def say(text: str, hang: int = 2) -> None:
+    """Print a line, folded at the terminal's width (80 columns where it is none)."""
+    print(textwrap.fill(plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False))
+
+
+def colours() -> bool:
+    """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
+    own = process.is_there() or not ranks.by_mpirun()
+    return own and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+
+
+def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
+    """States, comparisons and verdict unless quiet; warnings go to the error stream."""
+    if not quiet:
+        from galinx.postprocess.tables import states_sheet
+
+        print_sheets([states_sheet(data, attributes["title"])], attributes)
+    print_warnings(attributes)
+
+
+def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
+    """Tables of an archive, comparisons and verdict."""
+
+    console = new_console(colours=colours())
+    for sheet in sheets:
+        print_sheet(console, sheet)
+    print_verdict(console, attributes)
+
+
+def print_warnings(attributes: dict[str, Any]) -> None:
+    """Warnings of an archive, on the error stream."""
+    for text in json.loads(attributes["warnings"]):
+        print(f"warning: {text}", file=sys.stderr)
+
+
+def print_times(clock: Clock) -> None:
+    """Wall time of the process, and of the steps that took most of it."""
+    clock.lap()
+    steps = sorted(((seconds, name) for name, seconds in clock.items()), reverse=True)
+    told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
+    say(f"time: {sum(clock.values()):.3g} s{f' ({told})' if told else ''}")

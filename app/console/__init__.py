@@ -1,1 +1,0 @@
-"""What the program says while it works and when it ends."""

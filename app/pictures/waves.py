@@ -1,0 +1,197 @@
+"""The slowest waves along a scene's layers.
+
+What a scene's punch answers to loads that oscillate: its dynamic stiffness over frequency.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.figures.curves import Curve, dispersion_figure, response_figure
+from galinx.solvers.layers.layered import Layered, dispersion
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.transient.admittance import InPlane
+from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
+
+from ..errors import BadInput
+from ..plan.over_time import headings
+from ..plan.states import enumerate_states
+from ..scene.scene import Scene
+from .choice import Drawing
+from .state_labels import drive_label, spread
+
+#: Wavenumbers times the thickness of all layers; fewer where a layer is graded.
+_kH, _FEWER = np.geomspace(0.03, 100.0, 61), 4
+#: Relative accuracy of speeds.
+_ACCURACY = 1e-7
+
+
+@dataclass(frozen=True)
+class Dispersion:
+    """The dispersion of the slowest wave.
+
+    Attributes:
+        kH: wavenumber times the thickness of all layers, (n,).
+        length: of the waves [m], (n,).
+        speed: [m/s], NaN where none is slower than the waves inside, (n,).
+        limit: highest speed of a punch [m/s].
+        ends: of waves along the substrate, and along the surface's solid [m/s].
+    """
+
+    kH: NDArray[np.float64]
+    length: NDArray[np.float64]
+    speed: NDArray[np.float64]
+    limit: float
+    ends: tuple[float, float]
+
+    @property
+    def leaks(self) -> bool:
+        """Is there a length of which no wave is slower than those inside?"""
+        return bool(np.isnan(self.speed).any())
+
+
+def curve(scene: Scene) -> Dispersion:
+    """Of a scene's layers.
+
+    Raises:
+        BadInput: it has none.
+    """
+    solid = scene.solid
+    if not isinstance(solid, Layered):
+        raise BadInput(
+            "layer: found no layers; along a uniform solid waves of all lengths run alike, at "
+            f"{solid.limit() * solid.c_s:.6g} m/s"
+        )
+    graded = any(layer.bottom for layer in solid.layers)
+    kH, H = _kH[:: _FEWER if graded else 1], float(solid.depths[-1])
+
+    def stack(c: float) -> Any:
+        return solid.response(c).stack(H, 1e-8)
+
+    c = dispersion(stack, 1.0, kH, _ACCURACY)
+    ends = (solid.substrate.limit() * solid.substrate.c_s, solid.surface.limit() * solid.c_s)
+    return Dispersion(kH, 2.0 * np.pi * H / kH, c * solid.c_s, solid.limit() * solid.c_s, ends)
+
+
+def dispersion_drawing(known: Dispersion) -> Drawing:
+    """The curve as a figure."""
+    figure = dispersion_figure(known.kH, known.speed, known.limit, known.ends)
+    caption = (
+        "Speed of the slowest wave along the layers over its wavenumber k times the thickness H of all "
+        f"layers. The dashed line is the highest speed of a punch, {known.limit:.6g} m/s; circles are "
+        "the waves along the substrate alone (left) and along the solid of the surface (right). Where "
+        "there is no curve no such wave is slower than the waves inside one of the solids."
+    )
+    return Drawing("dispersion", caption, figure)
+
+
+#: Speeds with frictions that are solved at most, and curves that can be told apart.
+MOST, _CURVES = 24, 6
+#: Highest frequency where none is asked for, over c_s/a.
+_USUAL = 10.0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A speed with a friction.
+
+    Attributes:
+        c: speed over c_s.
+        g: σ_XY/σ_YY under the punch.
+        way: ±1, in which it goes along X, 0 at rest.
+        found: what is answered.
+        plane_waves: what the stiffness over iω comes to at high frequencies, over 2μ a/c_s.
+    """
+
+    c: float
+    g: float
+    way: int
+    found: Oscillation
+    plane_waves: float
+
+    @property
+    def words(self) -> str:
+        """What tells it from others."""
+        towards = {1: ", towards +X", -1: ", towards -X", 0: ""}[self.way]
+        return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}{towards}"
+
+
+def answers(scene: Scene, first: float, last: float | None, count: int) -> list[Answer]:
+    """Of all speeds and frictions of a scene.
+
+    Args:
+        scene: the scene.
+        first, last: angular frequencies over c_s/a; as far as is known, and 10 at most, if none is given.
+        count: of the frequencies, evenly spaced in their logarithm.
+
+    Raises:
+        BadInput: there is no answer.
+    """
+    solid = scene.solid
+    if not isinstance(solid.response(0.0), InPlane) or solid.nearly_incompressible:
+        raise BadInput(
+            "response: found layers or a solid with ν near 1/2, expected a uniform solid that waves pass"
+        )
+    if not isinstance(scene.punch.profile, Flat):
+        raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a flat punch")
+    states = enumerate_states(scene)
+    ways = headings(scene, states.directions) * (states.columns["c"] > 0.0)
+    different = np.unique(np.column_stack([states.columns["c"], ways, states.g]), axis=0)
+    limit, c = solid.limit(), np.unique(different[:, 0]).tolist()
+    if len(different) > MOST:
+        raise BadInput(f"response: found {len(different)} speeds with frictions, expected at most {MOST}")
+    if max(c) >= limit:
+        raise BadInput(f"response: c = {max(c):g} is not below the Rayleigh speed {limit:.6g} (over c_s)")
+    if last is None:
+        last = min(_USUAL, *(highest(solid.response(one), limit) for one in c))
+    if not first < last:
+        raise BadInput(
+            f"response: found frequencies from {first:g} to {last:g} c_s/a, expected them to grow"
+        )
+    ω, found = np.geomspace(first, last, count), []
+    for one, way in np.unique(different[:, :2], axis=0).tolist():
+        try:
+            punch = OscillatingPunch(solid.response(one), limit, ω, int(way) or 1)
+        except ValueError as error:
+            raise BadInput(f"response: {error}") from error
+        frictions = different[(different[:, :2] == (one, way)).all(axis=1), 2].tolist()
+        found += [Answer(one, g, int(way), punch.oscillation(g), punch.plane_waves(g)) for g in frictions]
+    return found
+
+
+def table(scene: Scene, answer: Answer) -> list[str]:
+    """Lines that tell an answer in SI units."""
+    found, μ = answer.found, scene.solid.μ
+    hertz = found.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
+    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)    Im N/v0 (Pa)    |v0/N| (1/Pa)   phase of v0 (°)"]
+    for ω, f, K in zip(found.ω, hertz, 2.0 * μ * found.stiffness):
+        lag = -np.angle(K, deg=True)
+        lines.append(
+            f"{ω:<10.4g} {f:<15.6g} {K.real:<15.6g} {K.imag:<15.6g} {1.0 / abs(K):<15.6g} {lag:.2f}"
+        )
+    return [*lines, f"largest relative error, measured: {found.error.max():.1e}"]
+
+
+def response_drawing(known: list[Answer]) -> Drawing:
+    """Stiffness and damping as a figure."""
+    shown = [known[i] for i in spread(list(range(len(known))), _CURVES)]
+    curves = [_curve(one) for one in shown]
+    caption = (
+        "Dynamic stiffness of the punch, N̂/v̂₀ of a load N̂ e^(iωt) about that of steady sliding: its "
+        "real part, and its imaginary part over ω, which is what waves carry away. Dashed: plane waves "
+        "straight down, to which the latter comes at high frequencies. At low ones the stiffness goes "
+        "like 1/log ω: a half-plane has none of its own at rest."
+    )
+    left = f"{len(known) - len(shown)} of {len(known)} speeds with frictions not shown."
+    return Drawing(
+        "response", caption, response_figure(curves), left_out=left * (len(shown) < len(known))
+    )
+
+
+def _curve(answer: Answer) -> Curve:
+    K, ω = answer.found.stiffness, answer.found.ω
+    parts: NDArray[np.float64] = np.array([K.real, K.imag / ω])
+    label = drive_label(answer.c, answer.g, answer.way)
+    return Curve(label, ω, parts, answer.plane_waves)

@@ -1,0 +1,114 @@
+"""Meshes for waves: straight cells that grow outwards, as far as waves come that are back in time.
+
+What waves do farther away nobody under the punch will know before the end, so that the far boundary may
+be held there. Those that are too short for the cells out there have to be damped.
+
+Even meshes for waves of given tractions: squares of one size, with nothing to refine for.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .rings import QuadMesh, Refinement, corner, tagged
+
+#: Largest half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
+_SQUARE = 1.0
+#: How many times as far as one line the next is where only a steady field has to be held.
+_BEYOND = 2.5
+
+
+@dataclass(frozen=True)
+class Reached:
+    """A rectangle below the surface.
+
+    Attributes:
+        half_width, depth: over a, at least 3 and 2.
+        size: side over a of the cells that are next to those under the punch.
+        growth: by which a cell further out is longer, over its distance from them.
+        innermost: size of the cells at the edges of the punch over a.
+        beyond: half-width and depth of all cells over a, where a steady field is held; 0 for no more than
+            waves need.
+        ratio: size of a ring at the edges over that of the ring outside it.
+        depths: of interfaces over a, rising, which lines of cells follow.
+    """
+
+    half_width: float
+    depth: float
+    size: float
+    growth: float
+    innermost: float
+    beyond: float = 0.0
+    ratio: float = 0.25
+    depths: tuple[float, ...] = ()
+
+    def drawn(self) -> QuadMesh:
+        """The mesh."""
+        square = min(_SQUARE, self.size, *self.depths[:1])
+        levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
+        beside, _ = corner(square, Refinement(levels, self.ratio, 1, ()), fan=True)
+        mirrored = (beside * [-1.0, 1.0])[:, ::-1]
+        squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
+        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / self.size) + 1)
+        outwards = np.concatenate([between, [1.0], self._outwards(1.0 + square, self.half_width)])
+        X = np.concatenate([-outwards[:0:-1], outwards])
+        Y = -np.concatenate([[0.0], self._downwards(square)])
+        boxes = np.array([
+            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+            for x0, x1 in pairwise(X)
+            for y1, y0 in pairwise(Y)
+            if y0 < -square or abs(abs(x0 + x1) / 2.0 - 1.0) > square
+        ])  # fmt: skip
+        return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
+
+    def _downwards(self, first: float) -> NDArray[np.float64]:
+        """Lines from the first depth to the last one."""
+        between = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
+        lines = [self._lines(*ends, ends[0] - first)[:-1] for ends in pairwise(between)]
+        last = max(self.depth, between[-1] + self.size)
+        return np.concatenate([*lines, self._outwards(between[-1], last, between[-1] - first)])
+
+    def _lines(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+        """From the first distance to the last one, the first so far from the innermost cells."""
+        x = [0.0]
+        while x[-1] < last - first:
+            x.append(x[-1] + self.size + self.growth * (before + x[-1]))
+        return first + np.array(x) * ((last - first) / x[-1])
+
+    def _outwards(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+        """The same, and on to where a steady field is held."""
+        lines = self._lines(first, last, before)
+        more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
+        return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
+
+
+@dataclass(frozen=True)
+class Even:
+    """A rectangle below the surface, of cells that do not cross X = -a and X = a.
+
+    Attributes:
+        half_width, depth: over a, more than 1 and 0.
+        size: largest side of a cell over a.
+    """
+
+    half_width: float
+    depth: float
+    size: float
+
+    def drawn(self) -> QuadMesh:
+        """The mesh."""
+        under = np.linspace(-1.0, 1.0, ceil(2.0 / self.size) + 1)
+        beside = _even(1.0, self.half_width, self.size)
+        X = np.concatenate([-beside[:0:-1], under, beside[1:]])
+        Y = _even(-self.depth, 0.0, self.size)
+        left, low = (grid.ravel() for grid in np.meshgrid(X[:-1], Y[:-1]))
+        right, high = (grid.ravel() for grid in np.meshgrid(X[1:], Y[1:]))
+        quads = np.array([[left, low], [right, low], [right, high], [left, high]])
+        return tagged(np.moveaxis(quads, 2, 0), float(X[-1]))
+
+
+def _even(first: float, last: float, size: float) -> NDArray[np.float64]:
+    return np.linspace(first, last, max(ceil((last - first) / size), 1) + 1)

@@ -1,0 +1,649 @@
+"""Where a solid yields under a punch or a pressure, and how much that carries until it does.
+
+What the stresses of some states mean for a solid that yields by von Mises.
+
+The largest stress below a pressure, and how deep a stress is reached.
+
+Stresses vary over the distance to the pressure's knots, all of which lie on the surface. So the solid is
+looked at in depths that double, at places along X half the depth apart: the finer the shallower,
+and only where knots are as near to one another; and on the surface itself, between all knots. Where a
+contact ends, or its punch has a kink, stresses rise like a power of the distance: there the solid is
+looked at in circles whose radii grow, and the stress at the place itself is that of the limit.
+
+The yielded zones at the two sharp edges of a punch, where stresses are infinite: reach and depth.
+
+Seen from an edge, every ray leaves the zone for good at one place. The farthest and the deepest of these
+are those of the zone, whatever its shape.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.profiles import exponent
+from galinx.solvers.solids.solid import Response
+from galinx.solvers.solution import Body, Turns
+
+from .stresses import maximum_shear, von_mises
+
+#: Distances over a between which rays are looked along. Nearer, stresses are continued; farther, a punch
+#: no longer carries such a load.
+NEAREST, FARTHEST = 1e-4, 10.0
+
+#: Angles from the free surface to the punch, and places along a ray.
+_ANGLES, _PLACES = np.linspace(0.0, np.pi, 33), 43
+
+#: Rounds in which the best angle is found, and by how much the step between angles falls in each.
+_EDGE_ROUNDS, _EDGE_FINER = 3, 8.0
+
+#: Steps to the place on a ray where yield is reached, and how far its logarithm may be off.
+_STEPS, _OFF = 5, 1e-8
+
+#: Both edges, each for reach and for depth: the side of the punch, and which of the two.
+_SIDE, _DEEP = np.array([-1.0, 1.0, -1.0, 1.0]), np.array([False, False, True, True])
+
+#: Stress over the yield strength at points (states or 1, n, 2) over a, of every state: (states, n).
+Stress = Callable[[NDArray], NDArray]
+
+
+def edge_places() -> NDArray[np.float64]:
+    """Where every state is looked at, ray by ray, over a: from X = -a, then from X = a, (n, 2)."""
+    rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in (-1.0, 1.0))
+    return np.concatenate([*rays])
+
+
+@dataclass(frozen=True)
+class Zones:
+    """Where yield is passed, over a.
+
+    Attributes:
+        reach: largest distance from X = -a and from X = a, each on its side of the middle, (states, 2).
+        depth: (states,). NaN, in both, where a zone goes on beyond ``FARTHEST``.
+    """
+
+    reach: NDArray[np.float64]
+    depth: NDArray[np.float64]
+
+
+def zones(stress: Stress, there: NDArray, exponents: NDArray) -> Zones:
+    """Zones in which yield is passed.
+
+    Args:
+        stress: von Mises.
+        there: the same at :func:`places`, (states, n).
+        exponents: of the distance, of stresses next to X = -a and to X = a, (states, 2).
+    """
+    rays = _Rays(stress, -np.tile(exponents, 2))
+    at_edges = _log(there).reshape(len(there), 2, *_grid().shape)
+    t, slope, beyond = (np.tile(found, (1, 2, 1)) for found in rays.on_grid(at_edges))
+    endless = np.asarray(beyond.any(axis=(1, 2)))
+    size = np.where(endless[:, None], np.nan, _largest(rays, t, slope))
+    return Zones(size[:, ~_DEEP], size[:, _DEEP].max(axis=1))
+
+
+def _points(side: float | NDArray, φ: NDArray, r: NDArray) -> NDArray[np.float64]:
+    """Points at a distance from an edge over a and an angle from the free surface, (..., 2)."""
+    along = (φ <= 0.0) | (φ >= np.pi)  # the surface, to the last digit
+    return np.stack([side * (1.0 + r * np.cos(φ)), np.where(along, 0.0, -r * np.sin(φ))], axis=-1)
+
+
+def _end(φ: NDArray) -> NDArray[np.float64]:
+    """Logarithm of the distance at which a ray meets the middle of the punch, or that of the farthest."""
+    return -np.log(np.maximum(-np.cos(φ), 1.0 / FARTHEST))
+
+
+def _grid() -> NDArray[np.float64]:
+    """Logarithms of the distances at which every ray is looked at, (angles, places)."""
+    return np.linspace(np.log(NEAREST), _end(_ANGLES), _PLACES, axis=-1)
+
+
+def _log(stress: NDArray) -> NDArray[np.float64]:
+    return np.log(np.maximum(stress, np.finfo(float).tiny))  # without friction the free surface has none
+
+
+def _height(φ: NDArray) -> NDArray[np.float64]:
+    """What a distance is multiplied by, (states, 4, n): 1 for reach."""
+    return np.where(_DEEP[:, None], np.sin(φ), 1.0)
+
+
+@dataclass(frozen=True)
+class _Rays:
+    """Rays from the edges; t is the logarithm of a distance.
+
+    Attributes:
+        stress: von Mises over the yield strength.
+        power: with which stresses fall next to the edges, (states, 4).
+    """
+
+    stress: Stress
+    power: NDArray[np.float64]
+
+    def on_grid(self, L: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """Where rays leave the zone, about, and how fast stresses fall there.
+
+        Args:
+            L: logarithm of the stress along the rays of the grid, (states, 2, angles, places).
+
+        Returns:
+            t, dL/dt, and whether the zone goes on beyond ``FARTHEST``, (states, 2, angles) each.
+        """
+        t, j, end = _grid(), np.arange(len(_ANGLES)), L.shape[-1] - 1
+        passed = L >= 0.0
+        last = np.where(passed.any(axis=-1), end - passed[..., ::-1].argmax(axis=-1), -1)
+        k = np.clip(last, 0, end - 1)
+        here, next_ = (np.take_along_axis(L, i[..., None], -1)[..., 0] for i in (k, k + 1))
+        slope = np.minimum((next_ - here) / (t[j, k + 1] - t[j, k]), -1e-3)
+        slope = np.where(last < 0, -self.power[:, :2, None], slope)
+        out = np.where(last == end, t[:, -1], t[j, k] - here / slope)
+        return out, slope, (last == end) & (t[:, -1] >= np.log(FARTHEST))
+
+    def outermost(self, φ: NDArray, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
+        """Where rays leave the zone: t at angles (states, 4, n), -inf where it is not found.
+
+        Args:
+            φ: angles.
+            t, slope: guesses of the place, and of dL/dt there, (states, 4).
+        """
+        t, slope = t[..., None] + 0.0 * φ, slope[..., None] + 0.0 * φ
+        L = self._logarithm(φ, t)
+        for _ in range(_STEPS):
+            step = np.clip(-L / slope, -1.0, 1.0)
+            before, t = L, t + step
+            L = self._logarithm(φ, t)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                secant = (L - before) / step
+            slope = np.where(np.isfinite(secant) & (secant < 0.0), secant, slope)
+        return np.where(np.abs(L) <= _OFF, np.minimum(t - L / slope, _end(φ)), -np.inf)
+
+    def _logarithm(self, φ: NDArray, t: NDArray) -> NDArray[np.float64]:
+        """Of the stress; beyond a ray's end it falls on.
+
+        Nearer than ``NEAREST`` it is a power of the distance r, times 1 + B r.
+        """
+        first, end = np.log(NEAREST), _end(φ)
+        r = np.exp(np.clip(t, first, end))
+        both = np.concatenate([r, np.full_like(r, 2.0 * NEAREST)], axis=-1)
+        points = _points(_SIDE[:, None], np.concatenate([φ, φ], axis=-1), both)
+        found = _log(self.stress(points.reshape(len(φ), -1, 2))).reshape(both.shape)
+        L, second = np.split(found, 2, axis=-1)
+        p, nearer = self.power[..., None], np.maximum(first - t, 0.0)
+        B = (second - L + p * np.log(2.0)) / NEAREST
+        near = L + p * nearer - B * NEAREST * -np.expm1(-nearer)
+        return np.where(nearer > 0.0, near, L - np.maximum(t - end, 0.0))
+
+
+def _largest(rays: _Rays, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
+    """Largest distance at which a ray leaves the zone, or depth, (states, 4).
+
+    Args:
+        rays: the rays.
+        t, slope: on the grid, (states, 4, angles).
+    """
+    unit = t.max(axis=-1)  # distances themselves may be too small for squares
+    best = np.argmax(np.exp(t - unit[..., None]) * _height(_ANGLES), axis=-1)[..., None]
+    guess, slope = (np.take_along_axis(x, best, -1)[..., 0] for x in (t, slope))
+    φ, h = _ANGLES[best], _ANGLES[1]
+    size, known = (np.exp(guess - unit)[..., None] * _height(φ))[..., 0], np.zeros(guess.shape, bool)
+    for _ in range(_EDGE_ROUNDS):
+        three = np.clip(φ, h, np.pi - h) + h * np.array([-1.0, 0.0, 1.0])
+        three = np.clip(three, 0.0, np.pi)
+        at = rays.outermost(three, guess, slope)
+        sizes = np.where(np.isfinite(at), np.exp(at - unit[..., None]) * _height(three), -np.inf)
+        top = sizes.max(axis=-1)
+        better = np.isfinite(top) & (~known | (top > size))  # than interpolated, or than before
+        size, known = np.where(better, top, size), known | np.isfinite(top)
+        where = sizes.argmax(axis=-1)[..., None]
+        guess = np.where(better, np.take_along_axis(at, where, -1)[..., 0], guess)
+        φ = three[..., 1:2] + h * vertex(sizes)[..., None]
+        h /= _EDGE_FINER
+    return size * np.exp(unit)
+
+
+def vertex(values: NDArray) -> NDArray[np.float64]:
+    """Place in [-1, 1] of the largest value of the parabola through values at -1, 0, 1, (..., 3)."""
+    left, middle, right = np.moveaxis(values, -1, 0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        bend = left - 2.0 * middle + right
+        top = np.clip((left - right) / (2.0 * bend), -1.0, 1.0)
+    return np.where(np.isfinite(top) & (bend < 0.0), top, values.argmax(axis=-1) - 1.0)
+
+
+#: Depth over a to which the solid is looked at.
+_DEEPEST = 10.0
+
+#: Places along X: their distance over the depth; how far from a knot, in these; and how much wider than
+#: the depth a piece has to be for that depth to be left out: the surface stands for it.
+_APART, _AROUND, _SHALLOW = 0.5, 4, 4.0
+
+#: Places on the surface between two knots.
+_BETWEEN = 4
+
+#: Radii of circles around a place where stresses have a power of the distance, over that of the next
+#: smaller one, and directions from there, along the surface and down.
+_WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
+
+#: Places from which the largest is looked for, and most rounds in which it is; by how much the step falls
+#: where it is near, and below which share of the first a round that finds nothing better is the last.
+_STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
+#: Rounds after which the best starts alone go on, and how many these are.
+_ALL_OF_THEM, _BEST = 3, 3
+#: How far around a place none may be better, over its step; and the least stress of a start, over the
+#: largest.
+_OWN, _LEAST = 1.5, 0.7
+
+#: Halvings in which a depth is found, and what the distance of places along X falls by in each: it has to
+#: follow a largest stress that moves as the depth changes.
+_HALVINGS, _NEARER = 30, 0.7
+
+#: A stress at points (states or 1, n, 2) over a, of every state: (states, n).
+
+_STENCIL = np.array([(u, w) for u in (-1.0, 0.0, 1.0) for w in (-1.0, 0.0, 1.0)])
+#: From values on the stencil to 1, u, w, u², uw, w².
+_FIT = np.linalg.pinv(
+    np.stack(
+        [np.ones(9), *_STENCIL.T, _STENCIL[:, 0] ** 2, _STENCIL.prod(axis=1), _STENCIL[:, 1] ** 2],
+        axis=1,
+    )
+)
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest value, and where it is over a, (states,) each."""
+
+    value: NDArray[np.float64]
+    X: NDArray[np.float64]
+    Y: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Where the solid is looked at below a pressure.
+
+    Attributes:
+        knots: of the pressure over a, in their order.
+    """
+
+    knots: NDArray[np.float64]
+
+    @cached_property
+    def _by_level(self) -> list[tuple[NDArray, NDArray, NDArray]]:
+        """X, Y, and a step from place to place, of every level."""
+        width = np.diff(self.knots)
+        narrow = np.minimum(np.append(width, np.inf), np.append(np.inf, width))
+        found = [_on_surface(self.knots, width)]
+        y = _DEEPEST
+        while y > width.min() / _SHALLOW:
+            apart = _APART * y
+            near = self.knots[narrow < _SHALLOW * y][:, None] / apart
+            X = apart * np.unique(np.round(near) + np.arange(-_AROUND, _AROUND + 1.0))
+            found.insert(1, (X, np.full(len(X), -y), np.full(len(X), apart)))
+            y /= 2.0
+        return found
+
+    @cached_property
+    def places(self) -> NDArray[np.float64]:
+        """All of them, level by level from the surface on, (n, 2)."""
+        return np.concatenate([np.column_stack([X, Y]) for X, Y, _ in self._by_level])
+
+    @cached_property
+    def steps(self) -> NDArray[np.float64]:
+        """From each to its neighbours, (n,)."""
+        return np.concatenate([step for *_, step in self._by_level])
+
+    def best(self, there: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Number of the best place of each level, and the value there, (states, levels).
+
+        Args:
+            there: at :attr:`places`, (states, n).
+        """
+        first = np.cumsum([0, *(len(X) for X, *_ in self._by_level)])
+        levels = [there[:, i:j].argmax(axis=1) + i for i, j in pairwise(first)]
+        best = np.stack(levels, axis=1)
+        return best, np.take_along_axis(there, best, 1)
+
+    def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
+        """Depth over a of the deepest place at which a stress is 1 or more, 0 where it is so nowhere.
+
+        Args:
+            stress, there, peak: as of :meth:`peak`.
+
+        Returns:
+            (states,); NaN where the zone goes on beyond all places.
+        """
+        best, values = self.best(there)
+        passed, rows = values >= 1.0, np.arange(len(there))
+        deepest = np.where(passed.any(axis=1), passed.shape[1] - 1 - passed[:, ::-1].argmax(axis=1), 0)
+        X, Y = self.places[best[rows, deepest]].T
+        inner = np.where(passed[rows, deepest], 0.0 - Y, 0.0)
+        somewhere = passed.any(axis=1)
+        of_peak = (peak.value >= 1.0) & (~somewhere | (inner < -peak.Y))
+        inner, X = np.where(of_peak, -peak.Y, inner), np.where(of_peak, peak.X, X)
+        depths = np.array([-level[0] for _, level, _ in self._by_level])
+        outer = depths[np.minimum(np.searchsorted(depths, inner, side="right"), len(depths) - 1)]
+        found = _deepest(stress, X, inner, outer)
+        found = np.where(passed[:, -1], np.nan, found)
+        return np.where(somewhere | (peak.value >= 1.0), found, 0.0)
+
+
+def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places around others on the surface, and a step from each to its neighbours.
+
+    Args:
+        centres: X over a of those of every state, (states, k); NaN for none.
+        nearest: radius over a of the smallest circle.
+
+    Returns:
+        Arrays (states, n, 2) and (n,).
+    """
+    radii = 1.0 / _WIDER ** np.arange(np.ceil(-np.log(nearest) / np.log(_WIDER)) + 1.0)
+    r, φ = (grid.ravel() for grid in np.meshgrid(radii, _DIRECTIONS, indexing="ij"))
+    along, down = r * np.cos(φ), np.where((φ > 0.0) & (φ < np.pi), -r * np.sin(φ), 0.0)
+    X = centres[:, :, None] + along
+    places = np.stack([X, np.broadcast_to(down, X.shape)], axis=-1)
+    return places.reshape(len(centres), -1, 2), np.tile(_APART * r, centres.shape[1])
+
+
+def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Peak:
+    """The largest of all.
+
+    Args:
+        stress: of which.
+        places: where states were looked at, of all (1, n, 2) or of each (states, n, 2).
+        steps: from each to its neighbours, (n,).
+        there: the stress at these, (states, n).
+    """
+    starts = _starts(places, steps, there)
+    climb = _Climb(np.take_along_axis(places, starts[..., None], 1), steps[starts])
+    for rounds in range(_ROUNDS):
+        climb.take(stress)
+        if climb.done:
+            break
+        if rounds == _ALL_OF_THEM:
+            climb.keep(_BEST)
+    winner, rows = climb.value.argmax(axis=1), np.arange(len(there))
+    return Peak(climb.value[rows, winner], *climb.top[rows, winner].T)
+
+
+def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64]:
+    """Numbers of the best places without a better one around, (states, ``_STARTS``)."""
+    found = np.empty((len(there), _STARTS), dtype=np.int64)
+    for i, values in enumerate(there):
+        if i < len(places):
+            distance = np.abs(places[i][:, None] - places[i]).max(axis=-1)
+            around = distance <= _OWN * steps[:, None]
+        tops = np.flatnonzero(values >= np.where(around, values, -np.inf).max(axis=1))
+        tops = tops[np.argsort(-values[tops], kind="stable")][:_STARTS]
+        found[i] = np.resize(tops[values[tops] >= _LEAST * values[tops[0]]], _STARTS)
+    return found
+
+
+def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """The knots, places between them, and beside both ends."""
+    share = np.arange(_BETWEEN) / _BETWEEN
+    between = (knots[:-1, None] + width[:, None] * share).ravel()
+    left, right = (np.geomspace(w / _BETWEEN, _DEEPEST, 40) for w in width[[0, -1]])
+    X = np.concatenate([knots[0] - left[::-1], between, knots[-1:], knots[-1] + right])
+    step = np.concatenate([left[::-1], np.repeat(width, _BETWEEN), width[-1:], right]) / (2 * _BETWEEN)
+    return X, 0.0 * X, step
+
+
+class _Climb:
+    """The way from some places up to the largest value near each.
+
+    A quadratic function is fitted to the values at nine places. Where these turn out to be no better
+    than the best before, as at a kink, the next nine lie closer around that.
+
+    Args:
+        places: to begin with, (states, starts, 2).
+        steps: from each to its neighbours, (states, starts).
+
+    Attributes:
+        top, value: the best place, and the value there.
+        done: would more rounds find nothing better?
+    """
+
+    def __init__(self, places: NDArray, steps: NDArray) -> None:
+        self.top, self.value = places.copy(), np.full(steps.shape, -np.inf)
+        self._middle, self._h, self._least = places.copy(), steps.copy(), _SMALLEST * steps
+        self.done = False
+
+    def keep(self, count: int) -> None:
+        """Go on from so many starts, those with the largest values."""
+        some = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
+        self.value, self._h, self._least = (
+            np.take_along_axis(x, some, 1) for x in (self.value, self._h, self._least)
+        )
+        self.top, self._middle = (
+            np.take_along_axis(x, some[..., None], 1) for x in (self.top, self._middle)
+        )
+
+    def take(self, stress: Stress) -> None:
+        """Look at nine places, and step."""
+        h = self._h[..., None]
+        middle = self._middle
+        middle[..., 1] = np.minimum(middle[..., 1], -self._h)  # none lies above the surface
+        nine = middle[..., None, :] + h[..., None] * _STENCIL
+        nine[..., 1] = np.minimum(nine[..., 1], 0.0)
+        shape = nine.shape[:-1]
+        values = stress(nine.reshape(shape[0], -1, 2)).reshape(shape)
+        values = np.where(np.isnan(values), -np.inf, values)
+        largest, where = values.max(axis=-1), np.asarray(values.argmax(axis=-1))
+        improved = largest > self.value
+        at = np.take_along_axis(nine, where[..., None, None], 2)[:, :, 0]
+        self.top = np.where(improved[..., None], at, self.top)
+        self.value = np.where(improved, largest, self.value)
+        known = np.isfinite(values).all(axis=-1, keepdims=True)
+        step = np.where(known, _summit(values), _STENCIL[where])
+        step[..., 1] = np.minimum(step[..., 1], -middle[..., 1] / self._h)
+        self._middle = np.where(improved[..., None], middle + h * step, self.top)
+        near = ~improved | (np.abs(step).max(axis=-1) < 1.0)
+        self.done = bool((~improved & (self._h <= self._least)).all())
+        self._h = np.maximum(np.where(near, self._h / _FINER, self._h), self._least)
+
+
+def _summit(values: NDArray) -> NDArray[np.float64]:
+    """Where the fitted quadratic function is largest, in steps; the best of the nine where nowhere."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        _, u, w, uu, uw, ww = np.moveaxis(values @ _FIT.T, -1, 0)
+        determinant = 4.0 * uu * ww - uw**2
+        summit = np.stack([uw * w - 2.0 * ww * u, uw * u - 2.0 * uu * w], axis=-1)
+        summit /= determinant[..., None]
+    round_ = (uu < 0.0) & (determinant > 0.0)
+    best = _STENCIL[values.argmax(axis=-1)]
+    return np.clip(np.where(round_[..., None], summit, best), -1.0, 1.0)
+
+
+def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDArray[np.float64]:
+    """Between two depths, of which the inner passes 1 somewhere near X, the last that does: (states,)."""
+    apart = (outer - inner) * _APART
+    for _ in range(_HALVINGS):
+        y = (inner + outer) / 2.0
+        three = X[:, None] + apart[:, None] * np.array([-1.0, 0.0, 1.0])
+        values = stress(np.stack([three, -y[:, None] + 0.0 * three], axis=-1))
+        u = vertex(values)
+        left, middle, right = values.T
+        top = middle + (right - left) * u / 2.0 + (left - 2.0 * middle + right) * u**2 / 2.0
+        passed = np.maximum(top, values.max(axis=1)) >= 1.0
+        X = X + apart * u
+        inner, outer = np.where(passed, y, inner), np.where(passed, outer, y)
+        apart *= _NEARER
+    return inner
+
+
+#: σ_XX, σ_YY, σ_XY at points (states or 1, n, 2) over a with Y <= 0: (3, states, n).
+Field = Callable[[NDArray], NDArray]
+
+
+#: Of a pressure without a jump, which ends within: at its very ends finite elements have no gradients.
+_SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
+
+
+#: Rounding of a distance.
+_HARDLY = 1.0 - 1e-9
+
+
+def places(body: Body) -> NDArray[np.float64]:
+    """Where the stresses of every state are looked at, over a, (n, 2)."""
+    knots = _knots(body)
+    return edge_places() if knots is None else Levels(knots).places
+
+
+def _knots(body: Body) -> NDArray[np.float64] | None:
+    """Where a pressure that is finite may change its course over a; None of a punch with edges."""
+    if body.pressure:
+        return body.pressure.knots
+    return _SMOOTH if body.finite else None
+
+
+class Strength:
+    """Yield of some states at one speed.
+
+    Args:
+        field: their stresses, of one method.
+        body: what slides over what; its yield strength is known.
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY under the punch, (states,).
+        local: exponents α at X = a and β at X = -a, (states,); of a punch.
+        half_width: of each state [m], (states,), where ends are found.
+        turns: stresses by the limit, where they have a power of the distance.
+        nearest: distance over a from such places from which on the field is good.
+    """
+
+    def __init__(
+        self,
+        field: Field,
+        body: Body,
+        response: Response,
+        g: NDArray,
+        local: Any,
+        half_width: NDArray | None = None,
+        turns: Turns | None = None,
+        nearest: float = 1.0,
+    ) -> None:
+        self._field, self._body, self._local = field, body, local
+        self._turns, self._nearest = turns, nearest
+        ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
+        #: Which states have an infinite stress where the pressure ends in a jump, (states,).
+        self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
+        assert body.yield_strength
+        unit = body.stress if half_width is None else body.load / (2.0 * half_width)
+        #: Yield strength in the unit of stresses, (states,).
+        self.strength = np.broadcast_to(body.yield_strength / unit, np.shape(g))
+
+    @cached_property
+    def von_mises(self) -> Peak:
+        """Largest von Mises stress of a pressure."""
+        return self._peak(self._von_mises, 0)
+
+    @cached_property
+    def shear(self) -> Peak:
+        """Largest shear stress in the plane of a pressure."""
+        return self._peak(lambda points: maximum_shear(*self._field(points)), 1)
+
+    @property
+    def first_load(self) -> NDArray[np.float64]:
+        """Load N per depth at which a pressure makes the solid yield somewhere [N/m], (states,).
+
+        Stresses grow like the load; under a punch of the height c|X|^k like its power 1 - 1/k, because
+        the contact grows, too.
+        """
+        k = exponent(self._body.profile) if self._body.found else None
+        power = k / (k - 1.0) if k else 1.0
+        allowed = (self.strength / self.von_mises.value) ** power
+        return np.where(self.infinite, 0.0, self._body.load * allowed)
+
+    @cached_property
+    def _zones(self) -> Zones:
+        exponents = np.column_stack([self._local.β, self._local.α])
+        return zones(self._over_strength, self._invariants[0] / self.strength[:, None], exponents)
+
+    @property
+    def reach(self) -> NDArray[np.float64]:
+        """Distance over a from X = -a and from X = a within which yield is passed, (states, 2)."""
+        return self._zones.reach
+
+    @property
+    def depth(self) -> NDArray[np.float64]:
+        """Depth over a to which the solid yields at the load, (states,)."""
+        if _knots(self._body) is None:
+            return self._zones.depth
+        there, peak = self._invariants[0] / self.strength[:, None], self.von_mises
+        scaled = Peak(peak.value / self.strength, peak.X, peak.Y)
+        return self._levels.depth(self._over_strength, there, scaled)
+
+    @cached_property
+    def _levels(self) -> Levels:
+        knots = _knots(self._body)
+        assert knots is not None
+        return Levels(knots)
+
+    @cached_property
+    def _invariants(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Von Mises and largest shear stress at :func:`places`, (states, n)."""
+        return self._both(self._field(places(self._body)[None]))
+
+    def _both(self, σ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Von Mises and largest shear stress, (states, n), of stresses (3, states, n)."""
+        found = self._von_mises_of(σ), maximum_shear(*σ)
+        # At a jump, where they are not known, there is nothing to climb to.
+        of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in found)
+        return of_mises, of_shear
+
+    def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
+        XX, YY, XY = σ
+        return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
+
+    def _von_mises(self, points: NDArray) -> NDArray[np.float64]:
+        return self._von_mises_of(self._field(points))
+
+    def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
+        return self._von_mises(points) / self.strength[:, None]
+
+    @cached_property
+    def _near_turns(self) -> tuple[NDArray, NDArray, tuple[NDArray, NDArray]] | None:
+        """Places around where stresses turn, steps there, and both stresses; None without any."""
+        if self._turns is None:
+            return None
+        centres = np.where(np.isnan(self._turns.X), self._turns.X[:, :1], self._turns.X)
+        if np.array_equal(centres, np.broadcast_to(centres[:1], centres.shape)):
+            centres = centres[:1]
+        around, steps = circles(centres, self._nearest)
+        return around, steps, self._both(self._field(around))
+
+    def _off_turns(self, stress: Callable[[NDArray], NDArray]) -> Callable[[NDArray], NDArray]:
+        """The stress, NaN nearer to where stresses turn than the field is good."""
+        if self._turns is None:
+            return stress
+        X = self._turns.X
+
+        def off(points: NDArray) -> NDArray[np.float64]:
+            distance = np.hypot(points[..., None, 0] - X[:, None], points[..., None, 1])
+            near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self._nearest * _HARDLY
+            return np.where(near, np.nan, stress(points))
+
+        return off
+
+    def _peak(self, stress: Callable[[NDArray], NDArray], which: int) -> Peak:
+        """Of von Mises (0) or of the largest shear stress (1)."""
+        at, steps, there = self._levels.places[None], self._levels.steps, self._invariants[which]
+        if self._near_turns and self._turns:
+            around, more, near = self._near_turns
+            at = np.concatenate([np.broadcast_to(at, (len(around), *at.shape[1:])), around], axis=1)
+            steps, there = np.append(steps, more), np.concatenate([there, near[which]], axis=1)
+        found = peak(self._off_turns(stress), at, steps, there)
+        if self._turns:
+            limit = self._both(self._turns.σ)[which]
+            best, rows = limit.argmax(axis=1), np.arange(len(limit))
+            higher = limit[rows, best] > found.value
+            found = Peak(
+                np.where(higher, limit[rows, best], found.value),
+                np.where(higher, self._turns.X[rows, best], found.X),
+                np.where(higher, 0.0, found.Y),
+            )
+        return Peak(*(np.where(self.infinite, np.nan, x) for x in (found.value, found.X, found.Y)))

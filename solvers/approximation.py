@@ -1,0 +1,152 @@
+"""Gauss's rule on a panel, and functions there by Legendre polynomials.
+
+Rational functions of one variable through values that are many functions' at once.
+
+The barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j w_j/(z - z_j), passes through
+the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all
+functions: their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM
+J. Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.legendre import leggauss, legvander
+from numpy.typing import NDArray
+
+
+def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Points in (-1, 1) and weights, (nodes,), and from values to coefficients, (nodes, nodes)."""
+    τ, w = leggauss(nodes)
+    return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
+
+
+def chebyshev_points(count: int) -> NDArray[np.float64]:
+    """Points in [0, 1] at which a smooth function is tabulated, both ends among them from two on."""
+    if count == 1:
+        return np.zeros(1)
+    return np.asarray((1.0 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2.0)
+
+
+def interpolation(s: NDArray, count: int) -> NDArray[np.float64]:
+    """Values at s in [0, 1] by those at :func:`chebyshev_points`, (*s.shape, count)."""
+    at_points, at_s = (chebvander(2.0 * x - 1.0, count - 1) for x in (chebyshev_points(count), s))
+    return np.asarray(at_s @ np.linalg.inv(at_points))
+
+
+def barycentric(nodes: NDArray, weights: NDArray, z: NDArray) -> NDArray[np.float64]:
+    """What of the values at nodes makes that at each z, (len(z), nodes); rows sum to 1.
+
+    Args:
+        nodes: all different, (nodes,).
+        weights: of the barycentric form, (nodes,).
+        z: where, (n,).
+    """
+    step = z[:, None] - nodes
+    met = step == 0.0
+    b = np.where(met.any(axis=1)[:, None], 1.0 * met, weights / np.where(met, 1.0, step))
+    return np.asarray(b / b.sum(axis=1)[:, None])
+
+
+def chebyshev_nodes(count: int, low: float, high: float) -> tuple[NDArray, NDArray]:
+    """Chebyshev's nodes from low to high, and the barycentric weights of the polynomial through them."""
+    angle = np.pi * (2.0 * np.arange(count) + 1.0) / (2.0 * count)
+    nodes = (low + high) / 2.0 - (high - low) / 2.0 * np.cos(angle)
+    return nodes, (-1.0) ** np.arange(count) * np.sin(angle)
+
+
+def polynomial_weights(nodes: NDArray) -> NDArray[np.float64]:
+    """Barycentric weights of the polynomial through values at any nodes, all different, (nodes,)."""
+    step = nodes[:, None] - nodes + np.eye(len(nodes))
+    logs = np.log(np.abs(step)).sum(axis=1)
+    return np.asarray(np.prod(np.sign(step), axis=1) * np.exp(logs.min() - logs))
+
+
+@dataclass(frozen=True)
+class Rational:
+    """A rational function through samples of many functions.
+
+    Attributes:
+        z: of the samples, (K,).
+        weights: of the barycentric form, (K,).
+    """
+
+    z: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+    def shares(self, z: NDArray) -> NDArray[np.float64]:
+        """What of the samples makes the values at each z, (len(z), K)."""
+        return barycentric(self.z, self.weights, z)
+
+
+def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
+    """The rational function through samples whose denominator the AAA algorithm finds.
+
+    That takes the worst sample for its next node until it comes near all the others; had it to follow
+    their last digits, or no more than one other, it would put poles anywhere. The numerator is the
+    polynomial that is right at all samples.
+
+    Args:
+        z: of the samples, all different, (K,), K >= 2.
+        values: of the functions there, (K, functions).
+        noise: root of the sum of squares of what is rounding in a sample.
+    """
+    count = len(z)
+    # A rotation of the functions among themselves changes no norm, and leaves at most K of them.
+    values = rotated(values)
+    found, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
+    weights, rest = np.zeros(0), np.arange(count)
+    for _ in range(max(count - _OTHERS, 1)):
+        error = np.linalg.norm(values - found, axis=1)
+        error[nodes] = -1.0
+        if error.max() <= noise and len(nodes):
+            break
+        nodes = np.append(nodes, error.argmax())
+        rest = np.setdiff1d(np.arange(count), nodes)
+        loewner = (values[rest][:, None] - values[nodes]) / (z[rest][:, None] - z[nodes])[..., None]
+        rows = loewner.transpose(0, 2, 1).reshape(-1, len(nodes))
+        weights = np.linalg.svd(rows)[2][-1]
+        found = barycentric(z[nodes], weights, z) @ values[nodes]
+    return Rational(z, _through_all(z, nodes, weights, rest))
+
+
+def rotated(values: NDArray) -> NDArray[np.float64]:
+    """Functions that are those of the values rotated among themselves, at most as many as samples.
+
+    Args:
+        values: (K, functions).
+    """
+    return np.asarray(np.linalg.qr(values.T, mode="r")).T
+
+
+def _through_all(z: NDArray, nodes: NDArray, weights: NDArray, rest: NDArray) -> NDArray[np.float64]:
+    """Weights of the form with the same denominator and a node at every sample."""
+    size = np.ptp(z) / 4.0
+    found = np.zeros(len(z))
+    found[nodes] = weights / np.prod((z[nodes][:, None] - z[rest]) / size, axis=1)
+    denominator = (size / (z[rest][:, None] - z[nodes])) @ weights
+    others = (z[rest][:, None] - z[rest]) / size + np.eye(len(rest))
+    found[rest] = denominator / np.prod(others, axis=1)
+    return found
+
+
+#: Samples that are no nodes of the AAA algorithm, at least: they determine the denominator.
+_OTHERS = 2
+
+#: Distance over that of the ends within which points count as equal.
+_EQUAL = 1e-10
+
+
+def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
+    """The point at which the polynomial with zeros at those chosen is largest; None where it vanishes.
+
+    Args:
+        z: points; those that are equal to ten digits are one, (n,).
+        chosen: numbers of those that are chosen.
+    """
+    steps = np.abs(z[:, None] - z[list(chosen)]) / (np.ptp(z) or 1.0)
+    with np.errstate(divide="ignore"):
+        logs = np.log(np.where(steps > _EQUAL, steps, 0.0)).sum(axis=1)
+    return int(logs.argmax()) if logs.max() > -np.inf else None

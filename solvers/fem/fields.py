@@ -1,0 +1,636 @@
+"""Displacements along the surface Y = 0, as piecewise polynomials gathered from all ranks.
+
+Displacement gradients inside the half-plane, of combinations of fields, at any points.
+
+Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
+
+What cells tell of fields by their deformation alone, to its last digits.
+
+All of the half-plane moves with a load, and near the end of a load cells are a billionth of that motion:
+in their displacement the deformation has lost its digits. It has them in a field and a small correction,
+if these are added only after each cell's own motion is gone.
+
+A combination of condensed fields, sampled over whole cells: what a picture of the solid shows.
+
+Cells of high degree are cut into small quadrilaterals. Each cell has points of its own, since stresses
+jump from cell to cell.
+
+Polygons cut along the sides of a box; what lies outside is left out.
+
+A displacement as a dolfinx function on a mesh of the physical plane, for those who go on in dolfinx.
+
+The program's own meshes are drawn in charts. Here every cell is curved as the chart bends it, by
+polynomials of the degree of the displacement, whose nodal values stay the same.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+from numpy.typing import ArrayLike, NDArray
+from petsc4py import PETSc
+
+from ..errors import MeshError
+from ..solids.solid import ByCells, Response
+from . import versions
+from .cells import (
+    Contracted,
+    gradients_in_plane,
+    image,
+    lagrange,
+    pull_back,
+    reference_values,
+    tensor_order,
+)
+from .space import Space
+
+#: Distance over a facet's length within which a point counts as between it and the one on the left.
+_BETWEEN = 1e-9
+
+
+@dataclass(frozen=True)
+class SurfaceTrace:
+    """Displacements of several fields along the surface, the same on every rank.
+
+    Attributes:
+        s: surface coordinates of the nodes of each facet in order of X, (F, p+1).
+        u: displacements there, over Na/(2aμ), (F, p+1, 2, fields).
+    """
+
+    s: NDArray[np.float64]
+    u: NDArray[np.float64]
+
+    def derivative(self, s: ArrayLike) -> NDArray[np.float64]:
+        """du/ds and dv/ds of every field at surface coordinates ``s``: (n, 2, fields).
+
+        Between two facets these jump; there they are those of the right one.
+        """
+        by_node, u, length = self._around(s)
+        return np.einsum("ni,ni...->n...", by_node, u) / length[:, None, None]
+
+    def rounding(self, s: ArrayLike) -> NDArray[np.float64]:
+        """What the last digits of the displacements can do to these: (n, 2, fields)."""
+        by_node, u, length = self._around(s)
+        worst = np.einsum("ni,ni...->n...", np.abs(by_node), np.abs(u)) / length[:, None, None]
+        return np.finfo(float).eps * worst
+
+    def _around(self, s: ArrayLike) -> tuple[NDArray, NDArray, NDArray]:
+        """Derivatives by nodal values of the facets there, these values, and the facets' lengths."""
+        s = np.asarray(s, dtype=float)
+        first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
+        facet = np.searchsorted(first, s, side="right") - 1
+        facet = np.clip(facet, 0, len(self.s) - 1)
+        start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
+        _, by_node = lagrange(self._reference_nodes, (s - start) / length)
+        return by_node, self.u[facet], length
+
+    @property
+    def _reference_nodes(self) -> NDArray[np.float64]:
+        """Node positions on the unit facet; the elements' are the same on all."""
+        widest = np.argmax(self.s[:, -1] - self.s[:, 0])
+        s = self.s[widest]
+        return (s - s[0]) / (s[-1] - s[0])
+
+
+class SurfaceSlopes:
+    """Derivatives along X, on the surface, of combinations of displacement fields.
+
+    Args:
+        space: the finite element space.
+        fields: displacements over N/(2μ).
+        X: positions over a.
+    """
+
+    def __init__(self, space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> None:
+        s = space.chart.surface_coordinate(X)
+        stretch = space.chart.surface_stretch(s)[:, None, None]
+        trace = gather(space, fields)
+        self._basis, self._rounding = (
+            trace.derivative(s) / stretch,
+            trace.rounding(s)[:, 0] / stretch[:, 0],
+        )
+
+    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
+        u_X, v_X = (weights @ self._basis[:, i, : weights.shape[1]].T for i in (0, 1))
+        return u_X, v_X
+
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        """What the last digits of the fields can do to μ u,X of combinations, (states, n)."""
+        return np.abs(weights) @ self._rounding[:, : weights.shape[1]].T
+
+
+def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
+    """Trace of the given displacement fields on the whole surface."""
+    facets = space.surface_facets(("contact", "free surface"))
+    u = space.fetch(fields, space.numbers[facets.nodes])
+    parts = space.comm.allgather((facets.s, u))
+    s = np.concatenate([part[0] for part in parts])
+    order = np.argsort(s[:, 0])
+    return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])
+
+
+#: How far outside a cell, over its size, a point still counts as inside.
+_SLACK = 1e-9
+
+#: Points whose gradients are held at once: of every field, or of every state.
+TOGETHER = 20_000
+
+
+#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+Values = Callable[[NDArray[np.int64]], NDArray]
+
+
+class KeptValues:
+    """Values of condensed fields in this rank's cells, found once for each that is asked for.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        fields: displacements over N/(2μ), condensed.
+    """
+
+    def __init__(self, space: Space, response: Response, fields: Sequence[PETSc.Vec]) -> None:
+        self._new = lambda cells: space.cell_values(fields, response, cells)
+        self._kept: dict[int, NDArray] = {}
+
+    def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Collective; see ``Values``."""
+        new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
+        found = self._new(new)
+        self._kept |= dict(zip(new.tolist(), found))
+        u = np.empty((len(cells), *found.shape[1:]))
+        for i, cell in enumerate(cells.tolist()):
+            u[i] = self._kept[cell]
+        return u
+
+
+class InteriorGradients:
+    """Displacement gradients along X and Y at given points, some of them at a time.
+
+    Where they are many, what is kept of the fields are their values at nodes, of which there are fewer.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        fields: displacements over N/(2μ), condensed.
+        points: positions over a with Y <= 0, (n, 2).
+        values: of the fields in cells, as of :class:`KeptValues`; found anew if not given.
+        side: at an interface 1 for what is above it, -1 for what is below.
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+
+    def __init__(
+        self,
+        space: Space,
+        response: Response,
+        fields: Sequence[PETSc.Vec],
+        points: NDArray,
+        values: Values | None = None,
+        side: int = 1,
+    ) -> None:
+        values = values or (lambda cells: space.cell_values(fields, response, cells))
+        self._count, self._fields = len(points), len(fields)
+        self._batches = [
+            _Batch(space, response, points[first : first + TOGETHER], side)
+            for first in range(0, max(len(points), 1), TOGETHER)
+        ]
+        cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
+        self._nodal = _Nodal(space, cells, values(cells))
+        #: Gradients of all fields, where one batch has all points.
+        self._basis: NDArray[np.float64] | None = None
+        if len(self._batches) == 1:
+            self._basis = self._batches[0].gradients(self._nodal)
+            self._nodal = self._nodal.combined(np.empty((0, 0)))  # no longer needed
+
+    def of(self, weights: NDArray) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
+        return np.concatenate([found for _, found in self.by_batches(weights)], axis=1)
+
+    def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
+        """The same, and of which points it is, for some points after the others. Collective."""
+        states, fields = weights.shape
+        for i, batch in enumerate(self._batches):
+            some = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
+            if self._basis is None and states < self._fields:
+                combined = batch.gradients(self._nodal.combined(weights))
+                yield some, np.moveaxis(combined, -1, 0)
+            else:
+                basis = batch.gradients(self._nodal) if self._basis is None else self._basis
+                yield some, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
+
+    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
+        """The same where the points are those of the first combination, of the second, and so on.
+
+        Returns:
+            Array (states, n/states, 2, 2).
+        """
+        basis = self._basis
+        if basis is None:
+            basis = np.concatenate([batch.gradients(self._nodal) for batch in self._batches])
+        states, fields = weights.shape
+        each = basis[..., :fields].reshape(states, -1, 2, 2, fields)
+        return np.einsum("snijf,sf->snij", each, weights)
+
+
+def gradients_at(
+    space: Space, response: Response, points: NDArray, values: Values
+) -> NDArray[np.float64]:
+    """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        points: with Y <= 0, (n, 2).
+        values: of the fields in cells.
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+    batch = _Batch(space, response, points)
+    return batch.gradients(_Nodal(space, batch.cells, values(batch.cells)))
+
+
+class _Nodal:
+    """Values of fields at the nodes of some cells.
+
+    Args:
+        space: the finite element space.
+        cells: numbers of this rank's cells, sorted, (m,).
+        values: at their local nodes, (m, nodes, 2, fields).
+
+    Attributes:
+        nodes: places of the nodes along a side of the unit square, (p+1,).
+        values: (m, p+1, p+1, 2, fields).
+    """
+
+    def __init__(self, space: Space, cells: NDArray[np.int64], values: NDArray) -> None:
+        grid, self.nodes = tensor_order(space.reference_nodes)
+        self.cells, self.values = cells, values[:, grid]
+
+    def combined(self, weights: NDArray) -> "_Nodal":
+        """Combinations of the fields with weights (states, fields) as fields."""
+        other = copy(self)
+        other.values = self.values[..., : weights.shape[1]] @ weights.T
+        return other
+
+    def of(self, cell: int) -> NDArray[np.float64]:
+        """Of one of the cells, (p+1, p+1, 2, fields)."""
+        return self.values[np.searchsorted(self.cells, cell)]
+
+
+class _Batch:
+    """Points, and where in this rank's cells they lie.
+
+    Args:
+        space: the finite element space.
+        response: for which the mesh is contracted.
+        points: positions over a with Y <= 0, (n, 2).
+        side: see :class:`InteriorGradients`.
+
+    Attributes:
+        cells: this rank's cells that hold a point, sorted.
+
+    Raises:
+        MeshError: a point lies outside the mesh.
+    """
+
+    def __init__(self, space: Space, response: Response, points: NDArray, side: int = 1) -> None:
+        self._chart, self._comm = space.contracted(response), space.comm
+        self._points, self._vertices = points, space.vertices[..., :2]
+        held = _locate(self._vertices, self._chart.from_physical(points))
+        if isinstance(response, ByCells):
+            of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
+            of_points = response.solids(points[:, 1], side)
+            held = held.some(of_cells[held.cell] == of_points[held.point])
+        order = np.argsort(held.cell, kind="stable")
+        self._point, self._t = held.point[order].astype(np.int32), held.t[order]
+        self.cells, self._first = np.unique(held.cell[order], return_index=True)
+        found = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
+        if not found.all():
+            X, Y = points[np.argmin(found)]
+            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+        #: How many cells hold a point, which are many on a border only.
+        self._found = found.astype(np.int16)
+
+    def gradients(self, nodal: _Nodal) -> NDArray[np.float64]:
+        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective."""
+        result = np.zeros((len(self._points), 2, 2, nodal.values.shape[-1]))
+        ends = np.append(self._first[1:], len(self._point))
+        for cell, first, end in zip(self.cells, self._first, ends):
+            # A cell holds a point once.
+            result[self._point[first:end]] += gradients_in_plane(
+                self._vertices[cell], nodal.nodes, self._t[first:end], nodal.of(cell)
+            )
+        # On the border between cells the gradient jumps; it is their mean.
+        result = self._comm.allreduce(result) / self._found[:, None, None, None]
+        return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
+
+
+@dataclass(frozen=True)
+class _Held:
+    """Pairs of a point and a cell of this rank that holds it.
+
+    Attributes:
+        point, cell: their numbers, (n,).
+        t: place of the point in the cell's unit square, (n, 2).
+    """
+
+    point: NDArray[np.int64]
+    cell: NDArray[np.int64]
+    t: NDArray[np.float64]
+
+    def some(self, which: NDArray) -> "_Held":
+        """Those of the pairs."""
+        return _Held(self.point[which], self.cell[which], self.t[which])
+
+
+def _locate(vertices: NDArray, x: NDArray) -> _Held:
+    cell, point = _near(vertices, x)
+    t = pull_back(vertices[cell], x[point])
+    return _Held(point, cell, t).some(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
+
+
+def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of a cell and a point within the smallest box around it."""
+    low, high = vertices.min(axis=1), vertices.max(axis=1)
+    slack = _SLACK * (high - low)
+    low, high = low - slack, high + slack
+    order = np.argsort(x[:, 0], kind="stable")
+    along, across = x[order].T
+    first = np.searchsorted(along, low[:, 0], side="left")
+    last = np.searchsorted(along, high[:, 0], side="right")
+    cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for i in np.flatnonzero(first < last):
+        some = slice(first[i], last[i])
+        found = order[some][(low[i, 1] <= across[some]) & (across[some] <= high[i, 1])]
+        cell.append(np.full(len(found), i))
+        point.append(found)
+    return np.concatenate(cell), np.concatenate(point)
+
+
+def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
+    """Nodal forces of a condensed field; collective.
+
+    The matrix times the field is the same, but for what rounding makes of the cells' motion.
+    """
+    result, numbers = field.duplicate(), space.outer_numbers
+    result.zeroEntries()
+    deformed = _deformed(space, [field])
+    for cells in space.pieces(len(numbers)):
+        condensed = space.condensed(response, cells)
+        for rows, S, u in zip(numbers[cells] // 2, condensed, deformed[cells]):
+            result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+    result.assemble()
+    return result
+
+
+def shapes(
+    space: Space, response: Response, fields: Sequence[PETSc.Vec], corrections: Sequence[PETSc.Vec]
+) -> NDArray[np.float64]:
+    """Values of fields plus corrections in all of this rank's cells, less those of a cell's first node.
+
+    Collective.
+
+    Returns:
+        Array (cells, nodes of a cell, 2, fields).
+    """
+    outer = _deformed(space, fields) + _deformed(space, corrections)
+    pieces = [space.extended(outer[:0], response, np.arange(0))]
+    numbers = np.arange(len(outer))
+    for cells in space.pieces(len(outer)):
+        pieces.append(space.extended(outer[cells], response, numbers[cells]))
+    return np.concatenate(pieces)
+
+
+def _deformed(space: Space, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
+    """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
+    outer = space.fetch(fields, space.outer_numbers)
+    displacement = outer[:, : len(space.kernel.outer)]
+    displacement -= displacement[:, :1].copy()
+    return outer
+
+
+def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
+    """The part of a convex polygon with |X| <= extent and Y >= -extent.
+
+    Args:
+        corners: in turn, over a, (k, 2).
+        extent: over a.
+
+    Returns:
+        Its corners in turn, (n, 2); none where nothing is left.
+    """
+    polygon = corners
+    for axis, bound, sign in ((0, extent, 1.0), (0, -extent, -1.0), (1, -extent, -1.0)):
+        beyond, left = sign * (polygon[:, axis] - bound), []
+        for i, here in enumerate(polygon):
+            one, other = beyond[i - 1], beyond[i]
+            if one * other < 0.0:
+                crossing = polygon[i - 1] + one / (one - other) * (here - polygon[i - 1])
+                crossing[axis] = bound
+                left.append(crossing)
+            if other <= 0.0:
+                left.append(here)
+        polygon = np.reshape(left, (-1, 2))
+    return polygon
+
+
+def in_quads(count: int) -> NDArray[np.int64]:
+    """A convex polygon of so many corners, 3 at least, in quadrilaterals; a triangle doubles its last."""
+    last = count - 1
+    return np.array([(0, i, min(i + 1, last), min(i + 2, last)) for i in range(1, last, 2)])
+
+
+def in_physical_plane(
+    space: Space,
+    response: Response,
+    fields: Sequence[PETSc.Vec],
+    weights: NDArray,
+    length: float,
+    displacement: float,
+) -> Any:
+    """A combination of displacement fields; on one rank only.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        fields: displacements over N/(2μ), condensed.
+        weights: of the first of the fields, or of all.
+        length: a, in the unit of the mesh.
+        displacement: N/(2μ), in the unit of the displacement.
+
+    Returns:
+        A dolfinx ``Function`` of two components, named displacement; its space and mesh come with it.
+    """
+    vertices, nodes = space.vertices[..., :2], _evenly(space.reference_nodes)
+    cells = versions.cell_nodes(space.V)
+    places = np.empty((cells.max() + 1, 2))
+    places[cells] = space.contracted(response).to_physical(image(vertices, nodes))
+    mesh = versions.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
+    values = displacement * _nodal(space, response, fields, weights)
+    V = versions.space(mesh, versions.vector_element(space.degree), {})
+    found = fem.Function(V, name="displacement")
+    # It is asked for at all nodes of one cell after the other.
+    found.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
+    found.x.scatter_forward()
+    return found
+
+
+def _evenly(reference: NDArray) -> NDArray[np.float64]:
+    """The same nodes of a cell, spaced evenly, which all versions of dolfinx take a cell's own for."""
+    _, side = tensor_order(reference)
+    return np.abs(reference[..., None] - side).argmin(axis=-1) / (len(side) - 1.0)
+
+
+def _nodal(
+    space: Space, response: Response, fields: Sequence[PETSc.Vec], weights: NDArray
+) -> NDArray[np.float64]:
+    """Values of a combination of fields at the nodes of every cell, (cells, nodes, 2)."""
+    field = fields[0].duplicate()
+    field.zeroEntries()
+    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
+    numbers = np.arange(len(space.vertices))
+    found = [
+        space.cell_values([field], response, numbers[cells])[..., 0]
+        for cells in space.pieces(len(numbers))
+    ]
+    field.destroy()
+    return np.concatenate(found)
+
+
+#: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
+_VANISHING = 1e-6
+
+
+@dataclass(frozen=True)
+class SampledField:
+    """A displacement field at the corners of small quadrilaterals.
+
+    Attributes:
+        points: positions over a, (n, 2).
+        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
+        displacement: over N/(2μ), (n, 2).
+        gradient: μ ∂u_i/∂X_j over N/(2a), (n, 2, 2).
+    """
+
+    points: NDArray[np.float64]
+    quads: NDArray[np.int64]
+    displacement: NDArray[np.float64]
+    gradient: NDArray[np.float64]
+
+    def gathered(self, comm: MPI.Comm) -> "SampledField | None":
+        """The pieces of all ranks in one, on rank 0; None on the others. Collective."""
+        pieces = comm.gather(self)
+        return None if pieces is None else _joined(pieces)
+
+
+def sample(
+    space: Space,
+    response: Response,
+    fields: Sequence[PETSc.Vec],
+    weights: NDArray,
+    extent: float,
+    n: int,
+) -> SampledField:
+    """This rank's piece of a combination of fields, in the part |X|, |Y| <= extent of the solid.
+
+    Collective. Quadrilaterals that reach beyond that part are cut along its sides.
+
+    Args:
+        space: the finite element space.
+        response: that the fields are solutions for.
+        fields: displacements over N/(2μ), condensed.
+        weights: of the first of the fields, or of all.
+        extent: half the width, and the depth, of what is sampled, over a.
+        n: quadrilaterals along each side of a cell, about the degree.
+    """
+    t, corners = _split(n)
+    vertices = space.vertices[..., :2]
+    chart = space.contracted(response)
+    X = chart.to_physical(image(vertices, t))
+    low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
+    wanted = np.all((low < extent) & (high > -extent), axis=2)
+    whole = np.all((low >= -extent) & (high <= extent), axis=2)
+    cells = np.flatnonzero(wanted.any(axis=1))
+    field = fields[0].duplicate()
+    field.zeroEntries()
+    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
+    grid, nodes = tensor_order(space.reference_nodes)
+    pieces = []
+    for piece in space.pieces(space.comm.allreduce(len(cells), MPI.MAX)):
+        some = cells[piece]
+        for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
+            crossing = corners[wanted[cell] & ~whole[cell]]
+            at, cut = _cut(chart, vertices[cell], t, crossing, extent)
+            quads = np.concatenate([corners[whole[cell]], cut])
+            displacement = reference_values(nodes, at, u)[..., 0]
+            gradient = _gradients(chart, vertices[cell], nodes, at, u, n)
+            points = chart.to_physical(image(vertices[cell], at))
+            pieces.append(_without_unused(SampledField(points, quads, displacement, gradient)))
+    field.destroy()
+    return _joined(pieces)
+
+
+def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The unit square cut into n x n: its (n+1)² points, and the corners of each part in turn."""
+    side = np.linspace(0.0, 1.0, n + 1)
+    t = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    number = np.arange(len(t)).reshape(n + 1, n + 1)
+    around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    return t, np.stack(around, axis=-1).reshape(-1, 4)
+
+
+def _cut(
+    chart: Contracted, vertices: NDArray, t: NDArray, quads: NDArray, extent: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A cell's quadrilaterals cut along a box: points of the unit square, new ones last, and quads."""
+    points, cut, count = [t], [np.empty((0, 4), dtype=np.int64)], len(t)
+    for corners in chart.to_physical(image(vertices, t[quads])):  # counterclockwise, as all cells are
+        polygon = clipped(corners, extent)
+        if len(polygon) >= 3:
+            cells = np.broadcast_to(vertices, (len(polygon), 4, 2))
+            points.append(pull_back(cells, chart.from_physical(polygon)))
+            cut.append(count + in_quads(len(polygon)))
+            count += len(polygon)
+    return np.concatenate(points), np.concatenate(cut)
+
+
+def _gradients(
+    chart: Contracted, vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray, n: int
+) -> NDArray[np.float64]:
+    """Physical displacement gradients of one field at places t of a cell, all finite: (m, 2, 2)."""
+    # At a punch edge the chart's stretch is 0 and the stress infinite. What stands there is the stress
+    # in the middle of the small quadrilateral at that corner, the mean a viewer would paint it with.
+    stretch = chart.chart.stretch(image(vertices, t))
+    at_edge = stretch < _VANISHING * stretch.max()
+    t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
+    gradients = gradients_in_plane(vertices, nodes, t, u)
+    return chart.physical_gradients(image(vertices, t), gradients)[..., 0]
+
+
+def _without_unused(field: SampledField) -> SampledField:
+    """The same without points that no quadrilateral has."""
+    used, quads = np.unique(field.quads, return_inverse=True)
+    return SampledField(
+        field.points[used], quads.reshape(-1, 4), field.displacement[used], field.gradient[used]
+    )
+
+
+def _joined(pieces: Sequence[SampledField]) -> SampledField:
+    """All pieces in one, in their order."""
+    first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
+    return SampledField(
+        np.concatenate([np.empty((0, 2)), *(piece.points for piece in pieces)]),
+        np.concatenate(
+            [np.empty((0, 4), dtype=np.int64), *(piece.quads + k for piece, k in zip(pieces, first))]
+        ),
+        np.concatenate([np.empty((0, 2)), *(piece.displacement for piece in pieces)]),
+        np.concatenate([np.empty((0, 2, 2)), *(piece.gradient for piece in pieces)]),
+    )

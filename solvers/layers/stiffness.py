@@ -1,0 +1,390 @@
+"""A uniform solid between two depths, seen from a load that moves: what goes up in it and what goes down.
+
+For a field e^(ikX), k > 0, displacements u = e^(ik Ḡ Y) a decay downwards and u = e^(ik G Y) b upwards, G
+of the solid's own half-plane, and their tractions t = (σ_XY, σ_YY) are k Z₋ u and k Z₊ u with
+
+    Z₋ = i conj(L),   Z₊ = i L,   L = Rᵀ + T G.
+
+Below the speed of the solid's surface wave Z₋ is positive and Z₊ negative, both Hermitian.
+
+A uniform layer: how it changes the stiffness of what is below it, and the field inside it.
+
+With E = e^(ik G H), Z_b the stiffness of what is below and
+
+    r = (Z₊ - Z_b)⁻¹ (Z_b - Z₋),   W = E r conj(E),
+
+the stiffness on top is Z₋ + δ, δ = (Z₊ - Z₋) W (1 + W)⁻¹: exponentials that decay, and no other.
+
+A layer whose constants change with depth: the Riccati equation of its stiffness, without cancellation.
+
+With Y upwards the stiffness Z of what is below obeys
+
+    Z' = k [Q - R T⁻¹Rᵀ - i R T⁻¹Z + i Z T⁻¹Rᵀ - Z T⁻¹Z].
+
+Z₋ of a half-plane of the solid at that depth makes the bracket vanish, and with T⁻¹Z₋ - i T⁻¹Rᵀ = i Ḡ the
+difference δ = Z - Z₋ and the displacement u that belongs to it obey
+
+    δ' = k [δ N + Nᴴ δ - δ T⁻¹ δ] - Z₋',   u' = k [T⁻¹ δ - N] u,   N = -i Ḡ:
+
+δ keeps all its digits where it is small, which is where k is large.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from ..errors import SolveError
+
+
+def inverse(M: NDArray) -> NDArray[Any]:
+    """Of matrices (..., 2, 2), by the formula."""
+    a, b, c, d = M[..., 0, 0], M[..., 0, 1], M[..., 1, 0], M[..., 1, 1]
+    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=-2)
+    return np.asarray(adjugate / (a * d - b * c)[..., None, None])
+
+
+def least(Z: NDArray) -> NDArray[np.float64]:
+    """Smaller eigenvalue of Hermitian matrices (..., 2, 2); NaN stays."""
+    a, d = Z[..., 0, 0].real, Z[..., 1, 1].real
+    across = np.abs(Z[..., 0, 1] + Z[..., 1, 0].conj()) / 2.0
+    half = np.hypot((a - d) / 2.0, across)
+    # The product over the larger one where both are positive: nothing cancels.
+    larger = (a + d) / 2.0 + half
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(larger > 0.0, (a * d - across**2) / larger, (a + d) / 2.0 - half)
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A solid at a speed.
+
+    Attributes:
+        response: of its half-plane at that speed.
+        modulus: what its stiffness is given over, over the modulus of the surface's solid.
+    """
+
+    response: Any
+    modulus: float
+
+    @cached_property
+    def G(self) -> NDArray[Any]:
+        """u,Y = G u,X of what decays upwards for k > 0, (2, 2)."""
+        return np.asarray(self.response.G)
+
+    @cached_property
+    def down(self) -> NDArray[Any]:
+        """Z₋, (2, 2)."""
+        return np.asarray(1j * self.modulus * self.response.L.conj())
+
+    @cached_property
+    def up(self) -> NDArray[Any]:
+        """Z₊, (2, 2)."""
+        return np.asarray(1j * self.modulus * self.response.L)
+
+    @cached_property
+    def T_inverse(self) -> NDArray[np.float64]:
+        """Inverse of the stiffness across, (2, 2)."""
+        return np.asarray(self.response.T_inverse / self.modulus)
+
+    def upwards(self, kh: NDArray) -> NDArray[Any]:
+        """e^(ik G h) for h >= 0, (n, 2, 2); what decays downwards is its conjugate at the same distance.
+
+        Args:
+            kh: k times h, (n,).
+        """
+        p, other = self.response.roots.each
+        middle, half = (p + other) / 2.0, (p - other) / 2.0
+        one, two = np.exp(1j * kh * p), np.exp(1j * kh * other)
+        x = kh * half
+        near = np.abs(x) < 0.5
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            by_series = np.exp(1j * kh * middle) * kh * np.sinc(np.where(near, x, 0.0) / np.pi)
+            by_difference = (one - two) / (2j * half)
+        change = np.where(near, by_series, by_difference)
+        beyond = self.G - middle * np.eye(2)
+        return np.asarray(
+            ((one + two) / 2.0)[:, None, None] * np.eye(2) + 1j * change[:, None, None] * beyond
+        )
+
+
+_ONE = np.eye(2)
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """A layer at a speed.
+
+    Attributes:
+        medium: its solid.
+        H: thickness over a.
+    """
+
+    medium: Medium
+    H: float
+
+    @property
+    def top(self) -> Medium:
+        """The solid at its upper face."""
+        return self.medium
+
+    @property
+    def bottom(self) -> Medium:
+        """The solid at its lower face."""
+        return self.medium
+
+    def check(self) -> None:
+        """There is nothing in it that could not be followed."""
+
+    def _reflected(self, below: NDArray) -> NDArray:
+        """r, (n, 2, 2)."""
+        return inverse(self.medium.up - below) @ (below - self.medium.down)
+
+    def excess(self, k: NDArray, below: NDArray) -> NDArray:
+        """δ: stiffness on top less that of a half-plane of the solid there, (n, 2, 2).
+
+        Args:
+            k: wavenumbers times a, (n,).
+            below: stiffness Z of what is below, (n, 2, 2).
+        """
+        E = self.medium.upwards(k * self.H)
+        W = E @ self._reflected(below) @ E.conj()
+        return np.asarray((self.medium.up - self.medium.down) @ W @ inverse(_ONE + W))
+
+    def stands(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
+        """Smaller eigenvalue of what holds its lower face where the upper one is held, (n,).
+
+        Not positive: some wave with this wavenumber runs inside, slower than the load.
+        """
+        E = self.medium.upwards(k * self.H)
+        back = E.conj() @ E
+        with np.errstate(all="ignore"):
+            own = -(self.medium.up - self.medium.down @ back) @ inverse(_ONE - back)
+        return least(below + own)
+
+    def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
+        """Displacement of the lower face by that of the upper one, (n, 2, 2).
+
+        Args:
+            k, below: as before.
+        """
+        E, r = self.medium.upwards(k * self.H), self._reflected(below)
+        return np.asarray((_ONE + r) @ E.conj() @ inverse(_ONE + E @ r @ E.conj()))
+
+    def cut(self, depth: float) -> tuple["Uniform", "Uniform"]:
+        """What is above and below a depth."""
+        return Uniform(self.medium, depth), Uniform(self.medium, self.H - depth)
+
+    def first_order(self) -> NDArray[Any]:
+        """What k δ tends to for large k, (2, 2): δ falls exponentially."""
+        return np.zeros((2, 2), dtype=complex)
+
+
+#: Coefficients of the polynomials in which properties are expanded, at first and at most; what is small
+#: enough at their end, and what of them is rounding.
+_FEW, _MANY, _SMALL, _ROUNDING = 17, 513, 1e-12, 2e-15
+#: Twice k Im p times the depth below which nothing is felt on top.
+_FELT = 78.0
+#: Depths at which it is looked at how fast fields fall.
+_LOOKED_AT = 33
+#: Slices by which it is seen whether a wave runs inside.
+_SLICES = 16
+#: Relative error of a step, and absolute error of δ over Z.
+_STEP, _ABSOLUTE = 1e-10, 1e-14
+
+
+@dataclass(frozen=True)
+class Graded:
+    """A layer, or a part of one, at a speed.
+
+    Attributes:
+        medium_of: its solid where the share s of the change from top to bottom is done, s in [0, 1].
+        H: thickness over a.
+        power: s = (depth/whole)^power.
+        offset, whole: depth of the upper face in a layer, and its thickness, of which this is a part;
+            ``whole`` 0: all of it.
+        rtol: of a step of the integration.
+    """
+
+    medium_of: Callable[[float], Medium]
+    H: float
+    power: float = 1.0
+    offset: float = 0.0
+    whole: float = 0.0
+    rtol: float = _STEP
+
+    @property
+    def _whole(self) -> float:
+        return self.whole or self.H
+
+    @cached_property
+    def top(self) -> Medium:
+        """The solid at its upper face."""
+        return self.medium_at(0.0)
+
+    @cached_property
+    def bottom(self) -> Medium:
+        """The solid at its lower face."""
+        return self.medium_at(self.H)
+
+    def medium_at(self, depth: float) -> Medium:
+        """The solid at a depth below the upper face."""
+        return self.medium_of(min((self.offset + depth) / self._whole, 1.0) ** self.power)
+
+    def cut(self, depth: float) -> tuple["Graded", "Graded"]:
+        """What is above and below a depth."""
+        below = replace(self, H=self.H - depth, offset=self.offset + depth, whole=self._whole)
+        return replace(self, H=depth, whole=self._whole), below
+
+    @cached_property
+    def _series(self) -> NDArray[Any]:
+        """Ḡ, T⁻¹, Z₋ as Chebyshev series in 2s - 1, (terms, 3, 2, 2).
+
+        Raises:
+            SolveError: they are not smooth.
+        """
+        count = _FEW
+        while count <= _MANY:
+            x = np.cos(np.pi * np.arange(count) / (count - 1))
+            media = [self.medium_of((1.0 + value) / 2.0) for value in x.tolist()]
+            values = np.array([[m.G.conj(), m.T_inverse, m.down] for m in media])
+            c = np.linalg.solve(chebyshev.chebvander(x, count - 1), values.reshape(count, -1))
+            size = np.abs(c).max(axis=0)
+            size = np.maximum(size, size.reshape(3, 4).max(axis=1).repeat(4))
+            if count > _FEW and not _hopeful(np.abs(c / size).max(axis=1)):
+                break
+            if np.all(np.abs(c[-3:]) <= _SMALL * size):
+                keep = np.flatnonzero((np.abs(c) > _ROUNDING * size).any(axis=1))[-1] + 1
+                return np.asarray(c[: max(keep, 2)].reshape(-1, 3, 2, 2))
+            count = 2 * count - 1
+        raise SolveError("the solid of a graded layer changes too much to be followed at this speed")
+
+    def check(self) -> None:
+        """
+        Raises:
+            SolveError: its solid changes too much to be followed.
+        """
+        self._series  # noqa: B018 - cached
+
+    @cached_property
+    def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
+        from scipy.integrate import cumulative_trapezoid  # a slow import
+
+        depth = np.linspace(0.0, self.H, _LOOKED_AT)
+        decay = [min(p.imag for p in self.medium_at(d).response.roots.each) for d in depth.tolist()]
+        return depth, cumulative_trapezoid(decay, depth, initial=0.0)
+
+    def _reach(self, k: NDArray) -> NDArray[np.float64]:
+        """Depth over which the integration goes, (n,)."""
+        depth, fallen = self._falls
+        with np.errstate(divide="ignore"):
+            return np.interp(_FELT / (2.0 * k), fallen, depth)
+
+    def _properties(self, depth: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """N, T⁻¹ and dZ₋/dY at depths, (n, 2, 2) each."""
+        relative = np.maximum((self.offset + depth) / self._whole, 0.0)
+        angle = np.arccos(np.clip(2.0 * relative**self.power - 1.0, -1.0, 1.0))
+        values = np.cos(np.outer(angle, np.arange(len(self._packed)))) @ self._packed
+        rate = self.power * relative ** (self.power - 1.0) / self._whole
+        G, T, slope = values.view(complex).reshape(-1, 3, 2, 2).swapaxes(0, 1)
+        return -1j * G, T.real, -rate[:, None, None] * slope
+
+    @cached_property
+    def _packed(self) -> NDArray[np.float64]:
+        """Ḡ, T⁻¹ and dZ₋/ds as one series of real numbers, (terms, 24)."""
+        c = self._series.copy()
+        c[:, 2] = 0.0
+        c[:-1, 2] = 2.0 * chebyshev.chebder(self._series[:, 2])
+        return np.ascontiguousarray(c.reshape(len(c), 12)).view(float)
+
+    def _rate(self, k: NDArray, depth: NDArray, δ: NDArray) -> NDArray[Any]:
+        """δ' over Y."""
+        N, T, slope = self._properties(depth)
+        moved = δ @ (N - T @ δ / 2.0)
+        # δ is Hermitian, and so is δ T⁻¹ δ.
+        return np.asarray(k[:, None, None] * (moved + moved.conj().swapaxes(1, 2)) - slope)
+
+    def _swept(self, k: NDArray, below: NDArray, dense: bool) -> Any:
+        """δ times 1 + k H from the lowest depth that is felt upwards, over τ from 0 to 1.
+
+        Raises:
+            SolveError: it is not finite: the speed is beyond that of a wave inside.
+        """
+        from scipy.integrate import solve_ivp
+
+        if np.any(k <= 0.0):
+            raise ValueError(f"k a = {k.min()!r}: expected wavenumbers > 0")
+        reach, size = self._reach(k), (1.0 + k * self.H)[:, None, None]
+        whole = (reach >= self.H)[:, None, None]
+        start = np.where(whole, size * (below - self.bottom.down), 0.0)
+
+        def rate(τ: float, flat: NDArray) -> NDArray[Any]:
+            δ = flat.reshape(-1, 2, 2) / size
+            return np.asarray((reach[:, None, None] * size * self._rate(k, reach * (1.0 - τ), δ)).ravel())
+
+        with np.errstate(all="ignore"):
+            found = solve_ivp(
+                rate, (0.0, 1.0), start.astype(complex).ravel(), method="DOP853", rtol=self.rtol,
+                atol=_ABSOLUTE * float(np.abs(self.top.down).max()), dense_output=dense,
+            )  # fmt: skip
+        if not found.success:
+            raise SolveError(f"the stiffness of a graded layer was not found: {found.message}")
+        return found
+
+    def excess(self, k: NDArray, below: NDArray) -> NDArray[Any]:
+        """δ: stiffness on top less that of a half-plane of the solid there, (n, 2, 2).
+
+        Args:
+            k: wavenumbers times a, (n,), positive.
+            below: stiffness Z of what is below, (n, 2, 2).
+        """
+        found = self._swept(k, below, dense=False)
+        return np.asarray(found.y[:, -1].reshape(-1, 2, 2) / (1.0 + k * self.H)[:, None, None])
+
+    def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
+        """Displacement of the lower face by that of the upper one, (n, 2, 2); 0 where nothing is felt."""
+        from scipy.integrate import solve_ivp
+
+        dense, size = self._swept(k, below, dense=True).sol, (1.0 + k * self.H)[:, None, None]
+        reach = self._reach(k)
+
+        def rate(fallen: float, flat: NDArray) -> NDArray[Any]:
+            N, T, _ = self._properties(reach * fallen)
+            δ = dense(1.0 - fallen).reshape(-1, 2, 2) / size
+            return np.asarray(((reach * k)[:, None, None] * (N - T @ δ) @ flat.reshape(-1, 2, 2)).ravel())
+
+        start = np.tile(np.eye(2, dtype=complex), (len(k), 1, 1)).ravel()
+        found = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14)
+        if not found.success:
+            raise SolveError(f"the field in a graded layer was not found: {found.message}")
+        return np.where((reach >= self.H)[:, None, None], found.y[:, -1].reshape(-1, 2, 2), 0.0)
+
+    def first_order(self) -> NDArray[Any]:
+        """What k δ on top tends to for large k, (2, 2)."""
+        N, _, slope = (part[0] for part in self._properties(np.zeros(1)))
+        one = np.eye(2)
+        # Nᴴ δ + δ N = Z₋' by rows.
+        system = np.kron(N.conj().T, one) + np.kron(one, N.T)
+        return np.asarray(np.linalg.solve(system, slope.ravel()).reshape(2, 2))
+
+    def stands(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
+        """Smallest of what holds faces inside where those above are held, by uniform slices, (n,)."""
+        h, found = self.H / _SLICES, []
+        for i in range(_SLICES - 1, -1, -1):
+            slice_ = Uniform(self.medium_at((i + 0.5) * h), h)
+            found.append(slice_.stands(k, below))
+            below = slice_.top.down + slice_.excess(k, below)
+        return np.min(np.where(np.isnan(found), -np.inf, found), axis=0)
+
+
+def _hopeful(c: NDArray) -> bool:
+    """Will coefficients that fall as these do be small before they are too many?"""
+    half = len(c) // 2
+    first, last = c[half // 2 : half].max(), c[-half // 2 :].max()
+    rate = np.log(max(last, _ROUNDING) / max(first, _ROUNDING)) / (len(c) - half)
+    return bool(last <= _SMALL or np.log(last) + rate * (_MANY - len(c)) <= np.log(_SMALL))

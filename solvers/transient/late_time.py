@@ -1,0 +1,71 @@
+"""How a flat punch that starts from rest comes to steady sliding: like 1/t, by a formula.
+
+At late times t the pressure is nearly that of steady motion, and what waves sent out before leave behind
+is a tilt of the surface: with N̂ = n + g n₁₂ the kernel of complex speeds c + is/k differs from the steady
+one by
+
+    i s N̂'(c)/(k|k|),  that is (N̂'/π) s log s X + …,  so that  μ v = … + (2/π) N̂' X/t
+
+(stresses over N/(2a), lengths over a, times over a/c_s). The punch does not tilt; its pressure is that of
+one tilted by as much the other way, in closed form, and
+
+    centre: + 2 (N̂'/N̂) (1 + α)(1 + β)/t,    K_I: + 2 (N̂'/N̂) (1 + α)/t at X = a, - 2 (N̂'/N̂) (1 + β)/t at -a
+
+the latter relative to K_I. At rest N̂' = 0, and the next term is left, a bend by N̂'' X²/(2π t²).
+"""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from ..solids.solid import Solid
+
+#: Step of differences in c, at which half of the digits of a second one are left.
+_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Approach:
+    """What is left of the way to steady sliding at late times; times over a/c_s.
+
+    Attributes:
+        centre: of the pressure over a, times t.
+        K_left, K_right: differences of K_I at X = -a and X = a over K_I of steady motion, times t.
+        at_rest: the same of both times t², where nothing moves.
+    """
+
+    centre: float
+    K_left: float
+    K_right: float
+    at_rest: float
+
+    def within(self, share: float) -> float:
+        """Time from which on all are within a share of steady motion, when the load came on at once."""
+        slow = max(map(abs, (self.centre, self.K_left, self.K_right)))
+        return (slow + sqrt(slow**2 + 4.0 * share * self.at_rest)) / (2.0 * share)
+
+
+def approach(solid: Solid, c: float, g: float) -> Approach:
+    """Of a start from rest.
+
+    Args:
+        solid: uniform.
+        c: speed over c_s, below the solid's limit.
+        g: σ_XY/σ_YY under the punch.
+    """
+    h = min(_STEP, (solid.limit() - c) / 10.0)
+
+    def N(c: float) -> float:
+        response = solid.response(abs(c))  # even in c
+        return response.n + g * response.n12
+
+    steady = solid.response(c)
+    change = (N(c + h) - N(c - h)) / (2.0 * h) / N(c)
+    bend = (N(_STEP) - 2.0 * N(0.0) + N(-_STEP)) / _STEP**2 / N(0.0)
+    α = -0.5 - np.arctan(g * steady.q / N(c)) / pi
+    β = -1.0 - α
+    return Approach(
+        2.0 * change * (1.0 + α) * (1.0 + β), -2.0 * change * (1.0 + β), 2.0 * change * (1.0 + α),
+        abs(bend) / 4.0,
+    )  # fmt: skip

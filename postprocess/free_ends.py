@@ -38,7 +38,8 @@ from scipy.special import roots_jacobi
 from galinx.solvers.contact import under_punch
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import check_reach, jumps, kinks
-from galinx.solvers.solution import Surface, Turns
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
+from galinx.solvers.solution import Between, Surface, Turns
 
 from .pressure import (
     density_of_forces,
@@ -287,7 +288,7 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), (24, 16), 3
+_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), 24, 3
 #: Distance over a from an end within which stresses beside it tell what they are at it; singular values
 #: below which terms are one.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
@@ -315,8 +316,7 @@ def _two_series(
         (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
-    count = _SEEN_AT[0 if at_end else 1]
-    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
     known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
     powers = np.arange(_TERMS_OF_EACH)
 
@@ -398,6 +398,53 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
     return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
 
 
+#: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
+#: stress is interpolated.
+_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+#: Highest and lowest places among the few next to which the many are looked at.
+_TOPS = 4
+
+
+def turns_at_knots(
+    pressure: LinearPressure, g: NDArray, σ_XX: Callable[[NDArray], NDArray[np.float64]]
+) -> Turns:
+    """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
+
+    Args:
+        pressure: prescribed.
+        g: σ_XY/σ_YY, (states,).
+        σ_XX: in-plane stress over N/(2a) at positions on the surface, (states, n).
+    """
+    X = np.column_stack([pressure.knots[:-1], _between_knots(pressure, _COARSE)]).ravel()
+    each = σ_XX(np.append(X, 1.0))
+    each[:, [0, -1]] = np.where(pressure.values[[0, -1]] != 0.0, np.nan, each[:, [0, -1]])
+    per = 1 + len(_COARSE)
+    σ = each[:, ::per]
+    σ_YY = np.where(np.isnan(σ), np.nan, pressure.values)
+    knots = np.where(np.isnan(σ), np.nan, pressure.knots)
+    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
+    # A knot belongs to the intervals on both sides of it.
+    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
+    intervals = intervals[(intervals >= 0) & (intervals < len(pressure.knots) - 1)]
+    graded = _between_knots(pressure, _GRADED)[intervals]
+    between = Between(graded, _GRADED, σ_XX(graded.ravel()).reshape(len(g), *graded.shape))
+    return Turns(knots, np.array([σ, σ_YY, g[:, None] * σ_YY]), between)
+
+
+def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
+    """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
+    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(left + width / (1.0 + np.exp(-x)))
+
+
+def _tops(values: NDArray) -> NDArray[np.int64]:
+    """Numbers of the highest places (n,) of curves, (states, n)."""
+    padded = np.pad(np.nan_to_num(values, nan=-np.inf), ((0, 0), (1, 1)), constant_values=-np.inf)
+    inner = padded[:, 1:-1]
+    heights = np.where((inner >= padded[:, :-2]) & (inner >= padded[:, 2:]), inner, -np.inf)
+    return np.unique(np.argsort(-heights, axis=1, kind="stable")[:, :_TOPS])
+
+
 def slopes_towards_ends(
     X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -448,13 +495,27 @@ def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
     at, limits = _limits(solution, body)
-    told = np.ones(σ_XX.shape, dtype=bool)
-    for place, reach in _infinite(solution, body, len(σ_XX)):
-        told &= ~(np.abs(X - place[:, None]) <= reach)
-    values = np.where(told, sign * σ_XX, -np.inf)
-    limits = np.where(np.isnan(limits), -np.inf, sign * limits).max(axis=1, initial=-np.inf)
+    infinite = _infinite(solution, body, len(σ_XX))
+    values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
+    limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    return sign * np.maximum(_largest(X, values, pieces), limits)
+    best = np.maximum(values.max(axis=1), limits.max(axis=1, initial=-np.inf))
+    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
+    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
+    between = surface.turns and surface.turns.between
+    if not between:
+        return sign * np.maximum(best, _largest(u, values, pieces))
+    best = np.maximum(best, _largest(u, np.where(np.abs(X) < 1.0, -np.inf, values), pieces))
+    for i, X in enumerate(between.X):
+        values = np.where(_finite(X, infinite), sign * between.σ_XX[:, i], -np.inf)
+        best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
+    return sign * best
+
+
+def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
+    """Which positions, (n,) or (states, n), are off all places of :func:`_infinite`, (states, n)."""
+    each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
+    return np.logical_and.reduce(each)
 
 
 def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -463,8 +524,6 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
     if surface.turns is not None:
         at = np.concatenate([ends, surface.turns.X], axis=1)
         return at, np.concatenate([np.full_like(ends, np.nan), surface.turns.σ[0]], axis=1)
-    if body.pressure:
-        return ends, np.full_like(ends, np.nan)
     exponents = np.column_stack([solution.local.β, solution.local.α])
     return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
 
@@ -482,27 +541,25 @@ def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.fl
     return found
 
 
-def _largest(X: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
+def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
     """Largest of curves, by polynomials through the samples around their highest tops, (states,).
 
     Args:
-        X: positions over a, (n,).
+        u: coordinate in which they are smooth, growing, (n,).
         values: there, -inf where the curve is not told, (states, n).
         pieces: which smooth piece of the curve a sample belongs to, (states, n).
     """
-    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
-    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
     order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
     for column in order.T:
         i = column + 1
-        window = np.clip(i - _THROUGH // 2, 0, len(X) - _THROUGH)[:, None] + np.arange(_THROUGH)
+        window = np.clip(i - _THROUGH // 2, 0, len(u) - _THROUGH)[:, None] + np.arange(_THROUGH)
         # A window that reaches into the next piece is moved back.
         other = pieces[rows, window] != pieces[rows, i[:, None]]
         shift = (other & (window < i[:, None])).sum(axis=1) - (other & (window > i[:, None])).sum(axis=1)
-        window = np.clip(window + shift[:, None], 0, len(X) - 1)
+        window = np.clip(window + shift[:, None], 0, len(u) - 1)
         same = (pieces[rows, window] == pieces[rows, i[:, None]]).all(axis=1)
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]

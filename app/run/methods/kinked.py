@@ -47,7 +47,7 @@ from galinx.solvers.profiles import cusp, exponent, jumps, kinks
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.residual import of_contact
-from galinx.solvers.solution import Body, Surface, Turns
+from galinx.solvers.solution import Body, Surface, Turns, together
 
 from ...plan.fem import FemPlan
 from ...plan.task import OWN_MESHES_KEPT, Task
@@ -287,17 +287,6 @@ class OnOwnMeshes:
         return np.stack([state.inside for state in self.found], axis=1)
 
 
-def together(each: list[Turns]) -> Turns | None:
-    """Of one state each, as many places as the state with most has; None of none."""
-    if not each:
-        return None
-    most = max(one.X.shape[1] for one in each)
-    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
-    for i, one in enumerate(each):
-        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
-    return Turns(X, σ)
-
-
 #: Most kinks in a contact, and how near to its end one may be.
 _MOST, _NEXT_TO_END = 12, 0.98
 
@@ -523,7 +512,7 @@ class KinkedState:
         u_X = np.array([pressure.limit_at_kink(i, level.displacement.strain) for i in range(len(X))])
         σ_XY = float(level.contact.g[0]) * σ_YY
         under = np.array([self.task.response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
-        return Turns(np.append(ends.X, X[None], axis=1), np.concatenate([ends.σ, under[:, None]], axis=2))
+        return ends.joined(Turns(X[None], under[:, None]))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

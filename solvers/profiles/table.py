@@ -95,20 +95,20 @@ class Table:
         """
         x, s = self._knots
         lowest = np.interp(0.0, s, x)
-        at = np.clip(lowest, x[:-1], x[1:])
+        at = np.asarray(np.clip(lowest, x[:-1], x[1:]))
         slope = np.where(x[1:] <= lowest, s[1:], np.where(x[:-1] >= lowest, s[:-1], 0.0))
         rises = (x[1:] - at) * (slope + s[1:]) / 2.0
         falls = (x[:-1] - at) * (slope + s[:-1]) / 2.0
         height = np.append(0.0, np.cumsum(rises[:-1])) + np.append(np.cumsum(falls[:0:-1])[::-1], 0.0)
-        return at, height, slope, np.diff(s) / np.diff(x)
+        return at, height, slope, np.asarray(np.diff(s) / np.diff(x))
 
     def _piece(self, X: NDArray) -> tuple[NDArray[np.float64], ...]:
         """Distance from where the parabola at X is lowest; its height, slope and curvature there."""
         x, _ = self._knots
         X = np.asarray(X, dtype=float)
         i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
-        at, *others = (each[i] for each in self._pieces)
-        return X - at, *others
+        at, height, slope, curvature = (each[i] for each in self._pieces)
+        return np.asarray(X - at), height, slope, curvature
 
     @property
     def kinks(self) -> tuple[float, ...]:

@@ -6,9 +6,9 @@ stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages a
 the step, and the first one the end of the step before. With the matrix S = M + γh (D - 2c B) + (γh)² K
 each stage is S w = b + γh·forces, under a punch that moves at v̇₀.
 
-**A rigid flat punch on the contact nodes, with any friction** (:class:`Pressed`). Sought are x and the
-normal reactions r with A x = b + (g r along X, r along Y), x = -η along Y under the punch, x = 0 far
-away, and Σ r prescribed. With the normal reactions P of unit tangential forces ::
+**A rigid flat punch on the contact nodes, with any friction** (:class:`PunchConstraint`). Sought are x
+and the normal reactions r with A x = b + (g r along X, r along Y), x = -η along Y under the punch, x = 0
+far away, and Σ r prescribed. With the normal reactions P of unit tangential forces ::
 
     (I - g P) r = ρ + η ρ_η
 
@@ -56,8 +56,8 @@ A = (
 TIMES = (0.5, 83 / 250, 31 / 50, 17 / 20, 1.0)
 
 
-class Pressed:
-    """A matrix of a space's unknowns under a punch.
+class PunchConstraint:
+    """Linear systems of a space under a rigid flat punch with any friction.
 
     Args:
         A: the matrix.
@@ -270,7 +270,7 @@ class SlidingInTime:
         with self._clock("assembly"):
             self._K, self._M, self._D, self._B = motion.K, motion.M, motion.D, motion.B
         self._Y = 2 * motion.contact + 1
-        self._pressed: dict[tuple[float, int], Pressed] = {}
+        self._punches: dict[tuple[float, int], PunchConstraint] = {}
 
     def run(
         self,
@@ -315,52 +315,52 @@ class SlidingInTime:
 
     def _steady(self, g: float, load: float) -> _State:
         state = self._rest()
-        pressed = self._under(self._K)
-        state.u, _ = pressed.solve(np.zeros(self._motion.size), g, -2.0 * load)
-        pressed.destroy()
+        punch = self._under(self._K)
+        state.u, _ = punch.solve(np.zeros(self._motion.size), g, -2.0 * load)
+        punch.destroy()
         return state
 
     def _turn(self, state: _State, change: int, g: float, load: float) -> None:
         """Turn the punch round: velocities seen from it jump, and accelerations change."""
         Δc, way = self._motion.response.c * change, np.sign(change)
-        pressed = self._under(kron(self._M, identity(2)).tocsr())
+        punch = self._under(kron(self._M, identity(2)).tocsr())
         pushed = of_both(self._M, state.w) + Δc * of_both(self._B, state.u)
-        state.w, _ = pressed.solve(pushed, g, 0.0)
+        state.w, _ = punch.solve(pushed, g, 0.0)
         force = -of_both(self._rates(way), state.w) - self._K @ state.u
-        state.a, r = pressed.solve(force, g, -2.0 * load)
-        pressed.destroy()
+        state.a, r = punch.solve(force, g, -2.0 * load)
+        punch.destroy()
         state.powers = self._powers(r, state.w, g)
 
-    def _under(self, matrix: csr_matrix) -> Pressed:
-        return Pressed(matrix, self._motion, self._clock)
+    def _under(self, matrix: csr_matrix) -> PunchConstraint:
+        return PunchConstraint(matrix, self._motion, self._clock)
 
     def _rates(self, way: int) -> csr_matrix:
         return self._D - 2.0 * way * self._motion.response.c * self._B
 
-    def _stages(self, h: float, way: int) -> Pressed:
+    def _stages(self, h: float, way: int) -> PunchConstraint:
         """The matrix of all stages of step h, kept for the next motion."""
         key = (round(h, 12), way)
-        if key not in self._pressed:
+        if key not in self._punches:
             S = kron(self._M + γ * h * self._rates(way), identity(2)) + (γ * h) ** 2 * self._K
-            self._pressed[key] = self._under(S.tocsr())
-        return self._pressed[key]
+            self._punches[key] = self._under(S.tocsr())
+        return self._punches[key]
 
     def _step(
-        self, state: _State, stages: Pressed, h: float, t: float,
+        self, state: _State, stages: PunchConstraint, h: float, t: float,
         g: Callable[[float], float], load: Callable[[float], float],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
         """Take a step; returns normal reactions at its end, and both works and absorbed energy in it."""
         velocities, accelerations, powers = [state.w], [state.a], [state.powers]
         for weights, time in zip(A, TIMES):
-            before = state.u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
-            given = state.w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
+            u_explicit = state.u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
+            w_explicit = state.w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
             at = t + h * time
-            b = of_both(self._M, given) - γ * h * (self._K @ before)
+            b = of_both(self._M, w_explicit) - γ * h * (self._K @ u_explicit)
             now, r = stages.solve(b, g(at), -2.0 * load(at) * γ * h)
             velocities.append(now)
-            accelerations.append((now - given) / (γ * h))
+            accelerations.append((now - w_explicit) / (γ * h))
             powers.append(self._powers(r / (γ * h), now, g(at)))
-        state.u, state.w, state.a = before + γ * h * now, now, accelerations[-1]
+        state.u, state.w, state.a = u_explicit + γ * h * now, now, accelerations[-1]
         state.powers = powers[-1]
         return r / (γ * h), h * np.array([*A[-1], γ]) @ np.array(powers)
 
@@ -372,8 +372,8 @@ class SlidingInTime:
 
     def destroy(self) -> None:
         """Free the factors."""
-        for pressed in self._pressed.values():
-            pressed.destroy()
+        for punch in self._punches.values():
+            punch.destroy()
 
 
 @dataclass(frozen=True)
@@ -441,14 +441,14 @@ class LoadedInTime:
         for n in range(steps):
             velocities, accelerations = [w], [a]
             for weights, time in zip(A, TIMES):
-                before = u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
-                given = w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
-                b = of_both(M, given) + γ * h * (load(h * (n + time)) * f - K @ before)
+                u_explicit = u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
+                w_explicit = w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
+                b = of_both(M, w_explicit) + γ * h * (load(h * (n + time)) * f - K @ u_explicit)
                 now = np.zeros(len(f))
                 now[free] = self.factor.solve(b[free])
                 velocities.append(now)
-                accelerations.append((now - given) / (γ * h))
-            u, w, a = before + γ * h * now, now, accelerations[-1]
+                accelerations.append((now - w_explicit) / (γ * h))
+            u, w, a = u_explicit + γ * h * now, now, accelerations[-1]
             displacements[n] = u.reshape(-1, 2)[self._surface]
         X = self._motion.space.coordinates[self._surface, 0]
         return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, displacements)

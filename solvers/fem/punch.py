@@ -623,13 +623,13 @@ class FittedPunch(Punch):
         space: the finite element space.
         response: of the half-plane.
         at: frictions at which the parts are known.
-        known: the parts.
+        samples: the parts there.
     """
 
-    def __init__(self, space: Space, response: Response, at: Frictions, known: Sampled) -> None:
+    def __init__(self, space: Space, response: Response, at: Frictions, samples: Sampled) -> None:
         self.space, self.response = space, response
-        self._at, self._known = at, known
-        self._fields = _Fields(np.concatenate(list(known.fields)), space)
+        self._at, self._samples = at, samples
+        self._fields = _Fields(np.concatenate(list(samples.fields)), space)
 
     @property
     def fields(self) -> Sequence[PETSc.Vec]:
@@ -639,11 +639,11 @@ class FittedPunch(Punch):
     @property
     def slopes(self) -> "FittedSlopes":
         """Slopes of the fields at the places on the surface."""
-        return FittedSlopes(self._known.slopes, self._known.rounding)
+        return FittedSlopes(self._samples.slopes, self._samples.rounding)
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         shares = self._at.shares(g)
-        forces = self._known.forces[: None if shapes is None else 1 + shapes]
+        forces = self._samples.forces[: None if shapes is None else 1 + shapes]
         # No equations are assembled here from which tangential forces could be read.
         return [Part(shares, normal[:, None]) for normal in forces]
 

@@ -317,14 +317,14 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
     check_exponents(equation)
     before: Pressure | None = None
     moved = np.inf
-    for resolution in ever_finer(equation.kernel.rough, first):
+    for resolution in resolutions(equation.kernel.rough, first):
         now = equation.pressure(resolution)
         if before is not None:
             moved = change(before, now)
-            if met(moved, tolerance):
+            if is_converged(moved, tolerance):
                 return Found(now, before, moved)
         before = now
-    raise not_met(moved, tolerance)
+    raise not_converged(moved, tolerance)
 
 
 def check_exponents(equation: Equation) -> None:
@@ -341,12 +341,12 @@ def check_exponents(equation: Equation) -> None:
         )
 
 
-def met(moved: float, tolerance: float) -> bool:
+def is_converged(moved: float, tolerance: float) -> bool:
     """Return True if a relative change with the resolution is small enough."""
     return moved <= tolerance / 4.0 or moved <= _ROUNDING
 
 
-def not_met(moved: float, tolerance: float) -> SolveError:
+def not_converged(moved: float, tolerance: float) -> SolveError:
     """Error of a pressure that still changes with the most unknowns."""
     return SolveError(
         f"with the most unknowns the pressure still changes by {moved:.2g}, expected {tolerance:g}: "
@@ -354,7 +354,7 @@ def not_met(moved: float, tolerance: float) -> SolveError:
     )
 
 
-def ever_finer(rough: bool, first: int) -> Iterator[Resolution]:
+def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
     """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
     if rough:
         for time in range(_TIMES):

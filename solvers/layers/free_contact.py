@@ -49,9 +49,9 @@ from .contact import (
     Speed,
     change,
     check_exponents,
-    ever_finer,
-    met,
-    not_met,
+    is_converged,
+    not_converged,
+    resolutions,
 )
 from .kernel import REACH, Kernel, Scaled
 from .layered import Layered
@@ -97,7 +97,7 @@ class Punch:
 
 
 @dataclass(frozen=True)
-class _Turned:
+class _Adjoint:
     """Response, or kernels, of the adjoint equation."""
 
     of: Any
@@ -185,8 +185,8 @@ def conditions(equation: Equation, resolution: Resolution, punch: Punch, h: floa
         punch: the punch.
         h: half-width.
     """
-    turned = Equation(_Turned(equation.response), _Turned(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
-    parts = turned.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
+    adjoint = Equation(_Adjoint(equation.response), _Adjoint(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
+    parts = adjoint.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
     lifting, carrying = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
     return Conditions(punch, h, lifting, carrying, finest(resolution))
 
@@ -253,7 +253,7 @@ def balanced(at: Callable[[float], tuple[float, Any]], x: float) -> tuple[float,
         x += step
     raise SolveError(
         f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
-        f"came to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the "
+        f"came to {np.exp(x):.6g} of that at rest, and still changes; take a speed farther from the "
         "limit"
     )
 
@@ -406,7 +406,7 @@ class Contact(Found):
 
 
 @dataclass(frozen=True)
-class Tried:
+class ContactAtResolution:
     """A contact at one resolution.
 
     Attributes:
@@ -422,7 +422,7 @@ class Tried:
     correction: float = 0.0
     free: tuple[bool, bool] = (True, True)
 
-    def moved(self, before: "Tried") -> float:
+    def moved(self, before: "ContactAtResolution") -> float:
         """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
 
         In-plane stresses follow the pressure with such a factor there.
@@ -560,22 +560,22 @@ class FoundSpeed(Speed):
         """
         check_exponents(self._equation(g, 1.0))
         before, error = None, np.inf
-        for resolution in ever_finer(self.kernel.rough, FIRST):
-            now = self._tried(g, h, resolution)
+        for resolution in resolutions(self.kernel.rough, FIRST):
+            now = self._at_resolution(g, h, resolution)
             h = now.h
             if before is not None:
                 error = max(now.moved(before), now.correction)
-                if met(error, self.tolerance):
+                if is_converged(error, self.tolerance):
                     unit = self.punch.unit
                     check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))
                     return Contact(now.settled, before.settled, error, h, now.m, now.free)
             before = now
-        raise not_met(error, self.tolerance)
+        raise not_converged(error, self.tolerance)
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _tried(self, g: float, h: float, resolution: Resolution) -> Tried:
+    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
         """Contact at a resolution, from the half-width h on."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
@@ -583,8 +583,8 @@ class FoundSpeed(Speed):
         h, m = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
-            return Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return Tried(h, m, *vanishing(equation, resolution))
+            return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return ContactAtResolution(h, m, *vanishing(equation, resolution))
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
         """Half-width and middle of a contact with two free ends."""
@@ -605,18 +605,18 @@ class FoundSpeed(Speed):
             SolveError: no contact carries the load, or it is not resolved.
         """
         h, error = 1.0, np.inf
-        for resolution in ever_finer(self.kernel.rough, FIRST):
+        for resolution in resolutions(self.kernel.rough, FIRST):
             before = h
             if isinstance(self.punch.profile, Flat):
                 h = self._tilted(0.0, h, resolution).h
             else:
                 h, _ = self._lengths(0.0, h, resolution)
             error = abs(h / before - 1.0)
-            if met(error, self.tolerance):
+            if is_converged(error, self.tolerance):
                 return h
-        raise not_met(error, self.tolerance)
+        raise not_converged(error, self.tolerance)
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> Tried:
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
         """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
@@ -634,11 +634,13 @@ class FoundSpeed(Speed):
         off, (parts, _) = at(float(np.log(whole)))
         if off <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
-            return Tried(whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False))
+            return ContactAtResolution(
+                whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False)
+            )
         x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
         h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
         m = float(np.sign(rise)) * (h - whole)
-        return Tried(h, m, pressure, free=(side == 0, side == 1))
+        return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
 
 
 def local_exponents(

@@ -249,7 +249,7 @@ def wavenumbers(stack: Stack) -> float:
 
 @dataclass(frozen=True)
 class Kernel:
-    """Kernels of a stack: u,X by σ_XY, u,X by σ_YY, v,X by σ_XY, v,X by σ_YY, times μ.
+    """Kernels of layers on a substrate: u,X by σ_XY, u,X by σ_YY, v,X by σ_XY, v,X by σ_YY, times μ.
 
     Attributes:
         stack: layers with their substrate at a speed.

@@ -45,7 +45,7 @@ class FarField:
     through: Callable[[float], NDArray[np.float64]]
 
     def __call__(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Displacements under ∫σ_YY = 1 and ∫σ_XY = 1, relative to a datum below layers: (2, 2, n)."""
+        """Displacements under ∫σ_YY = 1 and ∫σ_XY = 1, relative to a distant datum: (2, 2, n)."""
         below, datum = np.minimum(Y + self.D, 0.0), DATUM * max(1.0, self.length)
         (displacement,) = (
             line_loads(self.substrate.response, X, below, datum=datum) / self.substrate.modulus

@@ -271,7 +271,7 @@ class Kernel:
 
     @property
     def rough(self) -> bool:
-        """Has it a logarithm and a jump at 0?"""
+        """True where the kernel has a logarithm and a jump at 0."""
         return bool(np.any(self.order))
 
     @cached_property
@@ -329,7 +329,7 @@ class Scaled:
 
     @property
     def rough(self) -> bool:
-        """Has it a logarithm and a jump at 0?"""
+        """True where the kernel has a logarithm and a jump at 0."""
         return self.kernel.rough
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:

@@ -80,7 +80,7 @@ def legs(strokes: Sequence[str | Partial], rest: float = 0.0) -> tuple[Leg, ...]
     Raises:
         ValueError: a stroke has no length.
     """
-    found: list[Leg] = []
+    result: list[Leg] = []
     at = 0.0
     for n, stroke in enumerate(strokes):
         if isinstance(stroke, str):
@@ -88,9 +88,9 @@ def legs(strokes: Sequence[str | Partial], rest: float = 0.0) -> tuple[Leg, ...]
         if stroke.to == at:
             raise ValueError(f"stroke {n + 1} goes to {at:g} L, where it begins: expected another end")
         before = (rest if n else 0.0) if stroke.rest is None else stroke.rest
-        found.append(Leg("", 1 if stroke.to > at else -1, at, stroke.to, stroke.speed, before))
+        result.append(Leg("", 1 if stroke.to > at else -1, at, stroke.to, stroke.speed, before))
         at = stroke.to
-    return _named(found)
+    return _named(result)
 
 
 def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Leg, ...]:
@@ -110,7 +110,7 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
         raise ValueError(
             f"found the position {outside[0]:g} m, expected 0 to pre_sliding = {length:g} m in all rows"
         )
-    found: list[Leg] = []
+    result: list[Leg] = []
     speeds: dict[str, float] = {}
     rest = 0.0
     for (t, X), (t_next, X_next) in pairwise(path):
@@ -120,17 +120,17 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
         speed = abs(X_next - X) / (t_next - t)
         # What rounding alone tells apart is one speed, at which a contact is solved once.
         speed = speeds.setdefault(f"{speed:.{_DIGITS}e}", speed)
-        found.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
+        result.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
         rest = 0.0
-    if not found:
+    if not result:
         raise ValueError("found one position in all rows, expected a motion")
-    return _named(found)
+    return _named(result)
 
 
-def _named(found: Sequence[Leg]) -> tuple[Leg, ...]:
-    called = names([leg.s for leg in found])
+def _named(unnamed: Sequence[Leg]) -> tuple[Leg, ...]:
+    stroke_names = names([leg.s for leg in unnamed])
     return tuple(
-        Leg(name, leg.s, leg.start, leg.end, leg.speed, leg.rest) for name, leg in zip(called, found)
+        Leg(name, leg.s, leg.start, leg.end, leg.speed, leg.rest) for name, leg in zip(stroke_names, unnamed)
     )
 
 

@@ -87,7 +87,7 @@ class Ride:
     crossings: NDArray[np.float64]
     x_crossings: NDArray[np.float64]
     _pieces: tuple[_Piece, ...]
-    _told: Callable[[float, int, NDArray], tuple[float, float, float]]
+    _state_at: Callable[[float, int, NDArray], tuple[float, float, float]]
     _repeats: bool
 
     def at(self, times: NDArray) -> NDArray[np.float64]:
@@ -102,15 +102,15 @@ class Ride:
             t = t - cycles * period
         starts = np.array([piece.start for piece in self._pieces])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
-        found = np.empty((3, len(t)))
+        values = np.empty((3, len(t)))
         for n in np.unique(which):
-            piece, some = self._pieces[n], np.flatnonzero(which == n)
-            since = np.clip(t[some], piece.start, piece.end) - piece.start
-            for i, y in zip(some, piece.y(since).T):
-                found[:, i] = self._told(float(t[i]), piece.s, y)
+            piece, rows = self._pieces[n], np.flatnonzero(which == n)
+            since = np.clip(t[rows], piece.start, piece.end) - piece.start
+            for i, y in zip(rows, piece.y(since).T):
+                values[:, i] = self._state_at(float(t[i]), piece.s, y)
         if self._repeats:
-            found[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
-        return found
+            values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
+        return values
 
     @property
     def cycle(self) -> slice | None:
@@ -215,7 +215,7 @@ class _Motion:
         at, e_at = np.reshape(self._crossings, (-1, 2)).T
         drive = self.slider.drive_speed
         return Ride(
-            t, drive * t - e, v, f, at, drive * at - e_at, tuple(self._pieces), self._told, self.repeats
+            t, drive * t - e, v, f, at, drive * at - e_at, tuple(self._pieces), self._state_at, self.repeats
         )
 
     @property
@@ -236,10 +236,10 @@ class _Motion:
         sizes = np.abs(been).max(axis=0)
         sizes[0] = max(sizes[0], self._length)
         periods = np.diff(times)
-        alike = np.ptp(been, axis=0) <= _SAME * sizes
-        return bool(alike.all() and np.ptp(periods) <= _SAME * periods.max())
+        unchanged = np.ptp(been, axis=0) <= _SAME * sizes
+        return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
 
-    def _told(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
+    def _state_at(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
         """Position, velocity and friction coefficient."""
         f = self._friction(y, s) if s else self.pull(y[0], 0.0) / self.load
         return self.slider.drive_speed * t - y[0], y[1], f
@@ -288,13 +288,13 @@ class _Motion:
 
     def _slide(self) -> None:
         """In one direction, as long as the law does not switch."""
-        s, found = self.s, self._integrated()
-        self._keep(found)
-        self.t, (self.e, self.v, *z) = self.t + found.t[-1], found.y[:, -1]
+        s, piece = self.s, self._integrated()
+        self._keep(piece)
+        self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
         self.z = np.array(z)
-        if len(found.t_events[0]):
+        if len(piece.t_events[0]):
             self.v = 0.0
-        elif found.status == 1:
+        elif piece.status == 1:
             self.z = self.law.settle(self.z, s, abs(self.v))
 
     def _integrated(self) -> Any:
@@ -311,24 +311,24 @@ class _Motion:
             _event(lambda _, y: self._acceleration(y), 0.0, False),
             *(_event(lambda _, y, n=n: self._switch(y, int(n)), 1.0, True) for n in ahead),
         ]
-        last, said = min(self.slider.duration - self.t, self._longest), ""
+        last, reason = min(self.slider.duration - self.t, self._longest), ""
         scales = np.array([self._length, drive, *np.ones_like(self.z)])
         remembers = self.law.flow(self.z, s, drive).any()
         for scheme, relative, absolute in _IMPLICIT if remembers else (_EXPLICIT, *_IMPLICIT):
             solved = partial(self._solved, scheme, events, relative, absolute * scales)
             try:
-                found = solved(last)
+                result = solved(last)
                 # Between two steps it may have stopped and been drawn on: a minimum tells.
-                slow = s * np.reshape(found.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
+                slow = s * np.reshape(result.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
                 if slow.any():
-                    found = solved(float(found.t_events[2][np.argmax(slow)]))
+                    result = solved(float(result.t_events[2][np.argmax(slow)]))
             except ValueError as error:  # an event could not be located
-                said = str(error)
+                reason = str(error)
                 continue
-            if found.success:
-                return found
-            said = found.message
-        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {said}")
+            if result.success:
+                return result
+            reason = result.message
+        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
     def _solved(self, scheme: str, events: Any, relative: float, absolute: NDArray, last: float) -> Any:
         """SciPy's result until a time from now."""
@@ -341,14 +341,14 @@ class _Motion:
                 events=events, rtol=relative, atol=absolute, dense_output=True,
             )  # fmt: skip
 
-    def _keep(self, found: Any) -> None:
+    def _keep(self, piece: Any) -> None:
         """The steps of a piece, and the fastest and slowest moments among them."""
-        self._pieces.append(_Piece(self.t, self.t + found.t[-1], self.s, found.sol))
-        self._crossings += [(self.t + t, y[0]) for t, y in zip(found.t_events[1], found.y_events[1])]
-        self._came_back += [np.delete(y, 1) for y in found.y_events[1]]
-        t = np.append(found.t, found.t_events[2])
-        extremes = np.reshape(found.y_events[2], (-1, len(found.y)))
-        y = np.concatenate([found.y.T, extremes])
+        self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, piece.sol))
+        self._crossings += [(self.t + t, y[0]) for t, y in zip(piece.t_events[1], piece.y_events[1])]
+        self._came_back += [np.delete(y, 1) for y in piece.y_events[1]]
+        t = np.append(piece.t, piece.t_events[2])
+        extremes = np.reshape(piece.y_events[2], (-1, len(piece.y)))
+        y = np.concatenate([piece.y.T, extremes])
         for n in np.argsort(t, kind="stable"):
             self._rows.append((self.t + t[n], y[n, 0], y[n, 1], self._friction(y[n], self.s)))
 

@@ -98,10 +98,10 @@ class Table:
         X = np.asarray(X, dtype=float)
         i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
         curvature = (s[i + 1] - s[i]) / (x[i + 1] - x[i])
-        found = P[i] + s[i] * (X - x[i]) + curvature * (X - x[i]) ** 2 / 2.0
+        height = P[i] + s[i] * (X - x[i]) + curvature * (X - x[i]) ** 2 / 2.0
         lowest = np.interp(0.0, s, x)
         j = np.clip(np.searchsorted(x, lowest) - 1, 0, len(x) - 2)
-        return found - (P[j] + s[j] * (lowest - x[j]) / 2.0)
+        return height - (P[j] + s[j] * (lowest - x[j]) / 2.0)
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
         """Beyond the table it goes on as in its first and last piece."""

@@ -68,8 +68,8 @@ class Anisotropic(PlaneSolid):
 
     def words(self) -> str:
         names = ("c11", "c12", "c16", "c22", "c26", "c66")
-        told = ", ".join(f"{name} = {value:.6g} Pa" for name, value in zip(names, self.constants))
-        return f"{told}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        constants = ", ".join(f"{name} = {value:.6g} Pa" for name, value in zip(names, self.constants))
+        return f"{constants}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
 
 
 SOLIDS.register("anisotropic", Anisotropic)

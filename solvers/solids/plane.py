@@ -50,7 +50,7 @@ class AnisotropicFrame:
     c66 = 1.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.c < 1.0 or self._found is None:
+        if not 0.0 <= self.c < 1.0 or self._decaying_roots is None:
             raise ValueError(f"c = {self.c!r}: expected a speed below that of all waves in the solid")
 
     @cached_property
@@ -63,18 +63,18 @@ class AnisotropicFrame:
         return Q, R, T
 
     @cached_property
-    def _found(self) -> Roots | None:
+    def _decaying_roots(self) -> Roots | None:
         """The roots, None where there are none."""
         Q, R, T = self._matrices
         mixed = R + R.T
-        one, across, other = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
-        return roots(np.convolve(one, other) - np.convolve(across, across))
+        first, second, third = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
+        return roots(np.convolve(first, third) - np.convolve(second, second))
 
     @property
     def roots(self) -> Roots:
         """Of the planes in which the fields are analytic."""
-        assert self._found
-        return self._found
+        assert self._decaying_roots
+        return self._decaying_roots
 
     @cached_property
     def G(self) -> NDArray[Any]:
@@ -197,8 +197,8 @@ class AnisotropicFrame:
         strain = self._Y[0], (beyond @ self._Y)[0]
         tractions = np.eye(2), self.L @ beyond @ self._Y
 
-        def part(one: NDArray, two: NDArray) -> NDArray[np.float64]:
-            return ((one[0] * g + one[1]) * at + (two[0] * g + two[1]) * change).real
+        def part(first: NDArray, second: NDArray) -> NDArray[np.float64]:
+            return ((first[0] * g + first[1]) * at + (second[0] * g + second[1]) * change).real
 
         u_X = part(*strain)
         σ_XY, σ_YY = (part(tractions[0][i], tractions[1][i]) for i in (0, 1))
@@ -213,11 +213,11 @@ def surface_wave(solid: AnisotropicFrame) -> float:
     """
     low, high = 0.0, 1.0
     while low < (middle := (low + high) / 2.0) < high:
-        low, high = (middle, high) if _stands(solid, middle) else (low, middle)
+        low, high = (middle, high) if _surface_is_stiff(solid, middle) else (low, middle)
     return low
 
 
-def _stands(solid: AnisotropicFrame, c: float) -> bool:
+def _surface_is_stiff(solid: AnisotropicFrame, c: float) -> bool:
     """Is the surface's stiffness positive at this speed?"""
     try:
         return solid.at(c).least_stiffness > 0.0

@@ -140,8 +140,8 @@ class Roots:
     def midpoint(self) -> complex:
         """Midway between them in the hyperbolic metric of the upper half-plane."""
         p, other = self.each
-        seen = (other - p.real) / p.imag  # where p is at i
-        ζ = (seen - 1j) / (seen + 1j)
+        moved = (other - p.real) / p.imag  # where p is at i
+        ζ = (moved - 1j) / (moved + 1j)
         ζ /= 1.0 + np.sqrt(1.0 - abs(ζ) ** 2)
         return complex(p.real + p.imag * 1j * (1.0 + ζ) / (1.0 - ζ))
 
@@ -203,12 +203,12 @@ def line_loads(
     # The argument goes from 0 ahead of the load to -π behind it; half of that is a translation.
     log = np.log(z / datum) + 0.5j * np.pi
     change = np.where(step == 0.0, Y / z, log1p(step) / np.where(step == 0, 1, other - p))
-    one = np.eye(2)
-    function = log[:, None, None] * one + change[:, None, None] * (solid.G - p * one)
-    inverse = np.linalg.inv(X[:, None, None] * one + Y[:, None, None] * solid.G)
+    identity = np.eye(2)
+    function = log[:, None, None] * identity + change[:, None, None] * (solid.G - p * identity)
+    inverse = np.linalg.inv(X[:, None, None] * identity + Y[:, None, None] * solid.G)
     of_loads = np.linalg.solve(solid.L, LOADS.T)
-    found, power = [function], one
+    functions, power = [function], identity
     for n in range(1, terms):
         power = power @ inverse
-        found.append(-power / n)
-    return np.moveaxis(np.array(found) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi
+        functions.append(-power / n)
+    return np.moveaxis(np.array(functions) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi

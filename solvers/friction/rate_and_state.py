@@ -60,7 +60,7 @@ class RateAndState(FrictionLaw):
         return np.asarray(self.ϑ0, dtype=float)[..., None]
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """s a asinh(e^u), by logarithms: a may be small against f₀."""
+        """Friction coefficient s a asinh(e^u), by logarithms: a may be small against f₀."""
         with np.errstate(divide="ignore"):
             u = np.log(V / (2.0 * self.V0)) + (self.f0 + self.b * np.log(z[..., 0])) / self.a
         return s * self.a * np.logaddexp(u, 0.5 * np.logaddexp(2.0 * u, 0.0))
@@ -72,7 +72,7 @@ class RateAndState(FrictionLaw):
         return np.where(self.evolution == "ageing", aged, -z / self.D_c * np.log(z / steady))
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """dϑ/dt [1/s]; it ages at rest, too."""
+        """dϑ/dt [1/s]; the state ages at rest, too."""
         if self.evolution == "ageing":
             return (self.V0 - V * z) / self.D_c
         turns = V * z / self.V0

@@ -12,22 +12,22 @@ from numpy.typing import NDArray
 from .law import FrictionLaw
 
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
-#: scales of the motion; the first is for laws that remember nothing, whose motions are not stiff.
+#: scales of the motion; the first is for laws without memory, whose motions are not stiff.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
 _IMPLICIT = ("BDF", 1e-10, 1e-12), ("Radau", 1e-10, 1e-12)
-#: Stops, starts and switches of a law after which nothing more is to be expected of a motion.
+#: Stops, starts and switches of a law after which a motion is given up.
 PIECES = 20_000
-#: How far beyond the speed of the drive an oscillation has to go, over that speed.
-_SEEN = 1e-6
-#: Below this share of the drive's speed the mass is at rest: what laws of the logarithm of the speed bear
-#: is asked for there.
+#: Least excess of an oscillation over the speed of the drive, over that speed.
+_LEAST_EXCESS = 1e-6
+#: Share of the drive's speed below which the mass is at rest; friction at rest is evaluated at this
+#: speed, for laws of the logarithm of the speed.
 _AT_REST = 1e-9
 #: An instant at rest [s].
 _INSTANT = 1e-300
-#: Periods of the mass on its spring after which the integration begins anew, and is asked how far it is.
+#: Periods of the mass on its spring after which the integration begins anew, and progress is reported.
 _PERIODS = 10
-#: Cycles after which a motion that has come back each time goes on so, and how well, over the sizes of
-#: the motion: no more is left of the tolerance in a cycle.
+#: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
+#: motion: the tolerance leaves about as much in a cycle.
 _CYCLES, _SAME = 8, 1e-8
 
 
@@ -68,16 +68,16 @@ class _Piece:
 
 @dataclass(frozen=True)
 class Ride:
-    """How a slider moved, at the steps of the integration, (n,).
+    """Motion of a slider, at the steps of the integration, (n,).
 
-    The integration ends where a cycle has come back to itself; :meth:`at` goes on with it.
+    The integration ends where the motion is periodic; :meth:`at` repeats its last cycle.
 
     Attributes:
         t: time [s].
         x, v: its position [m] and velocity [m/s].
         f: friction coefficient, that of the spring's pull where it sticks.
-        crossings: times at which it became faster than the drive [s], (m,).
-        x_crossings: its positions then [m], (m,).
+        crossings: times at which the slider became faster than the drive [s], (m,).
+        x_crossings: positions at these times [m], (m,).
     """
 
     t: NDArray[np.float64]
@@ -93,7 +93,7 @@ class Ride:
     def at(self, times: NDArray) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and friction coefficient at times [s], (3, times).
 
-        They are those of the scheme's own polynomials between its steps, as accurate as these.
+        Between its steps the scheme's own polynomials are evaluated, as accurate as the steps.
         """
         t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
         if self._repeats:
@@ -114,7 +114,7 @@ class Ride:
 
     @property
     def cycle(self) -> slice | None:
-        """Steps of the last cycle of stick-slip; None where there is no whole one."""
+        """Steps of the last cycle of stick-slip; None where there is no whole cycle."""
         if len(self.crossings) < 2:
             return None
         first, last = np.searchsorted(self.t, self.crossings[-2:])
@@ -123,11 +123,11 @@ class Ride:
 
 @dataclass(frozen=True)
 class Cycle:
-    """The last cycle of stick-slip; NaN where there is none.
+    """Last cycle of stick-slip; NaN where there is none.
 
     Attributes:
-        period: [s].
-        slip: of the mass in a cycle [m].
+        period: duration of the cycle [s].
+        slip: slip of the mass in the cycle [m].
         peak, least: largest and smallest velocity [m/s].
     """
 
@@ -138,25 +138,25 @@ class Cycle:
 
 
 def cycle(ride: Ride, drive_speed: float) -> Cycle:
-    """The last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
+    """Last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
     steps = ride.cycle
-    if steps is None or ride.v[steps].max() < (1.0 + _SEEN) * drive_speed:
+    if steps is None or ride.v[steps].max() < (1.0 + _LEAST_EXCESS) * drive_speed:
         return Cycle(*[np.nan] * 4)
     (period,), (slip,), v = np.diff(ride.crossings[-2:]), np.diff(ride.x_crossings[-2:]), ride.v[steps]
     return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
 
 
-#: What becomes of a slider.
+#: Outcomes of a slider's motion.
 STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
     "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
     "no whole cycle yet",
 )  # fmt: skip
-#: Share of the drive's speed within which one is another: of steady sliding, and of a stop in a cycle.
+#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a stop.
 _STEADY, _STOPPED = 1e-3, 1e-6
 
 
 def outcome(ride: Ride, drive_speed: float) -> str:
-    """What has become of a slider at the end of a motion, in words, by the drive's speed [m/s]."""
+    """Outcome of a slider's motion in words, by the drive's speed [m/s]."""
     last = cycle(ride, drive_speed)
     if np.isfinite(last.period):
         return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
@@ -176,10 +176,10 @@ def pull(
         slider: mass, spring and drive.
         law: its friction.
         load: normal force per depth [N/m].
-        done: is told now and then how much of the duration is done.
+        done: called now and then with the share of the duration that is done.
 
     Raises:
-        ValueError: the integration failed, or came to no end.
+        ValueError: the integration failed, or the motion has too many pieces.
     """
     motion = _Motion(slider, law, load)
     for _ in range(PIECES):
@@ -215,18 +215,19 @@ class _Motion:
         at, e_at = np.reshape(self._crossings, (-1, 2)).T
         drive = self.slider.drive_speed
         return Ride(
-            t, drive * t - e, v, f, at, drive * at - e_at, tuple(self._pieces), self._state_at, self.repeats
-        )
+            t, drive * t - e, v, f, at, drive * at - e_at,
+            tuple(self._pieces), self._state_at, self.repeats,
+        )  # fmt: skip
 
     @property
     def _length(self) -> float:
-        """Of the spring, about [m]."""
+        """Size of the spring's extension [m]."""
         slider = self.slider
         return max(self.load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
 
     @property
     def repeats(self) -> bool:
-        """Has a cycle come back to itself often enough?"""
+        """True if the last cycles are equal to rounding of the integration."""
         if len(self._came_back) <= _CYCLES:
             return False
         been, times = (
@@ -240,23 +241,23 @@ class _Motion:
         return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
 
     def _state_at(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
-        """Position, velocity and friction coefficient."""
+        """Position [m], velocity [m/s] and friction coefficient at t [s] from y in direction s."""
         f = self._friction(y, s) if s else self.pull(y[0], 0.0) / self.load
         return self.slider.drive_speed * t - y[0], y[1], f
 
     def pull(self, e: float, v: float) -> float:
-        """Of spring and dashpot [N/m]."""
+        """Force of spring and dashpot [N/m] at the extension e [m] and the velocity v [m/s]."""
         return self.slider.stiffness * e + self.slider.damping * (self.slider.drive_speed - v)
 
     def go_on(self) -> None:
-        """To the next stop, start or switch."""
+        """Advance to the next stop, start or switch."""
         if self.v == 0.0:
             self._start()
         if self.t < self.slider.duration:
             self._slide()
 
     def _start(self) -> None:
-        """From rest: in the direction in which it is pulled over what friction bears, after a while."""
+        """Start from rest, after a while, in the direction in which the pull exceeds friction."""
         force, self.z = self.pull(self.e, 0.0), self.law.pause(self.z, _INSTANT)
         bears = {s: self.load * self._at_once(s) for s in (1, -1)}
         self.s = -1
@@ -287,7 +288,7 @@ class _Motion:
         self.z = self.law.pause(self.z, seconds)
 
     def _slide(self) -> None:
-        """In one direction, as long as the law does not switch."""
+        """Slide in one direction, as long as the law does not switch."""
         s, piece = self.s, self._integrated()
         self._keep(piece)
         self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
@@ -298,10 +299,10 @@ class _Motion:
             self.z = self.law.settle(self.z, s, abs(self.v))
 
     def _integrated(self) -> Any:
-        """By the first scheme that can.
+        """SciPy's result by the first scheme that succeeds, up to the next stop or switch.
 
         Raises:
-            ValueError: none can.
+            ValueError: no scheme succeeds.
         """
         s, drive = self.s, self.slider.drive_speed
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
@@ -318,7 +319,7 @@ class _Motion:
             solved = partial(self._solved, scheme, events, relative, absolute * scales)
             try:
                 result = solved(last)
-                # Between two steps it may have stopped and been drawn on: a minimum tells.
+                # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
                 slow = s * np.reshape(result.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
                 if slow.any():
                     result = solved(float(result.t_events[2][np.argmax(slow)]))
@@ -331,7 +332,7 @@ class _Motion:
         raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
     def _solved(self, scheme: str, events: Any, relative: float, absolute: NDArray, last: float) -> Any:
-        """SciPy's result until a time from now."""
+        """SciPy's result over the next ``last`` seconds."""
         from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
 
         with warnings.catch_warnings():
@@ -342,7 +343,7 @@ class _Motion:
             )  # fmt: skip
 
     def _keep(self, piece: Any) -> None:
-        """The steps of a piece, and the fastest and slowest moments among them."""
+        """Keep the steps of a piece, and its fastest and slowest moments."""
         self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, piece.sol))
         self._crossings += [(self.t + t, y[0]) for t, y in zip(piece.t_events[1], piece.y_events[1])]
         self._came_back += [np.delete(y, 1) for y in piece.y_events[1]]

@@ -1,4 +1,4 @@
-"""Solids of which nothing is assumed but a plane of symmetry normal to Z."""
+"""Anisotropic solids with a plane of symmetry normal to Z."""
 
 from dataclasses import dataclass
 from functools import cached_property

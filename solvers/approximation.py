@@ -29,7 +29,7 @@ def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]
 
 
 def chebyshev_points(count: int) -> NDArray[np.float64]:
-    """Points in [0, 1] at which a smooth function is tabulated, both ends among them from two on."""
+    """Chebyshev's points in [0, 1], with both ends from two points on, (count,)."""
     if count == 1:
         return np.zeros(1)
     return np.asarray((1.0 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2.0)

@@ -187,9 +187,9 @@ class Body:
 
 @dataclass(frozen=True)
 class Turns:
-    """Limits of the stresses at places on the surface near which they go with a power of the distance.
+    """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.
 
-    These are free ends of a contact and kinks of the punch; samples miss the largest stress there.
+    Near these places stresses go with a power of the distance, and samples miss the largest one.
 
     Attributes:
         X: the places over a, (states, k).

@@ -133,7 +133,7 @@ def _slip_to(w: float, n: float) -> NDArray[np.float64]:
 
 
 def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
-    """w after a slip from 0, by Newton's method in y, in which slip is nearly a straight line."""
+    """State w after slips x from 0, by Newton's method in y, of which slip is nearly linear."""
     y = np.array(x, dtype=float)  # n = 1; for larger n, y is larger
     for _ in range(_STEPS):
         w = -np.expm1(-y)
@@ -148,7 +148,7 @@ def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
 
 
 def _unloaded_at(x: NDArray, most: float, k: float, n: float) -> NDArray[np.float64]:
-    """|w| from which unloading to zero takes a slip x; ``most``, that of the start, at most."""
+    """Size |w| from which unloading to zero takes a slip x, at most ``most``, |w| at the start."""
     u = np.minimum(x, most)
     for _ in range(_STEPS):
         step = (x - _slip(u, k, n)) * (1.0 - k * u**n)

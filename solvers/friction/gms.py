@@ -60,7 +60,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return np.zeros(2 * len(self.elements))
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
-        """At rest all elements stick."""
+        """State after a rest, in which all elements stick."""
         if seconds <= 0.0:
             return z
         return np.concatenate([z[: len(self.elements)], np.zeros(len(self.elements))])
@@ -93,7 +93,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return z[..., : len(self.elements)].sum(axis=-1)
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """A straight line up to α g where an element sticks; where it slips, |f_i| - α g decays."""
+        """States by a straight line up to α g while an element sticks; |f_i| - α g decays in slip."""
         w, reached, stuck, decay = self._pieces(z, s, V, np.asarray(slip, dtype=float)[:, None])
         limit = self.α * self.g(V)
         f = np.where(reached, limit + (w - limit) * np.exp(-decay), w + self.k * stuck)

@@ -61,15 +61,15 @@ def runge_kutta(
         ``steps + 1`` rows; the last row's slopes belong to the step that would follow.
 
     Raises:
-        ValueError: the step is beyond the scheme's stability limit, that limit is not known of the law,
-            or below one step was asked for.
+        ValueError: the step is beyond the scheme's stability limit, the law has no known limit, or
+            there is less than one step.
     """
     if steps < 1:
         raise ValueError(f"steps = {steps!r}: expected at least 1")
     h, stiffness = length / steps, law.stiffness(z, s, V)
     if stiffness is None:
         raise ValueError(
-            f'of {type(law).__name__} no limit of stable steps is known; use integrator = "exact"'
+            f'no limit of stable steps is known for {type(law).__name__}; use integrator = "exact"'
         )
     if h * stiffness > RK4_STABILITY_LIMIT:
         raise ValueError(

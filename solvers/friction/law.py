@@ -84,12 +84,12 @@ class FrictionLaw(Protocol):
     def stiffness(self, z: NDArray, s: int, V: float) -> float | None:
         """Largest |∂(dz/d(slip))/∂z| [1/m] of a stroke that starts at z; None where it is not known.
 
-        Runge-Kutta's steps are stable where it times their length is small.
+        Runge-Kutta's steps are stable where their length times it is small.
         """
         return None
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Numbers that grow through zero, each once a stroke, where the rate is not smooth, (any,)."""
+        """Numbers that grow through zero where the rate is not smooth, each once a stroke, (any,)."""
         return np.zeros(0)
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
@@ -122,8 +122,8 @@ class Laws(Registry[type[FrictionLaw]]):
                 if other != name and key in described and described[key].unit != own.unit:
                     raise ValueError(
                         f"the parameter {key!r} of the friction law {other!r} has the unit "
-                        f"{described[key].unit or '1'!r}, {name!r} wants {own.unit or '1'!r}: name it "
-                        "apart"
+                        f"{described[key].unit or '1'!r}, {name!r} has it in {own.unit or '1'!r}: "
+                        "give it another key"
                     )
         return super().register(name, model)
 

@@ -22,7 +22,7 @@ DIRECTION = {"forward": 1, "backward": -1}
 
 @dataclass(frozen=True)
 class Partial:
-    """A stroke from the end of the one before it, the first from X = 0.
+    """A stroke from the end of the stroke before it, the first from X = 0.
 
     Attributes:
         to: position of its end, over L.

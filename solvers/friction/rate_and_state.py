@@ -79,14 +79,14 @@ class RateAndState(FrictionLaw):
         return -self.V0 / self.D_c * turns * np.log(turns) if V > 0.0 else 0.0 * z
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """Ageing: ϑ - V₀/V decays as exp(-d/D_c); slip: ln(ϑ V/V₀) does."""
+        """States by the exact solution: exp(-d/D_c) is the decay of ϑ - V₀/V, or ln(ϑ V/V₀) by slip."""
         steady, ϑ, x = self._steady(V), z[..., 0], np.asarray(slip, dtype=float) / self.D_c
         aged = ϑ + (ϑ - steady) * np.expm1(-x)
         slipped = steady * np.exp(np.log(ϑ / steady) * np.exp(-x))
         return np.where(self.evolution == "ageing", aged, slipped)[..., None]
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
-        """At rest θ grows with time by the ageing law, and stays by the slip law."""
+        """State after a rest: θ grows with time by the ageing law, and stays by the slip law."""
         grown = np.where(self.evolution == "ageing", self.V0 / self.D_c * seconds, 0.0)
         return z + grown[..., None]
 

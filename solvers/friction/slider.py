@@ -33,7 +33,7 @@ _CYCLES, _SAME = 8, 1e-8
 
 @dataclass(frozen=True)
 class Slider:
-    """m dv/dt = k e + d (V - v) - N f,   de/dt = V - v: from rest, the spring relaxed.
+    """A mass on a driven spring: m dv/dt = k e + d (V - v) - N f, de/dt = V - v, from rest, e = 0.
 
     Attributes:
         mass: m per depth [kg/m].

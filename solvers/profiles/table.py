@@ -90,7 +90,7 @@ class Table:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """The curvature jumps where parabolas meet."""
+        """Positions [m] at which parabolas meet, and the curvature jumps."""
         return tuple(self._knots[0].tolist())
 
     def height(self, X: NDArray) -> NDArray[np.float64]:

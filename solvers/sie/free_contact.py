@@ -247,7 +247,7 @@ class Contacts:
         return stress
 
     def alike(self) -> Iterator[tuple[NDArray[np.int64], "Contacts", Sequence[float]]]:
-        """Groups of states: their numbers, their contacts, and cusps of their pressure, one by one."""
+        """Groups of states with one kind of pressure: their numbers, contacts and cusps, one by one."""
         for group in self.groups:
             own = replace(group, rows=np.arange(len(group.rows)))
             yield group.rows, Contacts(self.response, self.g[group.rows], (own,)), group.cusps[0]

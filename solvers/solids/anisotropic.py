@@ -30,7 +30,7 @@ class Anisotropic(PlaneSolid):
     ρ: float = density()
     along_Z: tuple[float, ...] = numbers(
         "stiffness_Z", "stiffness c13, c23, c36", "Pa", 3, optional=True,
-        note="tells σ_ZZ in plane strain, which is NaN without it",
+        note="determines σ_ZZ in plane strain, which is NaN without it",
     )  # fmt: skip
     plane: str = in_plane()
 

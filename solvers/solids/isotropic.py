@@ -76,7 +76,7 @@ class Isotropic:
 
     @property
     def flutter(self) -> tuple[float, float]:
-        """σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else none.
+        """Least σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else infinite.
 
         By n and q the condition is β_d = ∓ i g (2w - 1), with w = (1 + k - k c²)/(1 + β_s β_d).
         Between c_s and c_d, g is real at c² = 2 alone, where it is 1; that is below c_d² = 1/k for ν > 0.

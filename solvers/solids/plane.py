@@ -164,7 +164,7 @@ class AnisotropicFrame:
         return np.array([1.0, -s12, -s16]) / s11
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
-        """In-plane stress where strain and tractions are known."""
+        """In-plane stress σ_XX from the strain μ u,X and the tractions, of one shape."""
         by_u_X, by_σ_YY, by_σ_XY = self._along
         return by_u_X * u_X + by_σ_YY * σ_YY + by_σ_XY * σ_XY
 
@@ -334,5 +334,5 @@ def check_minors(matrix: NDArray, meaning: dict[tuple[int, ...], str]) -> None:
         if not minor > _ROUNDING:
             raise ValueError(
                 f"{constants}: found {minor:.3g}, expected a number > 0; with these constants some "
-                "deformation would give energy instead of taking it"
+                "deformation would release energy instead of storing it"
             )

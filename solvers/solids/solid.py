@@ -67,7 +67,7 @@ class Response(Protocol):
     def mirrored(self) -> bool: ...
 
     def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""
+        """In-plane stress σ_XX from the strain μ u,X and the other stresses, of one shape."""
 
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""

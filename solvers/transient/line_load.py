@@ -115,7 +115,7 @@ class Kernel:
 
     @cached_property
     def _edges(self) -> NDArray[np.float64]:
-        """0, and slownesses seen from the frame at which 𝐘 is not analytic, growing."""
+        """Slownesses, as seen from the frame, at which 𝐘 is not analytic, growing from 0."""
         return np.concatenate([[0.0], 1.0 / (self.surface.meeting[::-1] - self.c)])
 
     @cached_property
@@ -137,7 +137,7 @@ class Kernel:
         return np.asarray(Y[:, ::-1, ::-1].reshape(-1, 4).T / ζ)
 
     def _ways(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
-        """Points and weighted values of both ways in a direction, up to some panels."""
+        """Points and weighted values of both ways in a direction, over so many panels and the first."""
         count = _POINTS * (panels + 1)
         return [(ζ[:count], values[:, :count]) for ζ, values in self._downwards(down, panels)]
 
@@ -166,7 +166,7 @@ class Kernel:
         return {}
 
     def _above(self, halvings: int) -> tuple[NDArray, NDArray]:
-        """Points and weighted values above the real axis, with each panel halved some times."""
+        """Points and weighted values above the real axis, with each panel halved ``halvings`` times."""
         if halvings not in self._refined:
             t, w = leggauss(_POINTS)
             cuts = np.arange(2**halvings)[:, None]
@@ -179,7 +179,7 @@ class Kernel:
         return self._refined[halvings]
 
     def _between(self, which: NDArray, φ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Slownesses at shares of angles between two edges, where roots become smooth, and slopes."""
+        """Slownesses at φ, 0 to 1 between two edges, and their slopes by φ; roots are smooth in φ."""
         low, high = self._edges[which], self._edges[which + 1]
         return low + (high - low) * np.sin(pi / 2.0 * φ) ** 2, (high - low) * pi / 2.0 * np.sin(pi * φ)
 
@@ -396,14 +396,14 @@ class Echoes:
         return np.asarray(change[:, ::-1, ::-1].reshape(-1, 4).T / (1j * k))
 
     def _last(self, s: complex) -> float:
-        """Wavenumber beyond which the echoes are negligible; 0 where they are at all."""
+        """Wavenumber beyond which the echoes are negligible; 0 if they always are."""
         k = -_WAVENUMBERS
         not_decayed = np.flatnonzero(self.sheets.decay(k, self.c + 1j * s / k) < _LAYERS_GONE)
         return float(_WAVENUMBERS[min(not_decayed[-1] + 1, len(k) - 1)]) if len(not_decayed) else 0.0
 
 
 class Side(Protocol):
-    """Response on one side of a line load, behind it in the mirror image: see :class:`Kernel`."""
+    """Response on one side of a line load; behind it that of the mirror image, see :class:`Kernel`."""
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]: ...
 

@@ -317,7 +317,13 @@ class StartingPunch:
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:
-    """∫ Σ force d(way) up to each time, (times,); both (times, n), and ``first`` forces at t = 0."""
+    """Work ∫ Σ force d(way) up to each time, (times,).
+
+    Args:
+        t: times, (times,), > 0.
+        forces, ways: at these times, (times, n); ways are 0 at t = 0.
+        first: forces at t = 0, (n,).
+    """
     from scipy.interpolate import CubicSpline  # a slow import
 
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))

@@ -59,7 +59,7 @@ class Weighted:
 
     @property
     def integral(self) -> float:
-        """∫ of the first polynomial with its weight; that of the others is 0."""
+        """Integral of the first polynomial with its weight; that of the others is 0."""
         return float(self._norms[0])
 
 
@@ -81,7 +81,7 @@ class Basis:
 
     @cached_property
     def moments(self) -> NDArray[np.float64]:
-        """∫ and ∫ X of each polynomial with its weight, (terms, 2)."""
+        """Integrals of each polynomial with its weight, and of X times it, (terms, 2)."""
         X, w = self.pressure.rule(self.pressure.terms)
         P = self.pressure.polynomials(X)
         return np.array([w @ P, (w * X) @ P]).T

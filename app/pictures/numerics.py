@@ -1,4 +1,4 @@
-"""How an archive's finite elements were laid out, and how well they did."""
+"""Mesh and convergence of an archive's finite elements."""
 
 from typing import Any
 
@@ -14,19 +14,20 @@ from ..plan.fem import FOLLOWED
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, there
-from .state_labels import C, Told, spread
+from .state_labels import C, StateLabels, spread
 
-#: Speeds that can be told apart.
+#: Speeds that can be distinguished in a figure.
 _SPEEDS = 6
 
 
 def has_degrees(data: dict[str, Any]) -> bool:
-    """Does an archive say how its numbers settled?"""
+    """Return True if an archive holds how its numbers converge with the polynomial degree."""
     return there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
 
 
 def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """The mesh that finite elements used, and its nodes; it is laid out again, nothing is solved."""
+    """Figure of the mesh that finite elements used, and its nodes; it is laid out again, nothing is
+    solved."""
     fem = make_plan(scene).fem
     assert fem
     cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
@@ -47,8 +48,8 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """How the numbers settle as the polynomial degree rises."""
-    c, c_of, told = data[runs.RECORD["c"].path], data[states.SPEED.path], Told(data, scene)
+    """Figure of the convergence of K_I and of the pressure's moments with the polynomial degree."""
+    c, c_of, labels = data[runs.RECORD["c"].path], data[states.SPEED.path], StateLabels(data, scene)
     measured = np.flatnonzero(data[runs.CHANGES.path].any(axis=1)).tolist()
     shown = spread(measured, _SPEEDS)
 
@@ -56,7 +57,7 @@ def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         return np.array([data[row.path][c_of == speed].max() for speed in c[shown]])
 
     figure = degrees_figure(
-        [told.label(int(np.argmax(c_of == speed)), [C]) for speed in c[shown]],
+        [labels.label(int(np.argmax(c_of == speed)), [C]) for speed in c[shown]],
         data[runs.CHANGES.path][shown],
         data[runs.RECORD["degree"].path][shown],
         largest(states.ESTIMATE),

@@ -86,7 +86,7 @@ class Column:
     @property
     def best(self) -> NDArray:
         """Numbers of the states, (states,), not by finite elements where there are such."""
-        values = self.exact if self.exact is not None else self.found
+        values = self.exact if self.exact is not None else self.fem
         assert values is not None
         return values
 

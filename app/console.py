@@ -122,8 +122,7 @@ _NOTE = logging.INFO + 5
 
 
 class Progress:
-    """Bar with text, share of the work and remaining time on a terminal's error stream; silent
-    elsewhere.
+    """Bar with text, share of the work and remaining time on a terminal; silent elsewhere.
 
     Use it as a context manager.
 

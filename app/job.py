@@ -296,8 +296,7 @@ def _signals() -> IO[bytes]:
 
 
 def _shared(argument: str) -> str:
-    """Argument under a name that every rank can read all of, where it names something that is open
-    already."""
+    """Argument under a name by which every rank can read what is open already."""
     match = _OPEN.fullmatch(argument)
     number = int(match[2] or 0) if match else 1
     if number not in (1, 2):

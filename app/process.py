@@ -51,8 +51,7 @@ def join() -> None:
 
 
 def address(name: str) -> str:
-    """Address at which a job of that name listens: in Linux's own space of names, so that no file is
-    left."""
+    """Address at which a job of that name listens: in Linux's own name space, so that no file is left."""
     return f"\0{name}"
 
 

@@ -61,8 +61,7 @@ def run(
 
 
 def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
-    """The scene of a file with its changes; only those who change something pay for importing their
-    reader."""
+    """The scene of a file with its changes, whose reader is imported where there are any."""
     from ..scene.read import read
 
     if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):

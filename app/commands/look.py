@@ -133,8 +133,7 @@ def _loaded(archive: Path, stresses: bool = True) -> Any:
 
 
 def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> dict[str, Any]:
-    """States as a list of objects nested like the archive's paths, with units likewise; NaN becomes
-    null."""
+    """States as objects nested like the archive's paths, with units likewise; NaN becomes null."""
     from galinx.postprocess.quantities import declared
     from galinx.postprocess.quantities.states import FRICTION
 
@@ -199,8 +198,8 @@ def plot(
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
-    What is not asked for is chosen by itself: the figures, the states on each, what numbers are drawn
-    over. States that a figure does not show are named.
+    Without options the figures, their states and their axes are chosen automatically. States that a
+    figure does not show are named.
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
@@ -236,7 +235,7 @@ def plot(
 def dispersion(
     scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], to: Path, overwrite: bool
 ) -> int:
-    """Tell and draw how fast the slowest waves along the layers of SCENE run.
+    """Print and draw the speeds of the slowest waves along the layers of SCENE.
 
     The highest speed of a punch is that of the slowest of them; some may be slowest in between.
 
@@ -298,9 +297,9 @@ def response(
     to: Path,
     overwrite: bool,
 ) -> int:
-    """Tell and draw what the flat punch of SCENE answers to loads that oscillate while it slides.
+    """Print and draw the dynamic stiffness of the flat punch of SCENE under loads that oscillate.
 
-    Its dynamic stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
+    The stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
     every speed and friction of the scene.
 
     Example: ./run.sh response scenes/start_from_rest.toml -o figures

@@ -90,7 +90,7 @@ class Choice:
 
     def called(self, row: Quantity) -> str:
         """Name of a quantity without a symbol, with MPa where it is a stress drawn in SI."""
-        return noun(row) + " (MPa)" * (self.in_si and row.unit == "N/(2a)")
+        return short_name(row) + " (MPa)" * (self.in_si and row.unit == "N/(2a)")
 
     def label(self, stress: str, symbol: str, between: str = " ") -> str:
         """Axis label of a stress: its name, its symbol in TeX, and its unit, MPa or N/(2a)."""
@@ -111,7 +111,7 @@ class Choice:
                 )
 
 
-def noun(row: Quantity) -> str:
+def short_name(row: Quantity) -> str:
     """Name of a quantity, from the beginning of its description."""
     name = re.split(r"[,;:]| \(", row.about)[0]
     return f"{name} over $a$" if "over the half-width" in row.about else name
@@ -145,7 +145,7 @@ def size(text: str) -> Size | None:
     return Size(*sides)
 
 
-def one_of(what: str, word: str, valid: Collection[str]) -> str:
+def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
     """A word that is one of the valid ones.
 
     Raises:
@@ -180,7 +180,7 @@ class Drawing:
         return f"{self.caption} {self.left_out}".strip()
 
 
-def there(data: Mapping[str, Any], *rows: Quantity) -> bool:
+def has_quantities(data: Mapping[str, Any], *rows: Quantity) -> bool:
     """Return True if an archive holds all of these quantities."""
     return all(row.path in data for row in rows)
 
@@ -296,8 +296,7 @@ class Files:
     def write(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
     ) -> list[Written]:
-        """Write all figures, and the film if ``made`` is given; none where one of them cannot be
-        written."""
+        """Write all figures, and the film if ``made`` is given; none where one cannot be written."""
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
         files, said = [], []
         for name, left_out, content in self._contents(drawings, made):
@@ -311,8 +310,7 @@ class Files:
     def _contents(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
     ) -> Iterator[tuple[str, str, Callable[[str], bytes]]]:
-        """Name of each picture, the states that it leaves out, and a function that makes a file of an
-        ending."""
+        """Name of each picture, states that it leaves out, and a function that makes its file."""
         for drawing in drawings:
             yield (
                 drawing.name,

@@ -62,8 +62,7 @@ def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]
 def _shown(
     data: dict[str, Any], scene: Scene, choice: Choice, frames: NDArray
 ) -> tuple[list[Stress], list[Map]]:
-    """Stresses along the surface by one method, or maps where there are none or a quantity inside is
-    chosen."""
+    """Stresses along the surface by one method, or maps where there are none or they are chosen."""
     available = surface.quantities(data, choice.method)
     if available and set(choice.quantities) <= set(available):
         return [

@@ -12,7 +12,7 @@ from galinx.solvers.friction.motion import names
 
 from ..plan.states import order
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, there
+from .choice import Choice, Drawing, has_quantities
 from .state_labels import C, N, StateLabels, not_shown, spread
 
 #: Loops that can be distinguished in a panel.
@@ -115,7 +115,7 @@ _SLIDERS = 6
 
 def has_slider(data: dict[str, Any]) -> bool:
     """Return True if an archive holds a slider."""
-    return there(data, runs.TIMES)
+    return has_quantities(data, runs.TIMES)
 
 
 def slider(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:

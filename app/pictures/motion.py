@@ -28,7 +28,7 @@ from galinx.postprocess.surface_over_time import left_over
 from galinx.solvers.sie.closed_form import FlatPunch
 
 from ..scene.scene import Scene, Time
-from .choice import Choice, Drawing, there
+from .choice import Choice, Drawing, has_quantities
 from .state_labels import drive_label, spread
 
 #: Starts that can be distinguished in a figure.
@@ -37,7 +37,7 @@ _STARTS = 6
 
 def has_motions(data: dict[str, Any]) -> bool:
     """Return True if an archive holds motions in time."""
-    return there(data, rows.TIMES)
+    return has_quantities(data, rows.TIMES)
 
 
 def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
@@ -82,7 +82,7 @@ _HELD = {"strain near": rows.STRAIN, "motion near": rows.KINETIC, "radiated": ro
 
 def has_energies(data: dict[str, Any]) -> bool:
     """Return True if an archive holds energies over time."""
-    return there(data, *_DONE.values(), *_HELD.values())
+    return has_quantities(data, *_DONE.values(), *_HELD.values())
 
 
 def energies(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
@@ -110,12 +110,11 @@ _FRAMES = 160
 
 def has_pressures(data: dict[str, Any]) -> bool:
     """Return True if an archive holds pressures over time."""
-    return there(data, rows.PRESSURE, rows.PLACES)
+    return has_quantities(data, rows.PRESSURE, rows.PLACES)
 
 
 def pressures(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Figure of the pressure of the start whose steady pressure leans most, at times that double up to
-    the last."""
+    """Figure of the pressure of the start whose steady pressure leans most, at times that double up."""
     start = _start(data)
     t, X, σ = data[rows.TIMES.path], data[rows.PLACES.path], data[rows.PRESSURE.path][start]
     c, g = (float(data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
@@ -131,8 +130,7 @@ def pressures(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def pressure_film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]:
-    """Film of the pressure of the start whose steady pressure leans most, and a sentence on what it
-    leaves out."""
+    """Film of the pressure of the start whose steady pressure leans most, and what it leaves out."""
     start, t = _start(data), data[rows.TIMES.path]
     frames = np.unique(np.linspace(0, len(t) - 1, _FRAMES).round().astype(int))
     made = pressures_film(
@@ -243,8 +241,7 @@ def _stress_over_time(data: dict[str, Any], name: str, method: str) -> NDArray[n
 
 
 def _steady_surface(data: dict[str, Any], scene: Scene, t: NDArray) -> dict[str, NDArray[np.float64]]:
-    """Stresses over N/(2a) of steady motion at the friction and the load of some times, (times, places)
-    each."""
+    """Stresses over N/(2a) of steady motion at the friction and load of some times, (times, places)."""
     X = data[rows.SURFACE_PLACES.path]
     if scene.layers:  # no closed form
         return {name: np.full((len(t), len(X)), np.nan) for name in _LABELS}

@@ -13,7 +13,7 @@ from galinx.postprocess.quantities import Quantity, runs, states
 from ..plan.fem import FOLLOWED
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, there
+from .choice import Choice, Drawing, has_quantities
 from .state_labels import C, StateLabels, spread
 
 #: Speeds that can be distinguished in a figure.
@@ -22,12 +22,11 @@ _SPEEDS = 6
 
 def has_degrees(data: dict[str, Any]) -> bool:
     """Return True if an archive holds how its numbers converge with the polynomial degree."""
-    return there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
+    return has_quantities(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
 
 
 def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Figure of the mesh that finite elements used, and its nodes; it is laid out again, nothing is
-    solved."""
+    """Figure of the mesh that finite elements used; it is laid out again, nothing is solved."""
     fem = make_plan(scene).fem
     assert fem
     cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
@@ -61,7 +60,7 @@ def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         data[runs.CHANGES.path][shown],
         data[runs.RECORD["degree"].path][shown],
         largest(states.ESTIMATE),
-        largest(states.TRUE_ERROR) if there(data, states.TRUE_ERROR) else None,
+        largest(states.TRUE_ERROR) if has_quantities(data, states.TRUE_ERROR) else None,
         choice.size,
     )
     caption = (

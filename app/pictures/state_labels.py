@@ -49,8 +49,7 @@ class StateLabels:
         return self._data[column(name)]
 
     def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
-        """Distinct values of a parameter: numbers in ascending order, texts as states follow each
-        other."""
+        """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""
         values = self.values(name)[self.all if states is None else np.asarray(states)].tolist()
         return sorted(set(values)) if self.numeric(name) else list(dict.fromkeys(values))
 
@@ -137,8 +136,7 @@ class StateLabels:
 
 
 def drive_label(c: float, g: float, way: float) -> str:
-    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and the way ±1 in which it goes
-    along X."""
+    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
     towards = f", towards ${'-+'[way > 0]}X$" * (c > 0.0 and way != 0)
     return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
 
@@ -150,7 +148,7 @@ def spread(values: Sequence[Any], most: int) -> list[Any]:
     return [values[n] for n in np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
 
 
-def few(
+def states_for_panel(
     labels: StateLabels, names: Sequence[str], states: NDArray, most: int
 ) -> tuple[list[str], NDArray]:
     """States for one panel: as many parameters vary as that leaves a readable number of curves.

@@ -28,9 +28,9 @@ from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.layers.layered import Layered
 
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, by_method, one_of, there
+from .choice import Choice, Drawing, by_method, has_quantities, require_one_of
 from .friction import Loops
-from .state_labels import C, N, StateLabels, few, not_shown, spread
+from .state_labels import C, N, StateLabels, not_shown, spread, states_for_panel
 
 #: Curves that can be distinguished in a panel, columns of a page, and the least width for one [in].
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.3
@@ -61,7 +61,7 @@ def stresses_of(data: dict[str, Any], choice: Choice) -> list[Stress]:
             else choice.called(next(iter(available[name].values()))),
             {method: choice.scale(row) * data[row.path] for method, row in available[name].items()},
         )
-        for name in (one_of("quantity", name, available) for name in names)
+        for name in (require_one_of("quantity", name, available) for name in names)
     ]
 
 
@@ -109,8 +109,7 @@ def column(
     names: Sequence[str],
     looks: Any,
 ) -> Column:
-    """A column of the figure: a curve for each state, named by some parameters, and its place on its
-    friction loop."""
+    """Column of the figure: a curve for each state, and the state's place on its friction loop."""
     curves = [Curve(i, loops.labels.label(i, names), look) for i, look in zip(states, looks)]
     places = [
         Place(loop, float(data[POSITION.path][i]), float(data[FRICTION.path][i]))
@@ -122,8 +121,7 @@ def column(
 def _groups(
     labels: StateLabels, states: NDArray, requested: Sequence[int], width: float
 ) -> list[tuple[str, list[int], list[str]]]:
-    """Title, states and parameters that distinguish them, by column; of some states, or of the requested
-    ones."""
+    """Title, states and parameters that distinguish them, by column."""
     states = np.array(requested) if requested else states
     varied = labels.varied(states)
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
@@ -131,14 +129,16 @@ def _groups(
     if by and requested and len(labels.distinct(by, states)) > most:
         by = ""
     if not by:
-        names, shown = (varied, states) if requested else few(labels, varied, states, _CURVES)
+        names, shown = (
+            (varied, states) if requested else states_for_panel(labels, varied, states, _CURVES)
+        )
         return [("", shown.tolist(), names)]
     groups = []
     values = labels.distinct(by, states)
     for value in spread(values, most) if most > 1 else values[-1:]:
         group, names = labels.where(states, **{by: value}), [name for name in varied if name != by]
         if not requested:
-            names, group = few(labels, names, group, _CURVES)
+            names, group = states_for_panel(labels, names, group, _CURVES)
         groups.append((labels.label(int(group[0]), [by]), labels.ordered(group).tolist(), names))
     return groups
 
@@ -171,7 +171,7 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     states = np.array(choice.states) if choice.states else labels.all
     names = labels.varied(states)
     if not choice.states:
-        names, states = few(labels, names, states, _INTERFACE_CURVES)
+        names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
     states = labels.ordered(states)
     shown = looks(len(states), len(names) == 1 and labels.numeric(names[0]))
     curves = [Curve(i, labels.label(i, names), look) for i, look in zip(states.tolist(), shown)]
@@ -212,7 +212,9 @@ def _depths(data: dict[str, Any], scene: Scene) -> tuple[NDArray, NDArray, str]:
 def _rows(data: dict[str, Any], choice: Choice) -> list[Row]:
     """Rows of the figure: stresses by side of the interface and by method."""
     available = by_method(data, (STATE, INTERFACE, ALONG), choice.method)
-    chosen = [one_of("quantity", name, available) for name in choice.quantities] or list(available)
+    chosen = [require_one_of("quantity", name, available) for name in choice.quantities] or list(
+        available
+    )
     figure_rows = []
     for names, label in _AT_INTERFACES.items():
         sides = [
@@ -309,15 +311,15 @@ class Fields:
 
 def has_map(data: dict[str, Any], method: str = "") -> bool:
     """Return True if an archive holds a map of stresses."""
-    return there(data, stresses.MAP) and bool(by_method(data, (STATE, INSIDE), method))
+    return has_quantities(data, stresses.MAP) and bool(by_method(data, (STATE, INSIDE), method))
 
 
 def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Figure of maps of stresses at the slowest and the fastest speed, and of the differences of both
-    methods."""
+    """Figure of maps of stresses at the slowest and the fastest speed, and of the methods'
+    differences."""
     fields, labels = Fields(data, scene, choice), StateLabels(data, scene)
     X, Y = fields.grid()
-    names = [one_of("quantity", name, fields.names) for name in choice.quantities]
+    names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _MAPS if name in fields.names]
     states = list(choice.states) or _states(labels)
     alone = len(names) == len(states) == 1
@@ -336,8 +338,7 @@ def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def _maps(fields: Fields, names: list[str], states: list[int]) -> tuple[list[Map], list[NDArray]]:
-    """Maps of stresses by quantity, and the differences of both methods over the largest value of each
-    quantity."""
+    """Maps of stresses by quantity, and differences of both methods over the quantity's largest value."""
     shown, differences = [], []
     for name in names:
         values, *others = (

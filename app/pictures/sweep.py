@@ -41,7 +41,7 @@ from ..plan.task import Task
 from ..results.si import contacts_of_states, in_si
 from ..run.methods import on_layers
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, by_method, noun, one_of
+from .choice import Choice, Drawing, by_method, require_one_of, short_name
 from .state_labels import PLACE, C, N, StateLabels, not_shown, spread
 
 #: Values of a parameter that make a curve, curves that can be distinguished, and panels of a page.
@@ -98,8 +98,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Curves of a figure: the columns that are drawn, the parameter that they are drawn over, and the
-    states of each curve.
+    """Curves of a figure: columns that are drawn, their parameter, and the states of each curve.
 
     Attributes:
         over, x: the parameter, and its numbers, (states,).
@@ -181,7 +180,7 @@ def _sweep(data: dict[str, Any], scene: Scene, labels: StateLabels, choice: Choi
     selected = np.concatenate([states for _, states in groups])
     same: list[str] = []
     if choice.y:
-        drawn = [one_of("y", y, columns) for y in choice.y]
+        drawn = [require_one_of("y", y, columns) for y in choice.y]
     else:
         # Along strokes friction is drawn as a loop.
         elsewhere = [x] if name != PLACE else [x, data[FRICTION.path]]
@@ -219,9 +218,8 @@ def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Co
 
 
 def _label(row: Quantity) -> str:
-    """Name of a quantity for an axis, with formulas in TeX and N/(2a) where stresses are relative
-    to it."""
-    text = re.sub(r"\bX = (-?a)\b", r"$X = \1$", noun(row))
+    """Name of a quantity for an axis, with formulas in TeX."""
+    text = re.sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
     if row.symbol:
         text = f"{text.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"
     return text
@@ -238,11 +236,10 @@ def _swept(labels: StateLabels, selected: NDArray) -> list[str]:
 def _over(
     labels: StateLabels, columns: dict[str, Column], requested: str, selected: NDArray
 ) -> tuple[str, Parameter, NDArray]:
-    """Name, axis label and numbers, (states,), of the parameter or quantity that curves are drawn
-    over."""
+    """Name, axis and numbers, (states,), of the parameter or quantity that curves are drawn over."""
     numeric = [name for name in labels.parameters if labels.numeric(name)]
     if requested:
-        one_of("x", requested, [*numeric, _SPEED, *columns])
+        require_one_of("x", requested, [*numeric, _SPEED, *columns])
     swept = _swept(labels, selected) or labels.varied(selected)
     name = (
         C if requested == _SPEED else requested or next((name for name in swept if name in numeric), "")
@@ -263,7 +260,7 @@ def _by(labels: StateLabels, requested: str, x: str, selected: NDArray) -> str:
     """Name of the parameter that distinguishes the curves; "" for one curve."""
     varied = [name for name in labels.varied(selected) if name != x]
     if requested:
-        return one_of("by", requested, varied)
+        return require_one_of("by", requested, varied)
     law = [name for name in varied if name in (C, N, *labels.law)]
     # Places are the strokes' only where nothing else is swept.
     return next(iter([*law, *varied]), "")
@@ -287,8 +284,7 @@ def _line(column: Column, label: str, x: NDArray, states: NDArray) -> Line:
 def _apart(
     numbers: dict[str, NDArray], order: Sequence[str], changing: set[str], elsewhere: list[NDArray]
 ) -> tuple[list[str], list[str]]:
-    """Names of numbers that differ from each other, in the order of ``numbers``, and those of all
-    others."""
+    """Names of numbers that differ from each other, in the order of ``numbers``, and all other names."""
     drawn: list[str] = []
     for name in order:
         twins = [*elsewhere, *(numbers[other] for other in drawn)]
@@ -320,8 +316,7 @@ def has_angles(scene: Scene) -> bool:
 
 
 def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Figure over the angle of the solid, under the steepest friction and at the fastest speed of the
-    archive."""
+    """Figure over the angle of the solid, under the archive's steepest friction at its fastest speed."""
     g = data[states.RATIO.path]
     steepest = float(g[np.argmax(np.abs(g))])
     V = float(data[states.SPEED.path].max()) * scene.solid.c_s
@@ -377,8 +372,7 @@ def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
 
 
 def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
-    """Panels of half-width, largest pressure and tension, and of the intensities of an end that is
-    sharp."""
+    """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end."""
 
     def numbers(response: Any, body: Body) -> list[float]:
         contact = contacts(response, np.array([g]), body.profile, body.compression)
@@ -405,8 +399,7 @@ def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
 
 
 def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:
-    """Value of ``of`` for a body at a speed [m/s]; None at the limit and beyond, and where there is no
-    contact."""
+    """Value of ``of`` for a body at a speed [m/s]; None from the limit on, and without a contact."""
     c = V / body.solid.c_s
     if c >= body.solid.limit():
         return None
@@ -433,8 +426,7 @@ _SHOWN = (
 
 
 def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
-    """Return True if a punch with two sharp edges was solved over uniform layers by the integral
-    equation."""
+    """Return True if a punch with sharp edges was solved over uniform layers by the integral equation."""
     solved = any(path.startswith(f"states/{SIE}/") for path in data)
     sharp = not (scene.body.found or scene.solve.own_pressure)
     least = _THINNEST * scene.body.half_width
@@ -444,8 +436,7 @@ def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
 
 
 def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Figure over the thickness of the uppermost layer, under the steepest friction and at the fastest
-    speed."""
+    """Figure over the thickness of the top layer, under the steepest friction at the fastest speed."""
     assert isinstance(scene.solid, Layered)
     g = data[states.RATIO.path]
     steepest = float(g[np.argmax(np.abs(g))])

@@ -1,8 +1,8 @@
 """Waves of a scene: the slowest ones along its layers, and those that a punch sends out under loads that
 oscillate.
 
-The slowest waves are told by their speed over the wavenumber. The punch answers to loads that oscillate
-with its dynamic stiffness over frequency.
+The slowest waves are described by their speed over the wavenumber, the punch by its dynamic stiffness
+over the frequency of the load.
 """
 
 from dataclasses import dataclass

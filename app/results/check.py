@@ -178,8 +178,7 @@ def _computed(
     selected: NDArray[np.int64],
     quantities: Sequence[Quantity],
 ) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
-    """Numbers and quantities of some states, speed by speed; nothing where a speed could not be
-    solved."""
+    """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: make(name, alone, Progress(), Clock()) for name in methods}
@@ -224,8 +223,7 @@ def _is_place(path: str) -> bool:
 
 
 def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
-    """Differences of finite elements from the closed form, whether or not the scene asks for that
-    comparison."""
+    """Differences of finite elements from the closed form, even if the scene asks for none."""
     data, fem, body = archive.data, plan.fem, plan.body
     if not fem or body.layered:
         return
@@ -368,8 +366,7 @@ def _same(archived: Any, expected: Any) -> bool:
 
 
 def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]:
-    """Attributes, positions and names of datasets that differ from those that this program gives the
-    scene."""
+    """Attributes, positions and names of datasets that differ from those of the scene."""
     attributes, data = archive.attributes, archive.data
     given = of_scene(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
@@ -386,8 +383,7 @@ def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]
 
 
 def _of_numbers(archive: reader.Archive) -> Iterator[str]:
-    """Numbers that are not finite, not in balance, or not as the archived comparisons say; all are
-    read."""
+    """Numbers that are not finite, not in balance, or not as the archived comparisons say."""
     rules = json.loads(archive.attributes["rules"])
     failures = archive.data.get(runs.FAILURES.path, ())
     worst: dict[str, float] = {}
@@ -450,8 +446,7 @@ def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]
 
 
 def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
-    """Differences of verdict and reasons from those of the archived comparisons, which are judged once
-    more."""
+    """Verdict and reasons that do not follow from the archived comparisons."""
     attributes = archive.attributes
     rules = {
         compare.RULES[name].text: name

@@ -54,8 +54,7 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
 
 
 def _rows(archive: reader.Archive, where: str, load: bool) -> list[Quantity]:
-    """Quantities of a table: parameters that distinguish states, the load on request, positions, and all
-    with one value at each."""
+    """Quantities of a table: parameters that distinguish states, positions, all with one value each."""
     first = parameters(archive.data)
     if load:
         first[LOAD.path] = LOAD

@@ -10,11 +10,11 @@ from galinx.postprocess.quantities.quantity import METHODS
 
 from ..errors import BadInput
 from ..pictures import film, friction, motion, numerics, surface, sweep
-from ..pictures.choice import FILM, Choice, Drawing, Files, Written, one_of, there
+from ..pictures.choice import FILM, Choice, Drawing, Files, Written, require_one_of
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 
-__all__ = ["Drawing", "names", "of_archive", "there", "write"]
+__all__ = ["Drawing", "names", "of_archive", "write"]
 
 _Data = dict[str, Any]
 
@@ -118,8 +118,7 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
 
 
 def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
-    """Films of motions in time: whether an archive has the data of each, and the function that
-    makes it."""
+    """Films of motions in time: whether an archive has the data, and the function that makes the film."""
     return (
         (motion.has_film(data), motion.film_of_surface),
         (motion.has_pressures(data), motion.pressure_film),
@@ -134,15 +133,15 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
     """
     choice.check_states(data)
     if choice.method:
-        one_of("method", choice.method, METHODS)
+        require_one_of("method", choice.method, METHODS)
     there_are = [name for name, figure in _FIGURES.items() if figure.has(data, scene, _PLAIN)]
     for name in choice.figures:
         # A film that the archive has too few states for says so itself.
-        one_of("figure", name, dict.fromkeys([*there_are, FILM]))
+        require_one_of("figure", name, dict.fromkeys([*there_are, FILM]))
         if ignored := choice.given - _FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
     for name in choice.quantities:
-        one_of("quantity", name, dict.fromkeys(_quantities(data, scene)))
+        require_one_of("quantity", name, dict.fromkeys(_quantities(data, scene)))
     selected = choice.figures or [
         name for name in there_are if name != FILM and choice.given <= _FIGURES[name].follows
     ]

@@ -115,7 +115,7 @@ def chosen(
     columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
     plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
     assert plan.fem
-    fem = replace(reaching(plan.fem, extent, plan.tasks), shared_speeds=False)
+    fem = replace(with_reach(plan.fem, extent, plan.tasks), shared_speeds=False)
     tasks = {task.response.c: task for task in plan.tasks}
     # Prescribed tractions are solved one degree above the rule: no measured error corrects it here.
     more = scene.solve.mode == "traction"
@@ -133,8 +133,7 @@ def chosen(
 
 
 def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
-    """Solutions of states, one after the other, each valid until the next one is requested;
-    collective.
+    """Solutions of states one after the other, each valid until the next is requested; collective.
 
     Raises:
         SolveError: the equations could not be solved.
@@ -147,7 +146,7 @@ def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
             yield Solved(state, space, fields, weights, pressure, fem.work.comm)
 
 
-def reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
+def with_reach(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
     """Plan of finite elements with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
     corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
     if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):

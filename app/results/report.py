@@ -38,9 +38,9 @@ from ..console import program
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
+    has_study_digits,
     intensities,
     intensity_rows,
-    like_the_studys,
     limit_of_steady_motion,
 )
 from .drawings import Drawing
@@ -132,8 +132,7 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
 
 
 def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
-    """Largest stresses that may part a layer from what it lies on: shear, and tension across and
-    along."""
+    """Largest stresses that may part a layer from what it lies on: shear and tension."""
     method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
     if method is None:
         return
@@ -472,7 +471,7 @@ class Report:
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
     """The study's tables that the archive has all states of, for the study's solid."""
-    if not like_the_studys(scene.solid):
+    if not has_study_digits(scene.solid):
         return []
     a, rows_by_name = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
     return [

@@ -103,8 +103,7 @@ class Result:
 
     @cached_property
     def grid(self) -> Any:
-        """An xarray.Dataset over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6,
-        motion="FM1")``."""
+        """xarray.Dataset over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
         from galinx.postprocess.named import over_parameters
 
         return over_parameters(self.dataset)
@@ -172,7 +171,7 @@ class Result:
         return [file.path for file in write(self.data, self.scene, Choice(**options), files)]
 
     def report(self, path: Path | str, overwrite: bool = False, si: bool = False) -> None:
-        """Write a self-contained HTML page, its table of states and its curves in SI where asked for.
+        """Write a self-contained HTML page, its table of states and its curves in SI on request.
 
         Raises:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
@@ -281,7 +280,7 @@ def compute(scene: Scene, progress: bool = False) -> Result:
     """Compute a scene in memory.
 
     Args:
-        scene: what is asked for.
+        scene: the scene.
         progress: show a bar on a terminal.
 
     Raises:

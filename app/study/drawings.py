@@ -286,8 +286,7 @@ def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str
 
 
 def _curve(label: str, look: Look, shown: list[Stress], states: Sequence[int]) -> Curve:
-    """A curve: the slow state as a line and the fast one as markers, or one state by the closed form and
-    by finite elements."""
+    """A curve: the slow state as a line and the fast one as markers, or both methods at one speed."""
     method = CLOSED_FORM if len(states) > 1 else FEM
     has = method in shown[0].values
     markers = _values(shown, method, states[-1]) if has else None

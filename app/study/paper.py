@@ -255,8 +255,7 @@ def _tables(study: Computed) -> list[Sheet]:
 
 
 def _details(study: Computed) -> list[Sheet]:
-    """Tables of friction, of the moving frame and of intensities with dimensions, on which the study's
-    tables and figures rest."""
+    """Tables of friction, of the moving frame, and of intensities with dimensions."""
     scene = study.scene
     laws = [law for law in scene.friction.laws() if isinstance(law, Dahl)]
     return [
@@ -324,8 +323,7 @@ def _judged(
 
 
 def _methods(study: Computed, block: Computed, off: dict[str, float]) -> Sheet:
-    """Table of the methods at one state, and their differences from the exact solution at all of Tables 4
-    and 5."""
+    """Table of the methods at one state, and their differences at all of Tables 4 and 5."""
     scene, data = study.scene, study.data
     numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
     law = Dahl(*REFERENCE.values())
@@ -391,15 +389,13 @@ def _collocation(scene: Scene, data: dict[str, Any]) -> float:
 
 
 def _apart(first: Computed, second: Computed) -> float:
-    """Largest relative difference of K_I between two results of finite elements, at both edges in all
-    states."""
+    """Largest relative difference of K_I of finite elements between two results, at both edges."""
     paths = (of.K_I_LEFT[FEM].path, of.K_I_RIGHT[FEM].path)
     return float(max(np.abs(second.data[path] / first.data[path] - 1.0).max() for path in paths))
 
 
 def _raw(data: dict[str, Any]) -> float:
-    """Largest relative difference of σ_YY of the raw nodal forces from the closed form under the
-    punch."""
+    """Largest relative difference of σ_YY of nodal forces from the closed form under the punch."""
     raw, exact = data[stresses.RAW_PRESSURE.path], data[stresses.PRESSURE[CLOSED_FORM].path]
     under = np.isfinite(exact)
     return float(np.abs(raw[under] / exact[under] - 1.0).max())

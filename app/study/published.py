@@ -32,7 +32,7 @@ INTENSITIES = {"table4": "Table 4. Slow speed", "table5": "Table 5. High speed"}
 _KOLOSOV = 2.0
 
 
-def like_the_studys(solid: Solid) -> bool:
+def has_study_digits(solid: Solid) -> bool:
     """Return True if dimensionless results in this solid have the study's digits."""
     return getattr(solid, "κ", None) == _KOLOSOV
 

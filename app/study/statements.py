@@ -109,7 +109,7 @@ class Results:
         return self._in_plane[self.state(**state)]
 
     def apart(self, first: dict[str, Any], second: dict[str, Any]) -> float:
-        """Largest difference of the contact stress over N/(2a) between two states, where pressures are
+        """Largest difference of the contact stress of two states over N/(2a), where pressures are
         compared."""
         return float(np.abs(self.σ_YY(**first) - self.σ_YY(**second))[self.under].max())
 

@@ -1,6 +1,7 @@
-"""The command line, and how every failure ends.
+"""The command line: its commands, models of the user's own, and the message and status of every failure.
 
-Models of the user's own: a Python file that registers them, run before anything else.
+A user's model is a Python file that registers laws, solids, profiles, meshes or quantities; it runs
+before anything else.
 """
 
 import os
@@ -65,8 +66,8 @@ class _Commands(click.Group):
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args[0] not in self.commands:
-            known = [*self.commands, *_OF_SCRIPT * (program() == _SCRIPT)]
-            hint = meant(args[0], known) or f"; {program()} --help lists the commands"
+            commands = [*self.commands, *_OF_SCRIPT * (program() == _SCRIPT)]
+            hint = meant(args[0], commands) or f"; {program()} --help lists the commands"
             ctx.fail(f"No such command {short(args[0])!r}{hint}")
         return super().resolve_command(ctx, args)
 

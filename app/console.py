@@ -1,14 +1,9 @@
-"""What the program says while it works and when it ends.
+"""Text of the program on a terminal: its progress while it works, and tables, verdict and times at the
+end.
 
-What commands print at their end.
-
-The one place where text goes to a terminal: what would command it is shown instead.
-
-What a long run tells: a bar on a terminal, lines for who wants them, a log file.
-
-What the command is called.
-
-How tables and verdicts look on a terminal.
+All text goes to the terminal here: control characters that would command it are written out instead.
+Progress is a bar on a terminal, lines on the error stream on request, and a log file. Commands are named
+as the user called the program, ``./run.sh`` or ``galinx``.
 """
 
 import io
@@ -22,14 +17,16 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from galinx import files
 from galinx.clock import Clock
-from galinx.postprocess.tables import Sheet
 
 from . import process, ranks
 from .errors import MachineFailure
+
+if TYPE_CHECKING:  # a process starts with this module, before any library is imported that could fail
+    from galinx.postprocess.tables import Sheet
 
 #: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
 #: and what names of files have for bytes that are not UTF-8.
@@ -48,7 +45,7 @@ def width() -> int:
 
 def plain(text: str) -> str:
     r"""A text whose control characters are written out, ``\u001b`` for ESC as in JSON."""
-    return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _COMMANDS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 class Output(io.FileIO):
@@ -69,10 +66,10 @@ class Output(io.FileIO):
 
 
 class PlainStream:
-    """A text stream that is written plain text only.
+    """A text stream to which plain text only is written.
 
     Args:
-        bare: where the text goes; also for those who write control characters of their own.
+        bare: stream below, also for texts with control characters of their own.
     """
 
     def __init__(self, bare: Any) -> None:
@@ -91,20 +88,20 @@ class PlainStream:
 
 
 def bare(stream: Any) -> Any:
-    """The stream below, for colours and bars; texts of others have to be made plain before."""
+    """Stream below, for colours and bars; other texts have to be made plain before."""
     return getattr(stream, "bare", stream)
 
 
 @contextmanager
 def plain_streams() -> Iterator[None]:
-    """For a block: whoever prints, what reaches the output and error streams is plain."""
+    """Context in which all text that reaches the output and error streams is plain."""
     out, err = (stream and PlainStream(stream) for stream in (sys.stdout, sys.stderr))
     with redirect_stdout(out), redirect_stderr(err):
         yield
 
 
 def program() -> str:
-    """How the user called the program: ``./run.sh`` in the tree, ``galinx`` elsewhere."""
+    """Command by which the user called the program: ``./run.sh`` in the tree, ``galinx`` elsewhere."""
     return _called() or "galinx"
 
 
@@ -122,12 +119,12 @@ def _called() -> str:
     return os.environ.get("GALINX_COMMAND", "")
 
 
-#: Level of what is told: above INFO, which is muted because the form compiler floods it.
+#: Level of logged lines: above INFO, which is muted because the form compiler floods it.
 _NOTE = logging.INFO + 5
 
 
 class Progress:
-    """Text, share done and remaining time on a terminal's error stream; silent elsewhere.
+    """Bar with text, share of the work and remaining time on a terminal; silent elsewhere.
 
     Use it as a context manager.
 
@@ -165,28 +162,29 @@ class Progress:
             handler.close()
 
     def say(self, text: str) -> None:
-        """What is being done now."""
+        """Show the step that begins now."""
         if self._bar:
             self._bar.update(self._task, description=plain(text))
         self.note(text)
 
     def note(self, text: str) -> None:
-        """For those who listen closely: verbose runs and log files."""
+        """Log a line, for verbose runs and log files."""
         if text != self._last:
             self._logger.log(_NOTE, "%s", plain(text))
             self._last = text
 
     def warn(self, text: str) -> None:
-        """What everybody should know, at once and whatever rank found it."""
-        told = f"warning: {plain(text)}"
+        """Show a warning at once, on whatever rank it was raised."""
+        line = f"warning: {plain(text)}"
         if self._bar:
-            self._bar.console.print(told, markup=False, highlight=False, soft_wrap=True)
+            self._bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
         elif not self._verbose:
-            print(told, file=sys.stderr, flush=True)
-        self.note(told)
+            print(line, file=sys.stderr, flush=True)
+        self.note(line)
 
     def done(self, count: float, of: int, what: str = "states") -> None:
-        """So many of them are finished; a share of one moves the bar, and a line tells its tenths."""
+        """Show how many are finished; a fraction of the next moves the bar, and the log has its
+        tenths."""
         if self._bar:
             self._bar.update(self._task, completed=count, total=of)
         self.note(f"{int(10.0 * count + 1e-9) / 10.0:g} of {of} {what}")
@@ -253,7 +251,7 @@ def _start_bar() -> tuple[Any, Any]:
 
 
 def new_console(file: Any = None, colours: bool = False) -> Any:
-    """Rich console that guesses nothing about what numbers are, and wraps no line.
+    """Rich console that highlights no numbers and wraps no line.
 
     Its colours are its own: those of texts are shown as the characters they are.
     """
@@ -270,7 +268,7 @@ def new_console(file: Any = None, colours: bool = False) -> Any:
     )  # fmt: skip
 
 
-def print_sheet(console: Any, sheet: Sheet) -> None:
+def print_sheet(console: Any, sheet: "Sheet") -> None:
     """Print a table, labels to the left and numbers to the right, in parts where it is too wide."""
     from rich import box
     from rich.table import Table
@@ -291,7 +289,7 @@ def print_sheet(console: Any, sheet: Sheet) -> None:
         console.print(text)
 
 
-def _parts(sheet: Sheet, width: int) -> list[list[int]]:
+def _parts(sheet: "Sheet", width: int) -> list[list[int]]:
     """Columns that stand side by side, the first of all in every part."""
     from rich.cells import cell_len
 
@@ -323,13 +321,13 @@ def say(text: str, hang: int = 2) -> None:
 
 
 def colours() -> bool:
-    """Only for a terminal, without NO_COLOR: mpirun hands its ranks one even where there is none."""
+    """True for a terminal without NO_COLOR: mpirun hands its ranks one even where there is none."""
     own = process.is_there() or not ranks.by_mpirun()
     return own and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
-    """States, comparisons and verdict unless quiet; warnings go to the error stream."""
+    """Print states, comparisons and verdict unless quiet; warnings go to the error stream."""
     if not quiet:
         from galinx.postprocess.tables import states_sheet
 
@@ -338,7 +336,7 @@ def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool 
 
 
 def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
-    """Tables of an archive, comparisons and verdict."""
+    """Print tables of an archive, its comparisons and its verdict."""
 
     console = new_console(colours=colours())
     for sheet in sheets:
@@ -347,14 +345,14 @@ def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
 
 
 def print_warnings(attributes: dict[str, Any]) -> None:
-    """Warnings of an archive, on the error stream."""
+    """Print the warnings of an archive on the error stream."""
     for text in json.loads(attributes["warnings"]):
         print(f"warning: {text}", file=sys.stderr)
 
 
 def print_times(clock: Clock) -> None:
-    """Wall time of the process, and of the steps that took most of it."""
+    """Print the wall time of the process, and of the steps that took most of it."""
     clock.lap()
     steps = sorted(((seconds, name) for name, seconds in clock.items()), reverse=True)
-    told = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
-    say(f"time: {sum(clock.values()):.3g} s{f' ({told})' if told else ''}")
+    longest = ", ".join(f"{name} {seconds:.2g} s" for seconds, name in steps[:4] if seconds >= 0.01)
+    say(f"time: {sum(clock.values()):.3g} s{f' ({longest})' if longest else ''}")

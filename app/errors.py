@@ -1,7 +1,5 @@
-"""Failures with an exit status of their own.
-
-What a scene says, short enough for a message.
-"""
+"""Failures with an exit status of their own, and texts of messages: excerpts of values, hints at valid
+words."""
 
 import reprlib
 import sys
@@ -21,10 +19,10 @@ class MachineFailure(Exception):
 
 @contextmanager
 def finite_elements_installed() -> Iterator[None]:
-    """For a block of imports: says what to do where a library is missing.
+    """Context of imports; its failure says what to do where a library is missing.
 
     Raises:
-        MachineFailure: one is.
+        MachineFailure: a library is missing.
     """
     try:
         yield
@@ -33,7 +31,7 @@ def finite_elements_installed() -> Iterator[None]:
 
 
 def unavailable(error: ImportError) -> str:
-    """What to do where a library is missing, or is there and cannot be loaded."""
+    """Message with what to do where a library is missing, or is there and cannot be loaded."""
     if isinstance(error, ModuleNotFoundError):
         return (
             f"{error.name} is not installed for {sys.executable}; in galinx's folder ./run.sh installs "
@@ -51,7 +49,7 @@ _BITS = 200
 
 
 class _Excerpt(reprlib.Repr):
-    """As Python writes values, cut where they are long or deep."""
+    """Values as Python writes them, cut where they are long or deep."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -80,12 +78,12 @@ def short(text: str, most: int = 80) -> str:
 
 
 def meant(word: str, valid: Iterable[str]) -> str:
-    """What may have been meant, for the end of a message; "" where nothing is near."""
-    known = {name.lower(): name for name in valid}
-    close = get_close_matches(short(word).lower(), known, 1, 0.6)
-    return f"; did you mean {known[close[0]]}?" if close else ""
+    """Hint at the nearest valid word for the end of a message; "" where nothing is near."""
+    by_lower_case = {name.lower(): name for name in valid}
+    close = get_close_matches(short(word).lower(), by_lower_case, 1, 0.6)
+    return f"; did you mean {by_lower_case[close[0]]}?" if close else ""
 
 
 def nearest(key: str, valid: Collection[str]) -> str:
-    """The same, or else all that there is."""
+    """Hint at the nearest valid word for the end of a message, or else at all valid words."""
     return meant(key, valid) or f"; valid: {', '.join(valid)}"

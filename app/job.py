@@ -1,12 +1,12 @@
-"""``run.sh -n``: starts mpirun, and says of all its ranks together how they ended.
+"""Start of a process, before any library is imported that could fail; and ``run.sh -n``, which starts
+mpirun.
 
-    python3 -P -m galinx.app.job MPIRUN RANKS PYTHON ARGUMENTS OF galinx
+python3 -P -m galinx.app.job MPIRUN RANKS PYTHON ARGUMENTS OF galinx
 
-Every rank has this process's output and error streams, and tells it on a line of its own, see
-:mod:`galinx.app.process`, with which status it ends, or that it was asked to stop. One that ends
-without a word was killed. What mpirun itself says counts only where no rank has come to speak.
-
-What a process does first, before any library is imported that could fail.
+The job reports for all its ranks together how they ended. Every rank has this process's output and error
+streams, and reports to it on a line of its own, see :mod:`galinx.app.process`, the status with which it
+ends, or that it was interrupted. A rank that ends without a word was killed. What mpirun itself prints
+counts only where no rank has come to speak.
 """
 
 import fcntl
@@ -54,10 +54,10 @@ def refuse(message: str) -> NoReturn:
 
 
 def _open_streams() -> None:
-    """What is closed becomes the null device: the next file would get its number, and all output.
+    """Open the null device for closed streams: the next file would get their number, and all output.
 
-    So does an output that is open for reading only: where the error stream is closed, bash hands on its
-    script under that number.
+    An output that is open for reading only becomes the null device, too: where the error stream is
+    closed, bash hands on its script under that number.
     """
     for number in range(3):
         try:
@@ -118,7 +118,7 @@ def _find_temporary_folder() -> None:
     )
 
 
-#: Seconds for ranks that are asked to stop, before they are killed: MPIs give them as much.
+#: Seconds between the interruption of ranks and their being killed: MPIs give them as much.
 _PATIENCE = 5.0
 #: Arguments that name what is open already: ranks have nothing of it.
 _OPEN = re.compile(r"/dev/(stdin)|/(?:dev|proc/self)/fd/(\d+)")
@@ -127,25 +127,25 @@ _LARGEST = 10**8
 
 
 class _Rank:
-    """A rank as its job sees it: its line, its process, and what it told."""
+    """A rank as its job sees it: its line, its process, and its reports."""
 
     def __init__(self, line: socket.socket) -> None:
         self.line, self._rest = line, b""
-        self.told: dict[str, Any] = {}
+        self.reports: dict[str, Any] = {}
         self._process, _ = _peer(line)
         with suppress(OSError):
             socket.send_fds(line, [b"."], [1, 2])
 
     def listen(self) -> bool:
-        """Take in what the rank tells; False when it has ended."""
+        """Receive the rank's reports; False when it has ended."""
         try:
-            found = self.line.recv(65536)
+            data = self.line.recv(65536)
         except OSError:
-            found = b""
-        *lines, self._rest = (self._rest + found).split(b"\n")
+            data = b""
+        *lines, self._rest = (self._rest + data).split(b"\n")
         for text in lines:
-            self.told |= json.loads(text)
-        return bool(found)
+            self.reports |= json.loads(text)
+        return bool(data)
 
     def kill(self, number: int) -> None:
         """Send a signal; only while the line is open, later the process may be another."""
@@ -154,12 +154,12 @@ class _Rank:
 
     @property
     def has_failed(self) -> bool:
-        """Does it say that it ends with a failure?"""
-        return self.told.get("status", errors.GOOD) >= errors.BAD_INPUT
+        """True where the rank reports that it ends with a failure."""
+        return self.reports.get("status", errors.GOOD) >= errors.BAD_INPUT
 
     @property
     def is_root(self) -> bool:
-        return self.told.get("rank") == 0
+        return self.reports.get("rank") == 0
 
 
 class Job:
@@ -190,7 +190,7 @@ class Job:
         )  # fmt: skip
 
     def run(self) -> int:
-        """Wait until all ranks have ended; the status of the job, whose reason was said."""
+        """Wait until all ranks have ended; return the status of the job, whose reason was printed."""
         while self._mpirun.poll() is None:
             self._wait()
         self._deadline = self._deadline or time.monotonic() + _PATIENCE
@@ -201,8 +201,8 @@ class Job:
     def _wait(self) -> None:
         lines = {rank.line: rank for rank in self._open}
         patience = None if self._deadline is None else max(0.0, self._deadline - time.monotonic())
-        wanted: list[Any] = [self._signals, self._server, *lines]
-        ready, _, _ = select.select(wanted, [], [], patience)
+        sources: list[Any] = [self._signals, self._server, *lines]
+        ready, _, _ = select.select(sources, [], [], patience)
         if not ready:
             self._kill()
         if self._signals in ready and set(self._signals.read(4096)) & set(process.SIGNALS):
@@ -223,10 +223,10 @@ class Job:
         alive = rank.listen()
         if rank.has_failed:
             self._end()  # others would wait for it
-        elif "interrupted" in rank.told:
+        elif "interrupted" in rank.reports:
             self._stop("interrupted")
-        elif not alive and "status" not in rank.told:
-            name = rank.told.get("rank", "?")
+        elif not alive and "status" not in rank.reports:
+            name = rank.reports.get("rank", "?")
             self._stop(f"rank {name} or its mpirun was killed (did the machine lack memory?)")
         if not alive:
             self._open.remove(rank)
@@ -258,19 +258,21 @@ class Job:
 
     def _judged(self) -> int:
         root = next((rank for rank in self._ranks if rank.is_root), None)
-        told = root.told if root else {}
-        failed = [rank.told for rank in self._ranks if rank.has_failed]
-        if "status" not in told:
+        report = root.reports if root else {}
+        failed = [rank.reports for rank in self._ranks if rank.has_failed]
+        if "status" not in report:
             process.erase_bar()
         if failed:
-            first = told if told in failed else failed[0]
+            first = report if report in failed else failed[0]
             if first["words"]:  # a reader that went away wants none
                 process.complain(plain(first["words"]))
             return first["status"]
-        if "status" in told:
-            return told["status"]
+        if "status" in report:
+            return report["status"]
         if self._ranks or self._cause or self._mpirun.returncode < 0:
-            process.complain(f"{self._cause or 'mpirun was killed'}; {told.get('left', process.NOTHING)}")
+            process.complain(
+                f"{self._cause or 'mpirun was killed'}; {report.get('left', process.NOTHING)}"
+            )
         else:
             sys.stderr.write(os.pread(self._said, _LARGEST, 0).decode(errors="replace"))
             process.complain("mpirun could not start the ranks; its own words are above")
@@ -294,9 +296,9 @@ def _signals() -> IO[bytes]:
 
 
 def _shared(argument: str) -> str:
-    """An argument, for which what is open already has a name: every rank reads all of it."""
-    found = _OPEN.fullmatch(argument)
-    number = int(found[2] or 0) if found else 1
+    """Argument under a name by which every rank can read what is open already."""
+    match = _OPEN.fullmatch(argument)
+    number = int(match[2] or 0) if match else 1
     if number not in (1, 2):
         with suppress(OSError), open(number, "rb", closefd=False) as source:
             if not stat.S_ISREG(os.fstat(number).st_mode):  # which can be read once only

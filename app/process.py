@@ -1,11 +1,10 @@
-"""How a process begins, and ends where it is asked to stop; and the job of several ranks.
+"""Start and end of a process, also where it is interrupted, and its line to a job of several ranks.
 
-A rank's line to the job that started it, see :mod:`galinx.app.job`.
+A rank has a line to the job that started it, see :mod:`galinx.app.job`: MPIs and their mpirun differ in
+what they print, and in the status that they make of their ranks'. So ranks have the output and error
+streams of the job itself, and report to it how they end.
 
-What MPIs and their mpirun say, and the status that it makes of its ranks', differs between them. So
-ranks have the output and error streams of the job itself, and tell it how they end.
-
-What a process does that is asked to stop: by Ctrl-C, a batch system, a terminal that is closed.
+A process is interrupted by Ctrl-C, by a batch system, or by a terminal that is closed.
 """
 
 import json
@@ -29,7 +28,7 @@ _line: socket.socket | None = None
 
 
 def join() -> None:
-    """Join the job, if there is one, and take its streams for one's own: its output on rank 0 only."""
+    """Join the job, if there is one, and take over its streams: its output on rank 0 only."""
     global _line
     name = os.environ.pop(VARIABLE, None)
     if name is None:
@@ -41,7 +40,7 @@ def join() -> None:
         return
     _line = line
     ranks.trust_environment()
-    _tell(rank=ranks.rank())
+    _report(rank=ranks.rank())
     _, streams, *_ = socket.recv_fds(line, 1, 2)
     if not ranks.is_root():
         streams[0] = os.open(os.devnull, os.O_WRONLY)
@@ -52,34 +51,34 @@ def join() -> None:
 
 
 def address(name: str) -> str:
-    """Where a job of that name listens: in Linux's own space of names, so that no file is left."""
+    """Address at which a job of that name listens: in Linux's own name space, so that no file is left."""
     return f"\0{name}"
 
 
 def is_there() -> bool:
-    """Is this a rank of a job?"""
+    """Return True if this process is a rank of a job."""
     return _line is not None
 
 
 def leave(words: str) -> None:
-    """Whatever happens from now on, this is what there is to say of finished work."""
-    _tell(left=words)
+    """Report to the job the sentence on finished work, for whatever happens from now on."""
+    _report(left=words)
 
 
 def interrupted() -> None:
-    """This rank ends because it was asked to."""
-    _tell(interrupted=True)
+    """Report to the job that this rank ends because it was interrupted."""
+    _report(interrupted=True)
 
 
 def end(status: int, words: str = "") -> None:
-    """This rank ends with a status; ``words`` say why, which the job prints."""
-    _tell(status=status, words=words)
+    """Report to the job the status with which this rank ends; ``words`` say why, which the job prints."""
+    _report(status=status, words=words)
 
 
-def _tell(**told: int | str) -> None:
+def _report(**report: int | str) -> None:
     if _line:
         with suppress(OSError):  # a job that is gone needs no answer
-            _line.sendall(f"{json.dumps(told)}\n".encode())
+            _line.sendall(f"{json.dumps(report)}\n".encode())
 
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -94,14 +93,14 @@ _leave: Callable[[], str] | None = None
 
 
 class Asked(BaseException):
-    """This process was asked to stop. No KeyboardInterrupt: click would print an empty line."""
+    """This process was interrupted. No KeyboardInterrupt: click would print an empty line."""
 
 
 def listen() -> None:
-    """End in order when asked to; what is ignored already, as nohup wants it, stays ignored."""
+    """Let signals end the process in order; an ignored signal, as nohup wants it, stays ignored."""
     for number in SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, _asked)
+            signal.signal(number, _on_signal)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # run.sh has them wait until here
     signal.signal(signal.SIGALRM, lambda *_: end_stopped(NOTHING))
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")  # a library of MPIs, which would take SIGHUP for itself
@@ -110,13 +109,13 @@ def listen() -> None:
 
 @contextmanager
 def leaving(tidy: Callable[[], str], words: str) -> Iterator[None]:
-    """For a block that finishes work part by part: asked to stop, the process ends at once.
+    """Context for work that is finished part by part: interrupted there, the process ends at once.
 
     No exception is raised: it would meet HDF5 or MPI at work, or a destructor that drops it.
 
     Args:
-        tidy: tidies up, and returns what is said of the finished work.
-        words: what is said of it where the process is killed.
+        tidy: tidies up, and returns the sentence on the finished work.
+        words: the sentence that the job prints where the process is killed.
     """
     global _leave
     _leave = tidy
@@ -128,13 +127,13 @@ def leaving(tidy: Callable[[], str], words: str) -> Iterator[None]:
 
 
 def too_late() -> None:
-    """From now on the process is not stopped: what is left to do is done in a moment."""
+    """Ignore interruptions from now on: the work that remains is done in a moment."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
 
 def end_stopped(words: str) -> NoReturn:
-    """End a process that was asked to stop, and say what there is of its work."""
+    """End an interrupted process, and print the sentence on its finished work."""
     files.give_up()
     if is_there():
         leave(words)
@@ -147,19 +146,19 @@ def end_stopped(words: str) -> NoReturn:
 
 
 def erase_bar() -> None:
-    """Leave a terminal as it was before a bar showed how far the work is, cursor included."""
+    """Restore a terminal on which a bar showed the progress, cursor included."""
     if os.isatty(2):
         os.write(2, b"\r\x1b[2K\x1b[?25h")
 
 
 def finish(status: int, message: str = "") -> None:
-    """Have this said of a process that is about to end: a job ends its ranks when one has failed."""
+    """Report the end of the process: a job ends its ranks when one has failed."""
     too_late()
     end(status, message)
 
 
 def fail(status: int, message: str) -> None:
-    """Say once why the process is about to end, on whichever rank of all that it is about to."""
+    """Print once why the process is about to end, on whichever ranks it is about to."""
     finish(status, message)
     if not is_there():
         if ranks.from_environment()[0] > 0:
@@ -168,18 +167,18 @@ def fail(status: int, message: str) -> None:
 
 
 def complain(message: str) -> None:
-    """Say why the work ended."""
+    """Print why the work ended."""
     with suppress(OSError):
         print(f"error: {message}", file=sys.stderr, flush=True)
 
 
 def _dropped(exception: "sys.UnraisableHookArgs") -> None:
-    """A library at work drops an exception: nothing is said of one that ends the process."""
+    """Handle an exception that a library drops: nothing is printed for the one that ends the process."""
     if not isinstance(exception.exc_value, Asked):
         sys.__unraisablehook__(exception)
 
 
-def _asked(*_: object) -> None:
+def _on_signal(*_: object) -> None:
     too_late()
     if _leave:
         end_stopped(_leave())

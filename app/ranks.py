@@ -1,9 +1,10 @@
-"""What the command line knows of MPI, without importing it where there is only one process."""
+"""Rank and number of ranks for the command line, without importing MPI where there is only one
+process."""
 
 import os
 from functools import lru_cache
 
-#: What Open MPI, MPICH and Slurm tell every rank: its number, and how many there are.
+#: Variables in which Open MPI, MPICH and Slurm give every rank its number and the number of ranks.
 _RANKS = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
 _SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
 
@@ -11,7 +12,7 @@ _trusted = False
 
 
 def from_environment() -> tuple[int, int]:
-    """Rank and size as the environment says: it may be that of another program."""
+    """Rank and number of ranks by the environment, which may be that of another program."""
     rank, size = (
         next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), default)
         for names, default in ((_RANKS, 0), (_SIZES, 1))
@@ -20,14 +21,14 @@ def from_environment() -> tuple[int, int]:
 
 
 def trust_environment() -> None:
-    """The environment speaks of this program's own mpirun, so MPI need not be asked."""
+    """Take the environment for that of this program's own mpirun, so that MPI need not be imported."""
     global _trusted
     _trusted = True
 
 
 @lru_cache(maxsize=1)
-def _known() -> tuple[int, int]:
-    """Rank and size as MPI says, which is only asked where the environment speaks of it."""
+def _rank_and_size() -> tuple[int, int]:
+    """Rank and number of ranks by MPI, which is imported only where the environment speaks of it."""
     if _trusted:
         return from_environment()
     if by_mpirun():
@@ -41,17 +42,17 @@ def _known() -> tuple[int, int]:
 
 def size() -> int:
     """Number of ranks that mpirun started, 1 without it."""
-    return _known()[1]
+    return _rank_and_size()[1]
 
 
 def by_mpirun() -> bool:
-    """Does this process look as if mpirun had started it, perhaps alone?"""
+    """Return True if this process looks as if mpirun had started it, perhaps alone."""
     return any(name in os.environ for name in (*_RANKS, *_SIZES))
 
 
 def rank() -> int:
     """Number of this rank, 0 without mpirun."""
-    return _known()[0]
+    return _rank_and_size()[0]
 
 
 def is_root() -> bool:

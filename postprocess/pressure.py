@@ -15,8 +15,10 @@ end farther away. In
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
 it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
-graded from the surface on it has terms uⁿ logᵐ u, 1 <= m <= n <= 3, of u = d/(d + h/4),
-d the distance from an end, besides, which no polynomial follows; they stand before these.
+graded from the surface on it has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end besides,
+which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where
+constants change much within h the powers left out fall slowly with the number of functions, and the last
+of these tell what they add to the intensities.
 
 The largest contact pressure, and where it is.
 """
@@ -403,6 +405,27 @@ class StretchedPressure(JacobiPressure):
         count = self.stretch.polynomials(self.c.shape[1])
         return np.asarray(self.c @ self.stretch.functions(r, count).T)
 
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges of the contact are a length off, (states, points).
+
+        The pressure is stretched from the opposite edge; its moments change by what the functions do
+        over that way, and the more functions there are, the more of it is read as pressure at the ends.
+
+        Args:
+            r: positions over a in [-1, 1], (points,).
+            length: over a.
+        """
+        count = self.c.shape[1]
+        f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
+        at_r = self.stretch.functions(r, functions)
+        found = np.empty((len(self.c), len(r)))
+        for i, c in enumerate(self.c):
+            weights = _rule(float(self.α[i]), float(self.β[i]), self.stretch).weights
+            moments = _moved(self.stretch, count, length) @ (weights * (f @ c))
+            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
+            found[i] = np.abs(at_r @ to_factor).sum(axis=1)
+        return found
+
     @property
     def unresolved(self) -> NDArray[np.float64]:
         """The last functions' share of the factor at the ends, of the larger one, (states,)."""
@@ -433,3 +456,13 @@ def _rule(α: float, β: float, stretch: Stretch) -> Panels:
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """So many functions at the points of the rule, (points, count)."""
     return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
+
+
+@lru_cache(maxsize=8)
+def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
+    """Changes of functions at the rule's points where the right, or the left, edge is a length off:
+    (2, count, points)."""
+    t = _rule(-0.5, -0.5, stretch).t
+    inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
+    moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]
+    return np.array([(one - _at_points(stretch, count)).T for one in moved])

@@ -1,7 +1,4 @@
-"""Commands to begin with: init, materials, schema.
-
-Commands for measurements: fit.
-"""
+"""Commands to begin with: init, materials and schema; and fit, for measured friction."""
 
 import json
 from pathlib import Path
@@ -29,17 +26,17 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
     from ..errors import nearest, short
     from ..scene.library import templates
 
-    known = templates()
+    available = templates()
     if not ranks.is_root():
         return errors.GOOD
     if name is None:
-        for template in known.values():
+        for template in available.values():
             say(f"{template.name:<16} {template.about}", 17)
         return errors.GOOD
-    if name not in known:
-        raise BadInput(f"init {short(name)}: no such scene{nearest(name, known)}")
+    if name not in available:
+        raise BadInput(f"init {short(name)}: no such scene{nearest(name, available)}")
     target = output or Path(f"{name}.toml")
-    Target(target, None, overwrite, options.inputs()).write(known[name].text.encode())
+    Target(target, None, overwrite, options.inputs()).write(available[name].text.encode())
     print(f"scene: {target}")
     print(f"next: edit it, then {program()} plan {target}")
     return errors.GOOD
@@ -112,10 +109,10 @@ def fit(
         return errors.GOOD
     to = Folder(folder, overwrite, options.inputs(data))
     target = to.target("friction.toml", SECTION)
-    measured, found = fitted(law, data, list(fix), list(start), speed, rows)
-    text = section(law, data, measured, found)
+    measured, result = fitted(law, data, list(fix), list(start), speed, rows)
+    text = section(law, data, measured, result)
     target.write(text.encode())
-    save([("fit", figure(measured, found))], to)
+    save([("fit", figure(measured, result))], to)
     print(text, end="")
     print(f"section: {folder / 'friction.toml'}")
     print(f"figure: {folder / 'fit.pdf'}")

@@ -61,7 +61,7 @@ def run(
 
 
 def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
-    """The scene with its changes, whose reader only those who change something pay for."""
+    """The scene of a file with its changes, whose reader is imported where there are any."""
     from ..scene.read import read
 
     if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
@@ -74,14 +74,16 @@ def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
 
 
 def _archived(scene: Any, target: Target, journal: Any, progress: Progress, clock: Clock) -> str:
-    """Compute a scene into its archive, keeping finished parts on the way; the verdict."""
+    """Compute a scene into its archive, keeping finished states on the way; return the verdict."""
     from galinx.postprocess.hdf5 import archive
 
     from ..run.flow import compute
 
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
-            with process.leaving(lambda: _left(journal), "what is finished is kept, go on with --resume"):
+            with process.leaving(
+                lambda: _keep_finished(journal), "what is finished is kept, go on with --resume"
+            ):
                 with clock("other"):
                     attributes = compute(scene, writer, progress, journal, clock)
                 process.too_late()
@@ -97,14 +99,14 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
     return attributes["verdict"]
 
 
-def _left(journal: Any) -> str:
-    """Keep what is finished when the process ends at once; what there is to say of it."""
+def _keep_finished(journal: Any) -> str:
+    """Keep finished states when the process ends at once; return the sentence on them."""
     journal.leave()
     return _kept(journal)
 
 
 def _kept(journal: Any) -> str:
-    """What can be done with what is finished."""
+    """Sentence on the finished states that are kept, and on how to go on."""
     kept = journal.states
     return f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
 

@@ -1,8 +1,7 @@
-"""Commands that look at archives: show, check, report, fields.
+"""Commands that look at results: show, check, report and fields of an archive.
 
-Commands that draw what archives and scenes hold: plot, dispersion, response.
-
-Commands that give archives to other programs: csv.
+Further ones draw archives and scenes, plot, dispersion and response, or give an archive to other
+programs, csv.
 """
 
 import json
@@ -66,12 +65,12 @@ def check(archive: Path) -> int:
     """
     from ..results.check import faults
 
-    found = faults(archive)
+    texts = faults(archive)
     if ranks.is_root():
-        for text in found:
+        for text in texts:
             print(f"fault: {text}")
-        print(f"{archive}: {'is whole' if not found else f'faults: {len(found)}'}")
-    return errors.GOOD if not found else errors.FAILED_VERDICT
+        print(f"{archive}: {'is whole' if not texts else f'faults: {len(texts)}'}")
+    return errors.GOOD if not texts else errors.FAILED_VERDICT
 
 
 @click.command()
@@ -125,7 +124,7 @@ def fields(
 
 
 def _loaded(archive: Path, stresses: bool = True) -> Any:
-    """An archive's result, which knows all that the command reads."""
+    """Result of an archive that knows all files which the command reads."""
     from ..results.result import load
 
     result = load(archive, stresses)
@@ -134,7 +133,7 @@ def _loaded(archive: Path, stresses: bool = True) -> Any:
 
 
 def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> dict[str, Any]:
-    """States as a list of objects nested like the archive's paths, and units likewise; NaN is null."""
+    """States as objects nested like the archive's paths, with units likewise; NaN becomes null."""
     from galinx.postprocess.quantities import declared
     from galinx.postprocess.quantities.states import FRICTION
 
@@ -142,12 +141,12 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     units: dict[str, Any] = {}
     for name, values in data.items():
         section, *path, last = name.split("/")
-        if section != "states" or (told := scaled(declared(name), last)) is None:
+        if section != "states" or (scaled_row := scaled(declared(name), last)) is None:
             continue
-        for state, value in zip([units, *states], [told.unit, *told.of(values).tolist()]):
+        for state, value in zip([units, *states], [scaled_row.unit, *scaled_row.of(values).tolist()]):
             for level in path:
                 state = state.setdefault(level, {})
-            state[told.name] = None if value != value else value
+            state[scaled_row.name] = None if value != value else value
     return {
         "title": attributes["title"],
         "version": attributes["version"],
@@ -173,9 +172,11 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
 @click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")
 @click.option("--method", default="", metavar="NAME", help="closed_form, sie or fem; default: all.")
-@click.option("--x", default="", metavar="NAME", help="What numbers of states are drawn over, as mu_c.")
+@click.option(
+    "--x", default="", metavar="NAME", help="Parameter that numbers of states are drawn over, as mu_c."
+)
 @click.option("--y", default="", metavar="NAMES", help="These numbers, as in K_I_left,v0.")
-@click.option("--by", default="", metavar="NAME", help="What tells their curves apart.")
+@click.option("--by", default="", metavar="NAME", help="Parameter that distinguishes their curves.")
 @click.option(
     "--size", default="", metavar="SIZE", help="Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt."
 )
@@ -189,7 +190,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     metavar="NAMES",
     help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
 )
-@click.option("--si", is_flag=True, help="Stresses in MPa; positions in mm where ends are found.")
+@click.option("--si", is_flag=True, help="Stresses in MPa; positions in mm for contacts with free ends.")
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
@@ -197,8 +198,8 @@ def plot(
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
-    What is not asked for is chosen by itself: the figures, the states on each, what numbers are drawn
-    over. States that a figure does not show are named.
+    Without options the figures, their states and their axes are chosen automatically. States that a
+    figure does not show are named.
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
@@ -208,7 +209,7 @@ def plot(
     from ..results.result import load
     from ..results.si import drawn_in_si
 
-    wanted = choice.Choice(
+    selection = choice.Choice(
         figures=choice.words(figure), quantities=choice.words(quantity),
         states=tuple(options.numbers(states)) if states else (),
         method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
@@ -217,12 +218,12 @@ def plot(
     result = load(archive)
     if ranks.is_root():
         if si:
-            wanted = replace(wanted, **drawn_in_si(result.data, result.scene))
-        written = write(result.data, result.scene, wanted, files)
-        for one, after in zip(written, [*written[1:], None]):
-            print(f"{one.noun}: {one.path}")
-            if one.left_out and (after is None or after.left_out != one.left_out):
-                say(f"  {one.left_out}", 2)
+            selection = replace(selection, **drawn_in_si(result.data, result.scene))
+        written = write(result.data, result.scene, selection, files)
+        for file, following in zip(written, [*written[1:], None]):
+            print(f"{file.noun}: {file.path}")
+            if file.left_out and (following is None or following.left_out != file.left_out):
+                say(f"  {file.left_out}", 2)
     return errors.GOOD
 
 
@@ -234,7 +235,7 @@ def plot(
 def dispersion(
     scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], to: Path, overwrite: bool
 ) -> int:
-    """Tell and draw how fast the slowest waves along the layers of SCENE run.
+    """Print and draw the speeds of the slowest waves along the layers of SCENE.
 
     The highest speed of a punch is that of the slowest of them; some may be slowest in between.
 
@@ -247,20 +248,20 @@ def dispersion(
 
     files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
     files.check(["dispersion"])
-    known = waves.curve(read(scene, from_words(changes, unset)))
+    slowest = waves.curve(read(scene, from_words(changes, unset)))
     if ranks.is_root():
         print("kH (1)     wavelength (m)  speed (m/s)")
-        for kH, length, speed in zip(known.kH, known.length, known.speed):
+        for kH, length, speed in zip(slowest.kH, slowest.length, slowest.speed):
             print(f"{kH:<10.4g} {length:<15.6g} {'none' if speed != speed else f'{speed:.6g}'}")
         say("k is the wavenumber, H the thickness of all layers")
-        if known.leaks:
+        if slowest.leaks:
             say(
                 "none: no wave of that length is slower than the waves inside the solids; one that is "
                 "faster radiates into them, and is no limit of the punch"
             )
-        print(f"highest speed of a punch: {known.limit:.8g} m/s")
-        for one in files.write(iter([waves.dispersion_drawing(known)]), None):
-            print(f"{one.noun}: {one.path}")
+        print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
+        for file in files.write(iter([waves.dispersion_drawing(slowest)]), None):
+            print(f"{file.noun}: {file.path}")
     return errors.GOOD
 
 
@@ -296,9 +297,9 @@ def response(
     to: Path,
     overwrite: bool,
 ) -> int:
-    """Tell and draw what the flat punch of SCENE answers to loads that oscillate while it slides.
+    """Print and draw the dynamic stiffness of the flat punch of SCENE under loads that oscillate.
 
-    Its dynamic stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
+    The stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
     every speed and friction of the scene.
 
     Example: ./run.sh response scenes/start_from_rest.toml -o figures
@@ -310,13 +311,13 @@ def response(
 
     files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
     files.check(["response"])
-    asked = read(scene, from_words(changes, unset))
-    known = punch.answers(asked, first, last, points)
+    checked = read(scene, from_words(changes, unset))
+    stiffnesses = punch.answers(checked, first, last, points)
     if ranks.is_root():
-        for one in known:
-            print(one.words)
-            print(*punch.table(asked, one), sep="\n")
-        for drawn in files.write(iter([punch.response_drawing(known)]), None):
+        for answer in stiffnesses:
+            print(answer.words)
+            print(*punch.table(checked, answer), sep="\n")
+        for drawn in files.write(iter([punch.response_drawing(stiffnesses)]), None):
             print(f"{drawn.noun}: {drawn.path}")
     return errors.GOOD
 
@@ -339,7 +340,7 @@ def csv(archive: Path, si: bool, output: Path | None, overwrite: bool, **tables:
     """
     from ..results.csv import pieces
 
-    chosen = [name for name, wanted in tables.items() if wanted] or ["states"]
+    chosen = [name for name, is_set in tables.items() if is_set] or ["states"]
     if len(chosen) > 1:
         raise click.UsageError(
             f"{' and '.join(f'--{name}' for name in chosen)} exclude each other; keep one"

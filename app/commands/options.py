@@ -24,7 +24,7 @@ _OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".v
 
 
 class _Path(click.Path):
-    """A path; one that no file can have is bad input, and no failure of the machine."""
+    """A path; one that no file can have is bad input, not a failure of the machine."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         for name in Path(value).parts:
@@ -59,7 +59,7 @@ archive = click.argument("archive", type=FILE)
 
 
 def changes(command: Any) -> Any:
-    """``--set`` and ``--unset``."""
+    """Options ``--set`` and ``--unset``."""
     with_unset = click.option(
         "--unset", multiple=True, metavar="KEY",
         help="Take a key of the scene away, as in --unset motion.c; may be repeated.",
@@ -87,7 +87,7 @@ overwrite = click.option(
 
 
 def inputs(*files: Path) -> tuple[Path, ...]:
-    """Files that nothing may be written over: those given, users' models, and the log."""
+    """Files that nothing may be written over: the given ones, users' models, and the log."""
     log = click.get_current_context().params.get("log")
     return (*files, *_extensions(), *([log] if log else []))
 
@@ -102,7 +102,7 @@ def numbers(text: str) -> list[int]:
     Raises:
         BadInput: these are none.
     """
-    found: list[int] = []
+    states: list[int] = []
     for word in text.split(","):
         ends = re.fullmatch(r"\s*(\d{1,9})(?:\s*-\s*(\d{1,9}))?\s*", word)
         if not ends:
@@ -112,12 +112,12 @@ def numbers(text: str) -> list[int]:
             raise BadInput(
                 f"--states: found {word}, expected a range that grows, of up to {_SEVERAL} states"
             )
-        found += range(first, last + 1)
-    return list(dict.fromkeys(found))
+        states += range(first, last + 1)
+    return list(dict.fromkeys(states))
 
 
 def folder(default: str) -> Callable[[Any], Any]:
-    """``-o FOLDER``."""
+    """Option ``-o FOLDER``."""
     return click.option(
         "-o", "folder", type=FOLDER, default=Path(default), show_default=True,
         help="Folder; it is made.",
@@ -125,7 +125,7 @@ def folder(default: str) -> Callable[[Any], Any]:
 
 
 def talk(command: Any) -> Any:
-    """``--quiet``, ``--verbose`` and ``--log``; the command gets a ``progress``."""
+    """Options ``--quiet``, ``--verbose`` and ``--log``; the command gets a ``progress``."""
 
     def with_progress(quiet: bool, verbose: bool, log: Path | None, **others: Any) -> Any:
         if quiet and verbose:

@@ -1,1 +1,2 @@
-"""What is on the pictures of an archive: all is read from it, nothing is computed again."""
+"""Pictures of an archive or a scene: figures and films of states, friction loops, motions in time and
+meshes."""

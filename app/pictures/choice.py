@@ -1,8 +1,8 @@
-"""What a user wants drawn, and how large: options of plot, checked against what an archive has.
+"""Options of a figure, checked against an archive, and the files that figures are written to.
 
-Pictures as files: which formats, where to, and what is said of them.
-
-A picture of an archive, and what pictures ask of archives.
+A choice says which figures, states and quantities are drawn, over what, how large and in which units. A
+drawing is a figure with its caption. Files have names, formats and a resolution; all are written, or
+none.
 """
 
 import re
@@ -36,18 +36,18 @@ _LEAST, _MOST = 1.5, 40.0
 
 @dataclass(frozen=True)
 class Choice:
-    """What is drawn; what is not given is chosen by itself.
+    """Options of a figure; what an empty attribute leaves open is chosen automatically.
 
     Attributes:
         figures: their names.
         states: numbers of states.
         quantities: names of quantities, as the columns of ``csv`` end.
         method: of solution.
-        x, by: what curves are drawn over, and what tells them apart.
-        y: names of what is drawn over ``x``.
+        x, by: names of the numbers that curves are drawn over, and of those that distinguish curves.
+        y: names of the numbers drawn over ``x``.
         size: of every figure.
-        unit: of stresses, N/(2a), in MPa, that of each state where they differ, (states,); 0: they are
-            drawn over it.
+        unit: N/(2a) [MPa], in which stresses are archived, that of each state where states differ in it,
+            (states,); 0: stresses are drawn over N/(2a).
         ends: half-widths and middles of contacts [mm], (states,) each, where every state has its own and
             is drawn in mm; None: positions are over the half-width.
     """
@@ -65,22 +65,22 @@ class Choice:
 
     @property
     def given(self) -> set[str]:
-        """Options that say what is drawn."""
+        """Names of the options set by the user that say what is drawn."""
         names = ("states", "quantities", "method", "x", "y", "by")
         return {name for name in names if getattr(self, name)}
 
     @property
     def in_si(self) -> bool:
-        """Are stresses drawn in MPa?"""
+        """True where stresses are drawn in MPa."""
         return bool(np.any(self.unit))
 
     def scale(self, row: Quantity) -> NDArray[np.float64]:
-        """What a quantity's numbers are multiplied by, (1, 1) or (states, 1)."""
+        """Factor by which the numbers of a quantity are multiplied, (1, 1) or (states, 1)."""
         unit = self.unit if self.in_si and row.unit == "N/(2a)" else 1.0
         return np.reshape(np.asarray(unit, dtype=float), (-1, 1))
 
     def scale_of(self, row: Quantity, state: int) -> float:
-        """The same of a state."""
+        """Factor by which the numbers of a quantity in one state are multiplied."""
         scale = self.scale(row)
         return float(scale[state if len(scale) > 1 else 0, 0])
 
@@ -89,16 +89,17 @@ class Choice:
         return [] if self.ends is None else [(self.ends[0][i], self.ends[1][i]) for i in states]
 
     def called(self, row: Quantity) -> str:
-        """A quantity without a symbol, with its unit where that is not N/(2a)."""
-        return noun(row) + " (MPa)" * (self.in_si and row.unit == "N/(2a)")
+        """Name of a quantity without a symbol, with MPa where it is a stress drawn in SI."""
+        return short_name(row) + " (MPa)" * (self.in_si and row.unit == "N/(2a)")
 
     def label(self, stress: str, symbol: str, between: str = " ") -> str:
-        """What a stress is called, its symbol in TeX, and its unit."""
+        """Axis label of a stress: its name, its symbol in TeX, and its unit, MPa or N/(2a)."""
         unit = "$ (MPa)" if self.in_si else "/(N/2a)$"
         return f"{stress}{between}${symbol}{unit}"
 
     def check_states(self, data: dict[str, Any]) -> None:
-        """
+        """Refuse numbers of states that an archive does not have.
+
         Raises:
             BadInput: the archive has no such state.
         """
@@ -110,10 +111,10 @@ class Choice:
                 )
 
 
-def noun(row: Quantity) -> str:
-    """What a quantity is, without how it was found."""
-    told = re.split(r"[,;:]| \(", row.about)[0]
-    return f"{told} over $a$" if "over the half-width" in row.about else told
+def short_name(row: Quantity) -> str:
+    """Name of a quantity, from the beginning of its description."""
+    name = re.split(r"[,;:]| \(", row.about)[0]
+    return f"{name} over $a$" if "over the half-width" in row.about else name
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -122,20 +123,20 @@ def words(text: str) -> tuple[str, ...]:
 
 
 def size(text: str) -> Size | None:
-    """``3.5in``, or with a height ``89mm x 60mm``.
+    """Size of a figure from ``3.5in``, or with a height ``89mm x 60mm``; None where the text is empty.
 
     Raises:
         BadInput: it is no size, or one that no figure has.
     """
     if not text:
         return None
-    found = _SIZE.fullmatch(text)
-    if not found:
+    match = _SIZE.fullmatch(text)
+    if not match:
         raise BadInput(
             f"--size: found {text!r}, expected a width or width x height in in, cm, mm or pt, as 3.5in "
             "or 89mm x 60mm"
         )
-    width, in_width, height, in_height = found.groups()
+    width, in_width, height, in_height = match.groups()
     sides = [float(width) * _INCHES[in_width]]
     sides += [float(height) * _INCHES[in_height]] if height else []
     for side in sides:
@@ -144,27 +145,27 @@ def size(text: str) -> Size | None:
     return Size(*sides)
 
 
-def one_of(what: str, word: str, known: Collection[str]) -> str:
-    """A word that is known.
+def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
+    """A word that is one of the valid ones.
 
     Raises:
         BadInput: it is not; the message names the nearest, or all.
     """
-    if word in known:
+    if word in valid:
         return word
-    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, known)}")
+    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, valid)}")
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure.
+    """A figure with its caption.
 
     Attributes:
         name: for files.
         caption: what it shows, what to see in it, and what it leaves out; plain text.
-        figure: it.
-        pixels: a page should hold it as such.
-        left_out: which states it does not show and how to get them; nothing where it shows all.
+        figure: the matplotlib figure.
+        pixels: True where a page should embed it as pixels.
+        left_out: which states it does not show and how to draw them; "" where it shows all.
     """
 
     name: str
@@ -174,32 +175,32 @@ class Drawing:
     left_out: str = ""
 
     @property
-    def told(self) -> str:
-        """Caption and what is left out."""
+    def full_caption(self) -> str:
+        """Caption, with the states that are left out."""
         return f"{self.caption} {self.left_out}".strip()
 
 
-def there(data: Mapping[str, Any], *rows: Quantity) -> bool:
-    """Does an archive hold all of these?"""
+def has_quantities(data: Mapping[str, Any], *rows: Quantity) -> bool:
+    """Return True if an archive holds all of these quantities."""
     return all(row.path in data for row in rows)
 
 
 def by_method(
     data: Mapping[str, Any], over: tuple[str, ...], method: str = ""
 ) -> dict[str, dict[str, Quantity]]:
-    """An archive's numbers over some dimensions, by name and method.
+    """Quantities of an archive over some dimensions, by name and method.
 
     Args:
-        data: the archive's.
+        data: datasets of the archive by path.
         over: dimensions.
-        method: that is wanted alone, if any.
+        method: the only method whose quantities are returned; "": those of all methods.
     """
-    found: dict[str, dict[str, Quantity]] = {}
+    quantities: dict[str, dict[str, Quantity]] = {}
     for path, row in table().items():
-        told = path in data and row.over == over and row.type != TEXT and not row.symbol
-        if told and method in ("", row.method):
-            found.setdefault(path.rpartition("/")[2], {})[row.method] = row
-    return found
+        selected = path in data and row.over == over and row.type != TEXT and not row.symbol
+        if selected and method in ("", row.method):
+            quantities.setdefault(path.rpartition("/")[2], {})[row.method] = row
+    return quantities
 
 
 #: Dots per inch that a file may have.
@@ -212,7 +213,7 @@ class Written(NamedTuple):
     Attributes:
         path: its name.
         noun: what it is.
-        left_out: which states it does not show and how to get them.
+        left_out: which states it does not show and how to draw them.
     """
 
     path: Path
@@ -222,12 +223,12 @@ class Written(NamedTuple):
 
 @dataclass(frozen=True)
 class Files:
-    """Where pictures go.
+    """Destination of figures: folder or file, names, formats and resolution.
 
     Attributes:
         to: a folder, or a file whose ending is its format.
-        name: what the names of files in a folder begin with; with nothing they are the figures' own.
-        formats: endings, chosen by themselves if none are given.
+        name: prefix of the names of files in a folder; with "" they are the figures' own.
+        formats: endings; () for the usual ones.
         dpi: dots per inch, 0 for the usual ones.
         overwrite: files of any kind are replaced.
         inputs: files that are read, and never replaced.
@@ -241,13 +242,13 @@ class Files:
     inputs: tuple[Path, ...] = ()
 
     @property
-    def one(self) -> str:
-        """The ending of a single file, nothing for a folder."""
-        ending = self.to.suffix.removeprefix(".").lower()
-        return "" if self.to.is_dir() or not ending.isalnum() or len(ending) > 4 else ending
+    def ending(self) -> str:
+        """Ending of a single file, "" for a folder."""
+        suffix = self.to.suffix.removeprefix(".").lower()
+        return "" if self.to.is_dir() or not suffix.isalnum() or len(suffix) > 4 else suffix
 
     def check(self, names: Sequence[str]) -> None:
-        """Refuse what cannot be written before anything is drawn.
+        """Refuse formats that cannot be written, before anything is drawn.
 
         Args:
             names: of the figures.
@@ -258,20 +259,20 @@ class Files:
         if self.dpi and self.dpi not in _DPI:
             raise BadInput(f"--dpi: found {self.dpi}, expected {_DPI[0]} to {_DPI[-1]}")
         for name in names:
-            known, option = _formats(name), f"-o {self.to}" if self.one else "--format"
-            for ending in (self.one,) if self.one else self.formats:
-                if ending not in known:
+            valid, option = _formats(name), f"-o {self.to}" if self.ending else "--format"
+            for ending in (self.ending,) if self.ending else self.formats:
+                if ending not in valid:
                     raise BadInput(
                         f"{option}: found {ending!r} for the {_noun(name)} {name}, expected "
-                        f"{', '.join(known)}{' or a folder' * bool(self.one)}{_converted(ending)}"
+                        f"{', '.join(valid)}{' or a folder' * bool(self.ending)}{_converted(ending)}"
                     )
                 if ending in maps.FORMATS and not maps.can(ending):
                     raise BadInput(
                         f"{option}: {ending} needs ffmpeg, which is not installed; gif does not"
                     )
-        if self.one and self.formats not in ((), (self.one,)):
+        if self.ending and self.formats not in ((), (self.ending,)):
             raise BadInput(f"--format {','.join(self.formats)} is not the ending of {self.to}; give one")
-        if self.one and len(names) != 1:
+        if self.ending and len(names) != 1:
             raise BadInput(
                 f"-o {self.to} is one file, found {len(names)} figures; choose one by --figure: "
                 f"{', '.join(names)}; or name a folder"
@@ -280,7 +281,7 @@ class Files:
     def endings(self, name: str) -> tuple[str, ...]:
         """Formats of a figure."""
         usual = ("mp4" if maps.can("mp4") else "gif",) if name == FILM else canvas.USUAL
-        return (self.one,) if self.one else self.formats or usual
+        return (self.ending,) if self.ending else self.formats or usual
 
     def target(self, name: str, ending: str, folder: Folder | None) -> Target:
         """A figure's file.
@@ -295,8 +296,8 @@ class Files:
     def write(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
     ) -> list[Written]:
-        """Write all figures and the film, if one is wanted; none where one of them cannot be written."""
-        folder = None if self.one else Folder(self.to, self.overwrite, self.inputs)
+        """Write all figures, and the film if ``made`` is given; none where one cannot be written."""
+        folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
         files, said = [], []
         for name, left_out, content in self._contents(drawings, made):
             for ending in self.endings(name):
@@ -309,7 +310,7 @@ class Files:
     def _contents(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
     ) -> Iterator[tuple[str, str, Callable[[str], bytes]]]:
-        """Of each picture its name, what it leaves out, and what makes a file of an ending."""
+        """Name of each picture, states that it leaves out, and a function that makes its file."""
         for drawing in drawings:
             yield (
                 drawing.name,

@@ -15,27 +15,27 @@ from ..scene.scene import Scene
 from . import surface
 from .choice import Choice
 from .friction import Loops
-from .state_labels import PLACE, STROKE, Told, not_shown
+from .state_labels import PLACE, STROKE, StateLabels, not_shown
 
-#: Pictures that move.
+#: Frames that a film has at least.
 _FRAMES = 4
 
 
 def has_film(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
-    """Are there enough states along the strokes, and something to show of them?"""
+    """Return True if an archive has enough states along the strokes, and stresses to show in them."""
     shown = surface.quantities(data, choice.method) or surface.has_map(data, choice.method)
-    return bool(shown) and len(_frames(Told(data, scene), choice)) >= _FRAMES
+    return bool(shown) and len(_frames(StateLabels(data, scene), choice)) >= _FRAMES
 
 
 def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]:
-    """The film, and what it leaves out.
+    """Film of the strokes, and a sentence on the states that it leaves out.
 
     Raises:
         BadInput: there are too few states along the strokes.
     """
     loops = Loops(data, scene)
-    told = loops.told
-    frames = _frames(told, choice)
+    labels = loops.labels
+    frames = _frames(labels, choice)
     if len(frames) < _FRAMES:
         raise BadInput(
             f"a film needs at least {_FRAMES} states along strokes, found {len(frames)}; give "
@@ -48,23 +48,23 @@ def film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]
     f = data[FRICTION.path]
     made = strokes_film(
         loop,
-        [(float(told.values(PLACE)[i]), float(f[i])) for i in frames],
-        [f"{told.label(int(i), [STROKE, PLACE])}, $f = {f[i]:.2f}$" for i in frames],
+        [(float(labels.values(PLACE)[i]), float(f[i])) for i in frames],
+        [f"{labels.label(int(i), [STROKE, PLACE])}, $f = {f[i]:.2f}$" for i in frames],
         data.get(SURFACE_X.path, np.empty(0)),
         stresses,
         surface.Fields(data, scene, Choice()).grid() if fields else None,
         fields,
         choice.size,
     )
-    return made, not_shown(told, frames.tolist(), "--figure film --states", choice.states)
+    return made, not_shown(labels, frames.tolist(), "--figure film --states", choice.states)
 
 
 def _shown(
     data: dict[str, Any], scene: Scene, choice: Choice, frames: NDArray
 ) -> tuple[list[Stress], list[Map]]:
-    """One method's stresses along the surface, or maps where there are none or one is wanted."""
-    known = surface.quantities(data, choice.method)
-    if known and set(choice.quantities) <= set(known):
+    """Stresses along the surface by one method, or maps where there are none or they are chosen."""
+    available = surface.quantities(data, choice.method)
+    if available and set(choice.quantities) <= set(available):
         return [
             Stress(stress.label, {method: values[frames]})
             for stress in surface.stresses_of(data, choice)
@@ -80,17 +80,19 @@ def _shown(
     return [], made
 
 
-def _frames(told: Told, choice: Choice) -> NDArray[np.int64]:
+def _frames(labels: StateLabels, choice: Choice) -> NDArray[np.int64]:
     """States of one law and speed, in the order of travel."""
-    some = np.array(choice.states) if choice.states else told.all
-    rest = [name for name in told.varied(some) if name not in (STROKE, PLACE)]
+    states = np.array(choice.states) if choice.states else labels.all
+    rest = [name for name in labels.varied(states) if name not in (STROKE, PLACE)]
     if not choice.states:
-        some = told.where(some, **told.fixed(rest, some))
+        states = labels.where(states, **labels.fixed(rest, states))
     elif rest:
         raise BadInput(f"--states: a film follows one law at one speed, found several {', '.join(rest)}")
-    strokes = list(dict.fromkeys(told.values(STROKE).tolist()))
+    strokes = list(dict.fromkeys(labels.values(STROKE).tolist()))
     order = [
         (strokes.index(stroke), X if stroke.startswith("F") else -X)
-        for stroke, X in zip(told.values(STROKE)[some].tolist(), told.values(PLACE)[some].tolist())
+        for stroke, X in zip(
+            labels.values(STROKE)[states].tolist(), labels.values(PLACE)[states].tolist()
+        )
     ]
-    return some[sorted(range(len(some)), key=order.__getitem__)]
+    return states[sorted(range(len(states)), key=order.__getitem__)]

@@ -1,10 +1,8 @@
 """Motions in time of an archive.
 
-Where energy goes in a motion in time.
-
-Pressures of a start from rest at some times.
-
-Stresses along the surface of a motion in time, at some of the chosen times.
+From rest or from steady motion: centre of the pressure, indentation and K_I over time; where the energy
+goes; pressures at some times; and stresses along the surface at some of the chosen times, beside those of
+steady motion, which are the closed form's.
 """
 
 from typing import Any
@@ -23,8 +21,6 @@ from galinx.postprocess.figures.motion import (
 )
 from galinx.postprocess.figures.style import looks
 from galinx.postprocess.figures.surface import Column, Curve, Stress, surface_figure
-from galinx.postprocess.quantities import over_time as at
-from galinx.postprocess.quantities import over_time as of
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
@@ -32,20 +28,20 @@ from galinx.postprocess.surface_over_time import left_over
 from galinx.solvers.sie.closed_form import FlatPunch
 
 from ..scene.scene import Scene, Time
-from .choice import Choice, Drawing, there
+from .choice import Choice, Drawing, has_quantities
 from .state_labels import drive_label, spread
 
-#: Starts that can be told apart.
+#: Starts that can be distinguished in a figure.
 _STARTS = 6
 
 
 def has_motions(data: dict[str, Any]) -> bool:
-    """Does an archive hold a start from rest?"""
-    return there(data, rows.TIMES)
+    """Return True if an archive holds motions in time."""
+    return has_quantities(data, rows.TIMES)
 
 
 def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Centre of the pressure, indentation and intensities over time of some starts."""
+    """Figure of the centre of the pressure, indentation and intensities over time of some starts."""
     method = next(name for name in (FEM, SIE) if rows.V0[name].path in data)
     other = SIE if method == FEM and rows.V0[SIE].path in data else ""
     c, g, steady = (data[row.path] for row in (rows.SPEED, rows.RATIO, rows.CENTRES))
@@ -58,42 +54,42 @@ def time(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         beside = [data[row[other].path][i] for row in by_method] if other else []
         label = drive_label(c[i], g[i], way[i])
         starts.append(Start(label, curves, beside, steady[i]))
-    asked = scene.time
-    assert asked
-    told = np.isfinite(data[rows.K_I_LEFT[method].path]).any()
+    settings = scene.time
+    assert settings
+    with_K_I = np.isfinite(data[rows.K_I_LEFT[method].path]).any()
     caption = (
-        f"From {'steady motion on' if asked.steady else 'rest to steady sliding'}, {METHODS[method]}"
+        f"From {'steady motion on' if settings.steady else 'rest to steady sliding'}, {METHODS[method]}"
         f"{f', points: {METHODS.get(other)}' * bool(other)}: centre of the pressure, whose dotted line "
         "is that of steady motion by the friction of the same time, indentation since the first"
-        f"{', and K_I at both ends by the full load' * bool(told)}, over time. {_what(asked)}"
+        f"{', and K_I at both ends by the full load' * bool(with_K_I)}, over time. {_history(settings)}"
     )
-    left = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
+    missing = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
     return Drawing(
-        "time", caption, time_figure(data[rows.TIMES.path], starts, choice.size), left_out=left
+        "time", caption, time_figure(data[rows.TIMES.path], starts, choice.size), left_out=missing
     )
 
 
-def _what(asked: Time) -> str:
-    load = f"The load comes on within {asked.load_ramp:g} a/c_s." * (
-        not asked.load and not asked.steady
-    ) or "The load changes as the scene says." * bool(asked.load)
-    return " ".join(filter(None, [load, "Friction follows its law along the strokes." * asked.by_law]))
+def _history(settings: Time) -> str:
+    load = f"The load comes on within {settings.load_ramp:g} a/c_s." * (
+        not settings.load and not settings.steady
+    ) or "The load changes as the scene says." * bool(settings.load)
+    return " ".join(filter(None, [load, "Friction follows its law along the strokes." * settings.by_law]))
 
 
-_DONE = {"load": OF_LOAD[FEM], "friction": OF_FRICTION[FEM], "being carried past the punch": of.CARRIED}
-_HELD = {"strain near": of.STRAIN, "motion near": of.KINETIC, "radiated": of.RADIATED}
+_DONE = {"load": OF_LOAD[FEM], "friction": OF_FRICTION[FEM], "being carried past the punch": rows.CARRIED}
+_HELD = {"strain near": rows.STRAIN, "motion near": rows.KINETIC, "radiated": rows.RADIATED}
 
 
 def has_energies(data: dict[str, Any]) -> bool:
-    """Does an archive hold energies over time?"""
-    return there(data, *_DONE.values(), *_HELD.values())
+    """Return True if an archive holds energies over time."""
+    return has_quantities(data, *_DONE.values(), *_HELD.values())
 
 
 def energies(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Of the first start."""
-    done, held = ({name: data[row.path][0] for name, row in of.items()} for of in (_DONE, _HELD))
+    """Figure of the work and the energies over time of the first start."""
+    done, held = ({name: data[row.path][0] for name, row in kinds.items()} for kinds in (_DONE, _HELD))
     off = float(np.abs(left_over(data)[0]).max())
-    heat = float(data[of.DISSIPATED.path][0, -1])
+    heat = float(data[rows.DISSIPATED.path][0, -1])
     caption = (
         "Work of the punch on the solid besides the heat of friction, and where it is: strained and "
         "moving within 3 a of the middle and 2 a below it, and what went beyond, finite elements. Sums "
@@ -101,9 +97,9 @@ def energies(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         "order in the load, where all of these are of second."
     )
     count = len(data[rows.SPEED.path])
-    left = f"{count - 1} of {count} starts not shown." * (count > 1)
+    missing = f"{count - 1} of {count} starts not shown." * (count > 1)
     figure = energies_figure(data[rows.TIMES.path], done, held, choice.size)
-    return Drawing("energies", caption, figure, left_out=left)
+    return Drawing("energies", caption, figure, left_out=missing)
 
 
 #: Times that are drawn.
@@ -113,14 +109,14 @@ _FRAMES = 160
 
 
 def has_pressures(data: dict[str, Any]) -> bool:
-    """Does an archive hold pressures over time?"""
-    return there(data, of.PRESSURE, of.PLACES)
+    """Return True if an archive holds pressures over time."""
+    return has_quantities(data, rows.PRESSURE, rows.PLACES)
 
 
 def pressures(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Of the start whose steady pressure leans most, at times that double up to the last."""
+    """Figure of the pressure of the start whose steady pressure leans most, at times that double up."""
     start = _start(data)
-    t, X, σ = data[rows.TIMES.path], data[of.PLACES.path], data[of.PRESSURE.path][start]
+    t, X, σ = data[rows.TIMES.path], data[rows.PLACES.path], data[rows.PRESSURE.path][start]
     c, g = (float(data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
     at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)])
     steady = _steady(data, scene, start)
@@ -134,11 +130,11 @@ def pressures(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def pressure_film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]:
-    """The same start as a film, and what it leaves out."""
+    """Film of the pressure of the start whose steady pressure leans most, and what it leaves out."""
     start, t = _start(data), data[rows.TIMES.path]
     frames = np.unique(np.linspace(0, len(t) - 1, _FRAMES).round().astype(int))
     made = pressures_film(
-        data[of.PLACES.path], t[frames], -data[of.PRESSURE.path][start][frames],
+        data[rows.PLACES.path], t[frames], -data[rows.PRESSURE.path][start][frames],
         -_steady(data, scene, start),
         (data[rows.CENTRE[SIE].path][start][frames], float(data[rows.STEADY_CENTRE.path][start])),
         choice.size,
@@ -147,15 +143,15 @@ def pressure_film(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[F
 
 
 def _start(data: dict[str, Any]) -> int:
-    """That whose steady pressure leans most."""
+    """Number of the start whose steady pressure leans most."""
     return int(np.abs(data[rows.STEADY_CENTRE.path]).argmax())
 
 
 def _steady(data: dict[str, Any], scene: Scene, start: int) -> NDArray[np.float64]:
     if scene.layers:  # no closed form
-        return np.full(len(data[of.PLACES.path]), np.nan)
+        return np.full(len(data[rows.PLACES.path]), np.nan)
     c, g = (float(data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
-    return FlatPunch(scene.solid.response(c), g).σ_YY(data[of.PLACES.path])
+    return FlatPunch(scene.solid.response(c), g).σ_YY(data[rows.PLACES.path])
 
 
 def _left_out(data: dict[str, Any]) -> str:
@@ -175,18 +171,19 @@ _BESIDE = "; beside it what they were if they were at once those of steady motio
 
 
 def has_surface(data: dict[str, Any]) -> bool:
-    """Does an archive hold stresses along the surface over time?"""
+    """Return True if an archive holds stresses along the surface over time."""
     return bool(_methods(data))
 
 
 def has_film(data: dict[str, Any]) -> bool:
-    """Of times enough to see how they move?"""
-    return has_surface(data) and len(data[at.SURFACE_TIMES.path]) >= _SURFACE_FRAMES
+    """Return True if stresses along the surface are held at enough times for a film."""
+    return has_surface(data) and len(data[rows.SURFACE_TIMES.path]) >= _SURFACE_FRAMES
 
 
 def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Of the first start, at chosen times from the first to the last, beside steady motion of then."""
-    t, methods = data[at.SURFACE_TIMES.path], _methods(data)[::-1]  # what is drawn as lines comes first
+    """Figure of the stresses along the surface of the first start, at chosen times from the first to the
+    last, beside those of steady motion with the friction and the load of these times."""
+    t, methods = data[rows.SURFACE_TIMES.path], _methods(data)[::-1]  # what is drawn as lines comes first
     shown = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
     styles, count = looks(len(shown), True), len(shown)
     sides = [("in time", 0), ("steady motion of that time's friction and load", count)]
@@ -199,9 +196,9 @@ def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     ]  # fmt: skip
     steady = _steady_surface(data, scene, t[shown])
     as_lines = [1.0 if method == methods[0] else np.nan for method in methods]
-    found = [
+    series = [
         Stress(label, {
-            method: np.vstack([_told(data, name, method)[shown], as_line * steady[name]])
+            method: np.vstack([_stress_over_time(data, name, method)[shown], as_line * steady[name]])
             for method, as_line in zip(methods, as_lines)
         })
         for name, label in _LABELS.items()
@@ -212,17 +209,21 @@ def stresses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         f"{' and '.join(METHODS[method] for method in methods)}, at c = {c:.4g}"
         f"{_BESIDE * (not scene.layers)}. At the edges they grow without bound."
     )
-    figure = surface_figure(data[at.SURFACE_PLACES.path], found, columns, choice.size)
+    figure = surface_figure(data[rows.SURFACE_PLACES.path], series, columns, choice.size)
     return Drawing("stresses", caption, figure, left_out=_surface_left_out(data))
 
 
 def film_of_surface(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple[Film, str]:
-    """The same start at all chosen times as a film, and what it leaves out."""
+    """Film of the stresses along the surface of the first start, and a sentence on what it leaves out."""
     method, steady = _methods(data)[0], _steady_surface(data, scene, data[rows.TIMES.path][-1:])
-    moving = [Stress(label, {method: _told(data, name, method)}) for name, label in _LABELS.items()]
-    nearest = np.abs(np.subtract.outer(data[at.SURFACE_TIMES.path], data[rows.TIMES.path])).argmin(axis=1)
+    moving = [
+        Stress(label, {method: _stress_over_time(data, name, method)}) for name, label in _LABELS.items()
+    ]
+    nearest = np.abs(np.subtract.outer(data[rows.SURFACE_TIMES.path], data[rows.TIMES.path])).argmin(
+        axis=1
+    )
     made = surface_film(
-        data[at.SURFACE_PLACES.path], data[at.SURFACE_TIMES.path], moving,
+        data[rows.SURFACE_PLACES.path], data[rows.SURFACE_TIMES.path], moving,
         [steady[name][0] for name in _LABELS],
         (data[rows.TIMES.path], data[rows.CENTRE[method].path][0], nearest), choice.size,
     )  # fmt: skip
@@ -230,28 +231,28 @@ def film_of_surface(data: dict[str, Any], scene: Scene, choice: Choice) -> tuple
 
 
 def _methods(data: dict[str, Any]) -> list[str]:
-    return [name for name in (FEM, SIE) if at.SURFACE_IN_PLANE[name].path in data]
+    return [name for name in (FEM, SIE) if rows.SURFACE_IN_PLANE[name].path in data]
 
 
-def _told(data: dict[str, Any], name: str, method: str) -> NDArray[np.float64]:
-    """A stress at the chosen times, (times, places)."""
-    row = {"sigma_XX": at.SURFACE_IN_PLANE, "sigma_YY": at.SURFACE_PRESSURE}[name][method]
+def _stress_over_time(data: dict[str, Any], name: str, method: str) -> NDArray[np.float64]:
+    """A stress of the first start over N/(2a) at the chosen times, (times, places)."""
+    row = {"sigma_XX": rows.SURFACE_IN_PLANE, "sigma_YY": rows.SURFACE_PRESSURE}[name][method]
     return np.asarray(data[row.path][0])
 
 
 def _steady_surface(data: dict[str, Any], scene: Scene, t: NDArray) -> dict[str, NDArray[np.float64]]:
-    """Stresses of steady motion at the friction and the load of some times, (times, places) each."""
-    X = data[at.SURFACE_PLACES.path]
+    """Stresses over N/(2a) of steady motion at the friction and load of some times, (times, places)."""
+    X = data[rows.SURFACE_PLACES.path]
     if scene.layers:  # no closed form
         return {name: np.full((len(t), len(X)), np.nan) for name in _LABELS}
     response = scene.solid.response(float(data[rows.SPEED.path][0]))
-    found: dict[str, list[NDArray]] = {name: [] for name in _LABELS}
+    stresses_at: dict[str, list[NDArray]] = {name: [] for name in _LABELS}
     for i in np.abs(np.subtract.outer(t, data[rows.TIMES.path])).argmin(axis=1):
         punch = FlatPunch(response, float(data[rows.RATIOS.path][0][i]))
         load = float(data[rows.LOAD.path][i])
-        found["sigma_XX"].append(load * punch.σ_XX(X))
-        found["sigma_YY"].append(load * punch.σ_YY(X))
-    return {name: np.array(values) for name, values in found.items()}
+        stresses_at["sigma_XX"].append(load * punch.σ_XX(X))
+        stresses_at["sigma_YY"].append(load * punch.σ_YY(X))
+    return {name: np.array(values) for name, values in stresses_at.items()}
 
 
 def _surface_left_out(data: dict[str, Any]) -> str:

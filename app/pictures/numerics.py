@@ -1,4 +1,4 @@
-"""How an archive's finite elements were laid out, and how well they did."""
+"""Mesh and convergence of an archive's finite elements."""
 
 from typing import Any
 
@@ -13,20 +13,20 @@ from galinx.postprocess.quantities import Quantity, runs, states
 from ..plan.fem import FOLLOWED
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, there
-from .state_labels import C, Told, spread
+from .choice import Choice, Drawing, has_quantities
+from .state_labels import C, StateLabels, spread
 
-#: Speeds that can be told apart.
+#: Speeds that can be distinguished in a figure.
 _SPEEDS = 6
 
 
 def has_degrees(data: dict[str, Any]) -> bool:
-    """Does an archive say how its numbers settled?"""
-    return there(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
+    """Return True if an archive holds how its numbers converge with the polynomial degree."""
+    return has_quantities(data, runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
 
 
 def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """The mesh that finite elements used, and its nodes; it is laid out again, nothing is solved."""
+    """Figure of the mesh that finite elements used; it is laid out again, nothing is solved."""
     fem = make_plan(scene).fem
     assert fem
     cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
@@ -47,8 +47,8 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """How the numbers settle as the polynomial degree rises."""
-    c, c_of, told = data[runs.RECORD["c"].path], data[states.SPEED.path], Told(data, scene)
+    """Figure of the convergence of K_I and of the pressure's moments with the polynomial degree."""
+    c, c_of, labels = data[runs.RECORD["c"].path], data[states.SPEED.path], StateLabels(data, scene)
     measured = np.flatnonzero(data[runs.CHANGES.path].any(axis=1)).tolist()
     shown = spread(measured, _SPEEDS)
 
@@ -56,11 +56,11 @@ def degrees(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         return np.array([data[row.path][c_of == speed].max() for speed in c[shown]])
 
     figure = degrees_figure(
-        [told.label(int(np.argmax(c_of == speed)), [C]) for speed in c[shown]],
+        [labels.label(int(np.argmax(c_of == speed)), [C]) for speed in c[shown]],
         data[runs.CHANGES.path][shown],
         data[runs.RECORD["degree"].path][shown],
         largest(states.ESTIMATE),
-        largest(states.TRUE_ERROR) if there(data, states.TRUE_ERROR) else None,
+        largest(states.TRUE_ERROR) if has_quantities(data, states.TRUE_ERROR) else None,
         choice.size,
     )
     caption = (

@@ -1,4 +1,5 @@
-"""What tells an archive's states apart, which of them a figure shows, and what it says of the others."""
+"""Labels of an archive's states: parameters that distinguish them, states that a figure shows, and a
+sentence on those that it does not show."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,16 +18,16 @@ from ..scene.scene import Scene
 #: States and values that a sentence names.
 _NAMED = 6
 
-#: Names of what tells places on a loop apart, of the speed and the load.
+#: Names of the stroke and the place on it, of the speed and the load.
 STROKE, PLACE, C, N = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED, LOAD))
 
 
-class Told:
-    """What tells an archive's states apart, and how a legend says it.
+class StateLabels:
+    """Parameters that distinguish an archive's states, and how a legend names them.
 
     Args:
-        data: the archive's.
-        scene: the archive's.
+        data: datasets of the archive by path.
+        scene: the archive's scene.
     """
 
     def __init__(self, data: dict[str, Any], scene: Scene) -> None:
@@ -39,44 +40,44 @@ class Told:
         """Names of the friction law's parameters."""
         return [name for name in self.parameters if name not in (C, N, STROKE, PLACE)]
 
-    def varied(self, some: NDArray | Sequence[int] | None = None) -> list[str]:
-        """Parameters that differ between some states, between all if not given."""
-        return [name for name in self.parameters if len(self.distinct(name, some)) > 1]
+    def varied(self, states: NDArray | Sequence[int] | None = None) -> list[str]:
+        """Names of the parameters that differ between some states, between all if not given."""
+        return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
 
     def values(self, name: str) -> NDArray:
-        """A parameter of all states."""
+        """Values of a parameter in all states, (states,)."""
         return self._data[column(name)]
 
-    def distinct(self, name: str, some: NDArray | Sequence[int] | None = None) -> list[Any]:
-        """Values of a parameter: numbers by size, texts as states follow each other."""
-        values = self.values(name)[self.all if some is None else np.asarray(some)].tolist()
+    def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
+        """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""
+        values = self.values(name)[self.all if states is None else np.asarray(states)].tolist()
         return sorted(set(values)) if self.numeric(name) else list(dict.fromkeys(values))
 
     def numeric(self, name: str) -> bool:
-        """Is a parameter a number?"""
+        """Return True if a parameter is a number."""
         return self.parameters[name].type != TEXT
 
-    def where(self, some: NDArray, **values: Any) -> NDArray[np.int64]:
-        """Those of some states whose named parameters have the given values."""
+    def where(self, states: NDArray, **values: Any) -> NDArray[np.int64]:
+        """States whose named parameters have the given values, among some states."""
         for name, value in values.items():
-            some = some[self.values(name)[some] == value]
-        return some
+            states = states[self.values(name)[states] == value]
+        return states
 
     def label(self, state: int, names: Sequence[str]) -> str:
-        """Some parameters of a state."""
-        return ", ".join(self._told(name, self.values(name)[state]) for name in names)
+        """Named parameters of a state, with formulas in TeX."""
+        return ", ".join(self._value_label(name, self.values(name)[state]) for name in names)
 
-    def ordered(self, some: NDArray) -> NDArray[np.int64]:
-        """Some states in the order of what tells them apart, the first parameter slowest."""
-        return some[np.lexsort([self._places(name, some) for name in self.parameters][::-1])]
+    def ordered(self, states: NDArray) -> NDArray[np.int64]:
+        """Some states in the order of their parameters, the first parameter slowest."""
+        return states[np.lexsort([self._places(name, states) for name in self.parameters][::-1])]
 
-    def _places(self, name: str, some: NDArray) -> NDArray[np.int64]:
-        """Where a parameter of some states stands among its distinct values."""
-        place = {value: n for n, value in enumerate(self.distinct(name, some))}
-        return np.array([place[value] for value in self.values(name)[some].tolist()])
+    def _places(self, name: str, states: NDArray) -> NDArray[np.int64]:
+        """Positions of some states' values of a parameter among its distinct values, (states,)."""
+        place = {value: n for n, value in enumerate(self.distinct(name, states))}
+        return np.array([place[value] for value in self.values(name)[states].tolist()])
 
     def text(self, state: int, names: Sequence[str]) -> str:
-        """The same without formulas."""
+        """Named parameters of a state, as plain text."""
         return plain(self.label(state, names))
 
     def listed(self, name: str, values: Sequence[Any]) -> str:
@@ -84,39 +85,39 @@ class Told:
         row = self.parameters[name]
         if not self.numeric(name):
             return _short(values)
-        told = _short([plain(f"${number(value)}$") for value in values])
-        return f"{plain(f'${row.symbol}$')} = {told}{plain(f'${unit(row.unit)}$')}"
+        text = _short([plain(f"${number(value)}$") for value in values])
+        return f"{plain(f'${row.symbol}$')} = {text}{plain(f'${unit(row.unit)}$')}"
 
-    def _told(self, name: str, value: Any) -> str:
+    def _value_label(self, name: str, value: Any) -> str:
         row = self.parameters[name]
         if not self.numeric(name):
             return str(value)
-        told = f"${row.symbol} = {number(value)}{unit(row.unit)}$"
-        return f"{told} ({self.speed(value)})" if name == C else told
+        text = f"${row.symbol} = {number(value)}{unit(row.unit)}$"
+        return f"{text} ({self.speed(value)})" if name == C else text
 
     def speed(self, c: float) -> str:
-        """A speed over the wave speed in m/s."""
+        """Speed in m/s of a speed over the shear wave speed, in TeX."""
         return f"${number(c * self.c_s)}{unit('m/s')}$"
 
-    def fixed(self, names: Sequence[str], some: NDArray) -> dict[str, Any]:
-        """A value for each of some parameters, at which others are varied.
+    def fixed(self, names: Sequence[str], states: NDArray) -> dict[str, Any]:
+        """Values of the named parameters at which the others are varied.
 
-        Of the combinations that most states have: the first stroke, its last place, and of other lists
-        the middle, or what is nearest to these.
+        They are a combination that most states have: the first stroke, its last place, and of other
+        parameters the middle value, or the combination nearest to this one.
         """
         if not len(names):
             return {}
-        values = {name: self.distinct(name, some) for name in names}
+        values = {name: self.distinct(name, states) for name in names}
         chosen = {STROKE: 0, PLACE: -1}
         middle = [chosen.get(name, (len(values[name]) - 1) // 2) % len(values[name]) for name in names]
-        places = np.stack([self._places(name, some) for name in names])
+        places = np.stack([self._places(name, states) for name in names])
         combinations, counts = np.unique(places, axis=1, return_counts=True)
         most = combinations[:, counts == counts.max()]
         best = most[:, np.abs(most - np.array(middle)[:, None]).sum(axis=0).argmin()]
         return {name: values[name][n] for name, n in zip(names, best)}
 
     def looks(self, states: Sequence[int], names: Sequence[str]) -> list[Look]:
-        """Of the curves of some states that differ in the named parameters.
+        """Colours, lines and markers of the curves of some states that differ in the named parameters.
 
         Two parameters have colours and lines of their own; else each curve has.
         """
@@ -124,18 +125,18 @@ class Told:
             return looks(len(states), bool(names) and self.numeric(names[0]))
         first, second = (self.distinct(name, states) for name in names)
         colours = looks(len(first), self.numeric(names[0]))
-        found = [
+        indices = [
             (first.index(self.values(names[0])[state]), second.index(self.values(names[1])[state]))
             for state in states
         ]
         return [
             Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * len(first)) % len(MARKERS)])
-            for n, m in found
+            for n, m in indices
         ]
 
 
 def drive_label(c: float, g: float, way: float) -> str:
-    """How a legend names a motion: its speed over c_s, σ_XY/σ_YY, and the way ±1 it goes along X."""
+    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
     towards = f", towards ${'-+'[way > 0]}X$" * (c > 0.0 and way != 0)
     return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
 
@@ -147,13 +148,15 @@ def spread(values: Sequence[Any], most: int) -> list[Any]:
     return [values[n] for n in np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
 
 
-def few(told: Told, names: Sequence[str], some: NDArray, most: int) -> tuple[list[str], NDArray]:
+def states_for_panel(
+    labels: StateLabels, names: Sequence[str], states: NDArray, most: int
+) -> tuple[list[str], NDArray]:
     """States for one panel: as many parameters vary as that leaves a readable number of curves.
 
     Args:
-        told: of the archive.
-        names: parameters that differ between ``some``, slowest first.
-        some: states.
+        labels: of the archive's states.
+        names: parameters that differ between ``states``, slowest first.
+        states: numbers of states.
         most: curves in a panel.
 
     Returns:
@@ -164,43 +167,47 @@ def few(told: Told, names: Sequence[str], some: NDArray, most: int) -> tuple[lis
     varying: list[str] = []
     count = 1
     for name in [*swept, *(name for name in names if name not in swept)]:
-        values = len(told.distinct(name, some))
+        values = len(labels.distinct(name, states))
         if count * min(values, most) <= most or not varying:
             varying.append(name)
             count *= min(values, most)
     rest = [name for name in names if name not in varying]
-    some = told.where(some, **told.fixed(rest, some))
+    states = labels.where(states, **labels.fixed(rest, states))
     for name in varying:
-        some = some[np.isin(told.values(name)[some], spread(told.distinct(name, some), most))]
-    return [name for name in names if name in varying], some
+        states = states[np.isin(labels.values(name)[states], spread(labels.distinct(name, states), most))]
+    return [name for name in names if name in varying], states
 
 
-def not_shown(told: Told, shown: Sequence[int], how: str, wanted: Sequence[int] = ()) -> str:
-    """What a figure does not show, and how to get it; nothing where it shows all.
+def not_shown(labels: StateLabels, shown: Sequence[int], how: str, requested: Sequence[int] = ()) -> str:
+    """Sentence on the states that a figure does not show, and how to draw them; "" where it shows all.
 
     Args:
-        told: of the archive.
-        shown: states.
+        labels: of the archive's states.
+        shown: states that the figure shows.
         how: options that draw others.
-        wanted: states that are asked for, all if none are.
+        requested: states that the user chose; () for all.
     """
-    missing = sorted(set(wanted or told.all.tolist()) - set(shown))
+    missing = sorted(set(requested or labels.all.tolist()) - set(shown))
     if not missing:
         return ""
     values = [
-        told.listed(name, absent)
-        for name in told.varied()
-        if (absent := [value for value in told.distinct(name) if value not in told.values(name)[shown]])
+        labels.listed(name, absent)
+        for name in labels.varied()
+        if (
+            absent := [
+                value for value in labels.distinct(name) if value not in labels.values(name)[shown]
+            ]
+        )
     ]
     without = f" ({'; '.join(values)})" if values else ""
     noun = "state" if len(missing) == 1 else "states"
     ranges = _short(_ranges(missing), ",")
-    count = f"{len(missing)} of {len(told.all)} states not shown{without}"
+    count = f"{len(missing)} of {len(labels.all)} states not shown{without}"
     return f"{count}: {noun} {ranges}; choose by {how}."
 
 
 def _short(words: Sequence[str], comma: str = ", ") -> str:
-    """The first of them, and that there are more."""
+    """The first of some words with commas between them, and "…" where there are more."""
     return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
 
 

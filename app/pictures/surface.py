@@ -1,9 +1,5 @@
-"""Stresses along the surface of some of an archive's states.
-
-Stresses along the interfaces of layers of some of an archive's states.
-
-Maps of stresses inside of some of an archive's states.
-"""
+"""Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
+inside."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -32,14 +28,14 @@ from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.layers.layered import Layered
 
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, by_method, one_of, there
+from .choice import Choice, Drawing, by_method, has_quantities, require_one_of
 from .friction import Loops
-from .state_labels import C, N, Told, few, not_shown, spread
+from .state_labels import C, N, StateLabels, not_shown, spread, states_for_panel
 
-#: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
+#: Curves that can be distinguished in a panel, columns of a page, and the least width for one [in].
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.3
 
-#: Names of the stresses that are shown unasked, and what axes call them.
+#: Names of the stresses that are shown by default, and what axes call them.
 SHOWN = {
     next(iter(rows.values())).path.rpartition("/")[2]: label
     for rows, label in (
@@ -50,40 +46,41 @@ SHOWN = {
 
 
 def quantities(data: dict[str, Any], method: str = "") -> list[str]:
-    """Names of what an archive has along the surface."""
+    """Names of the stresses that an archive has along the surface."""
     return list(by_method(data, (STATE, POINT), method))
 
 
 def stresses_of(data: dict[str, Any], choice: Choice) -> list[Stress]:
-    """What is drawn, by method."""
-    known = by_method(data, (STATE, POINT), choice.method)
-    wanted = choice.quantities or [name for name in SHOWN if name in known]
+    """Stresses along the surface by method, the chosen ones or those that are shown by default."""
+    available = by_method(data, (STATE, POINT), choice.method)
+    names = choice.quantities or [name for name in SHOWN if name in available]
     return [
         Stress(
             choice.label(*SHOWN[name])
             if name in SHOWN
-            else choice.called(next(iter(known[name].values()))),
-            {method: choice.scale(row) * data[row.path] for method, row in known[name].items()},
+            else choice.called(next(iter(available[name].values()))),
+            {method: choice.scale(row) * data[row.path] for method, row in available[name].items()},
         )
-        for name in (one_of("quantity", name, known) for name in wanted)
+        for name in (require_one_of("quantity", name, available) for name in names)
     ]
 
 
 def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """A column for each speed, or else for each value of what varies most slowly."""
+    """Figure of stresses along the surface: a column for each speed, or else for each value of the
+    parameter that varies most slowly."""
     loops = Loops(data, scene)
-    told, width = loops.told, choice.size.width if choice.size else PAGE
-    same = scene.body.alike and N in told.parameters and not choice.states and not choice.in_si
-    some = told.where(told.all, **{N: told.values(N)[0]}) if same else told.all
-    groups = _groups(told, some, choice.states, width)
+    labels, width = loops.labels, choice.size.width if choice.size else PAGE
+    same = scene.body.alike and N in labels.parameters and not choice.states and not choice.in_si
+    states = labels.where(labels.all, **{N: labels.values(N)[0]}) if same else labels.all
+    groups = _groups(labels, states, choice.states, width)
     # Curves of one name look the same in all columns.
     columns = [
-        column(data, loops, title, shown, names, told.looks(shown, names))
+        column(data, loops, title, shown, names, labels.looks(shown, names))
         for title, shown, names in groups
     ]
-    shown = [state for _, some, _ in groups for state in some]
-    fixed = [name for name in told.parameters if name not in told.varied(shown)]
-    varied = [name for name in told.varied() if name in fixed]
+    shown = [state for _, states, _ in groups for state in states]
+    fixed = [name for name in labels.parameters if name not in labels.varied(shown)]
+    varied = [name for name in labels.varied() if name in fixed]
     figure = surface_figure(
         data[SURFACE_X.path], stresses_of(data, choice), columns, choice.size, choice.ends
     )
@@ -99,47 +96,54 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     if any(axis.child_axes for axis in figure.axes):
         caption += " Insets show where on the friction loop each curve sits."
     if varied:
-        caption += f" All at {told.text(shown[0], varied)}."
-    missing = not_shown(told, shown, "--figure surface --states", choice.states)
+        caption += f" All at {labels.text(shown[0], varied)}."
+    missing = not_shown(labels, shown, "--figure surface --states", choice.states)
     return Drawing("surface", caption, figure, left_out=missing)
 
 
 def column(
-    data: dict[str, Any], loops: Loops, title: str, some: Sequence[int], names: Sequence[str], looks: Any
+    data: dict[str, Any],
+    loops: Loops,
+    title: str,
+    states: Sequence[int],
+    names: Sequence[str],
+    looks: Any,
 ) -> Column:
-    """States as curves of a column, named by some parameters, and where on its loop each sits."""
-    curves = [Curve(i, loops.told.label(i, names), look) for i, look in zip(some, looks)]
+    """Column of the figure: a curve for each state, and the state's place on its friction loop."""
+    curves = [Curve(i, loops.labels.label(i, names), look) for i, look in zip(states, looks)]
     places = [
         Place(loop, float(data[POSITION.path][i]), float(data[FRICTION.path][i]))
-        for i, loop in zip(some, loops.of_all(some))
+        for i, loop in zip(states, loops.of_all(states))
     ]
     return Column(title, curves, places)
 
 
 def _groups(
-    told: Told, some: NDArray, wanted: Sequence[int], width: float
+    labels: StateLabels, states: NDArray, requested: Sequence[int], width: float
 ) -> list[tuple[str, list[int], list[str]]]:
-    """Title, states and what tells them apart, by column; of some states, or of those that are wanted."""
-    some = np.array(wanted) if wanted else some
-    varied = told.varied(some)
+    """Title, states and parameters that distinguish them, by column."""
+    states = np.array(requested) if requested else states
+    varied = labels.varied(states)
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 or C in varied else ""
-    if by and wanted and len(told.distinct(by, some)) > most:
+    if by and requested and len(labels.distinct(by, states)) > most:
         by = ""
     if not by:
-        names, shown = (varied, some) if wanted else few(told, varied, some, _CURVES)
+        names, shown = (
+            (varied, states) if requested else states_for_panel(labels, varied, states, _CURVES)
+        )
         return [("", shown.tolist(), names)]
     groups = []
-    values = told.distinct(by, some)
+    values = labels.distinct(by, states)
     for value in spread(values, most) if most > 1 else values[-1:]:
-        group, names = told.where(some, **{by: value}), [name for name in varied if name != by]
-        if not wanted:
-            names, group = few(told, names, group, _CURVES)
-        groups.append((told.label(int(group[0]), [by]), told.ordered(group).tolist(), names))
+        group, names = labels.where(states, **{by: value}), [name for name in varied if name != by]
+        if not requested:
+            names, group = states_for_panel(labels, names, group, _CURVES)
+        groups.append((labels.label(int(group[0]), [by]), labels.ordered(group).tolist(), names))
     return groups
 
 
-#: Curves that can be told apart in a panel, and the least width of a column [in].
+#: Curves that can be distinguished in a panel, and the least width of a column [in].
 _INTERFACE_CURVES, _LEAST_INTERFACE = 4, 2.2
 
 #: What axes call stresses, and which of them share one: both sides of an interface.
@@ -151,26 +155,26 @@ _AT_INTERFACES = {
 
 
 def interface_quantities(data: dict[str, Any], method: str = "") -> list[str]:
-    """Names of what an archive has along interfaces."""
+    """Names of the stresses that an archive has along interfaces."""
     return list(by_method(data, (STATE, INTERFACE, ALONG), method))
 
 
 def has_interfaces(data: dict[str, Any], choice: Choice) -> bool:
-    """Does an archive hold what is wanted?"""
-    known = interface_quantities(data, choice.method)
-    return bool(known) and set(choice.quantities) <= set(known)
+    """Return True if an archive holds the chosen stresses along interfaces."""
+    available = interface_quantities(data, choice.method)
+    return bool(available) and set(choice.quantities) <= set(available)
 
 
 def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """A column for each interface, or for some of many."""
-    told, width = Told(data, scene), choice.size.width if choice.size else PAGE
-    some = np.array(choice.states) if choice.states else told.all
-    names = told.varied(some)
+    """Figure of stresses along interfaces: a column for each interface, or for some of many."""
+    labels, width = StateLabels(data, scene), choice.size.width if choice.size else PAGE
+    states = np.array(choice.states) if choice.states else labels.all
+    names = labels.varied(states)
     if not choice.states:
-        names, some = few(told, names, some, _INTERFACE_CURVES)
-    some = told.ordered(some)
-    shown = looks(len(some), len(names) == 1 and told.numeric(names[0]))
-    curves = [Curve(i, told.label(i, names), look) for i, look in zip(some.tolist(), shown)]
+        names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
+    states = labels.ordered(states)
+    shown = looks(len(states), len(names) == 1 and labels.numeric(names[0]))
+    curves = [Curve(i, labels.label(i, names), look) for i, look in zip(states.tolist(), shown)]
     depths, reach, unit = _depths(data, scene)
     columns = [
         Interface(i, float(reach[i]), f"$Y = {number(-depths[i])}\\,{unit}$")
@@ -182,7 +186,7 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         columns,
         curves,
         choice.size,
-        choice.frames(some.tolist()),
+        choice.frames(states.tolist()),
     )
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
@@ -190,15 +194,15 @@ def interfaces(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     )
     if len(columns) < len(depths):
         caption += f" {len(columns)} of {len(depths)} interfaces are shown; a wider --size shows more."
-    fixed = [name for name in told.varied() if name not in told.varied(some)]
+    fixed = [name for name in labels.varied() if name not in labels.varied(states)]
     if fixed:
-        caption += f" All at {told.text(int(some[0]), fixed)}."
-    missing = not_shown(told, some.tolist(), "--figure interfaces --states", choice.states)
+        caption += f" All at {labels.text(int(states[0]), fixed)}."
+    missing = not_shown(labels, states.tolist(), "--figure interfaces --states", choice.states)
     return Drawing("interfaces", caption, figure, left_out=missing)
 
 
 def _depths(data: dict[str, Any], scene: Scene) -> tuple[NDArray, NDArray, str]:
-    """Depths of interfaces as titles tell them, over a half-width, and the unit of titles."""
+    """Depths of interfaces as titles show them, their reach over a half-width, and the unit of titles."""
     if INTERFACE_DEPTH.path in data:
         return data[INTERFACE_DEPTH.path], data[INTERFACE_DEPTH.path], "a"
     depths = data[INTERFACE_DEPTH_IN_M.path]
@@ -206,10 +210,12 @@ def _depths(data: dict[str, Any], scene: Scene) -> tuple[NDArray, NDArray, str]:
 
 
 def _rows(data: dict[str, Any], choice: Choice) -> list[Row]:
-    """What is drawn, by side and method."""
-    known = by_method(data, (STATE, INTERFACE, ALONG), choice.method)
-    wanted = [one_of("quantity", name, known) for name in choice.quantities] or list(known)
-    found = []
+    """Rows of the figure: stresses by side of the interface and by method."""
+    available = by_method(data, (STATE, INTERFACE, ALONG), choice.method)
+    chosen = [require_one_of("quantity", name, available) for name in choice.quantities] or list(
+        available
+    )
+    figure_rows = []
     for names, label in _AT_INTERFACES.items():
         sides = [
             {
@@ -217,14 +223,14 @@ def _rows(data: dict[str, Any], choice: Choice) -> list[Row]:
                 for method in METHODS
                 if method in rows
             }
-            for rows in (known[name] for name in names if name in wanted)
+            for rows in (available[name] for name in names if name in chosen)
         ]
         if sides:
-            found.append(Row(choice.label(*label), sides))
-    return found
+            figure_rows.append(Row(choice.label(*label), sides))
+    return figure_rows
 
 
-#: Name and symbol of what maps show unasked.
+#: Name and symbol of the stresses that maps show by default.
 _MAPS = {
     "sigma_XX": ("in-plane stress", r"\sigma_{XX}"),
     "sigma_YY": ("normal stress", r"\sigma_{YY}"),
@@ -240,21 +246,25 @@ class Fields:
     """Stresses inside on the grid of an archive.
 
     Args:
-        data, scene: the archive's.
-        choice: what is wanted.
+        data, scene: datasets by path, and the scene, of an archive.
+        choice: method and unit of the stresses.
     """
 
     def __init__(self, data: dict[str, Any], scene: Scene, choice: Choice) -> None:
         self._data, self._scene, self._choice = data, scene, choice
         method = choice.method
         self._shape = tuple(data[stresses.MAP.path].tolist())
-        self._known = by_method(data, (STATE, INSIDE), method)
-        self.methods = [name for name in METHODS if any(name in rows for rows in self._known.values())]
+        self._quantities = by_method(data, (STATE, INSIDE), method)
+        self.methods = [
+            name for name in METHODS if any(name in rows for rows in self._quantities.values())
+        ]
 
     @property
     def names(self) -> list[str]:
-        """Of all there is."""
-        return list(dict.fromkeys([*self._known, *(name for name in _MAPS if self._of_components(name))]))
+        """Names of all stresses inside that can be mapped."""
+        return list(
+            dict.fromkeys([*self._quantities, *(name for name in _MAPS if self._of_components(name))])
+        )
 
     @property
     def interfaces(self) -> tuple[float, ...]:
@@ -271,8 +281,8 @@ class Fields:
 
     def values(self, name: str, method: str, state: int) -> NDArray:
         """One quantity of a state, (rows, columns)."""
-        if name in self._known:
-            row = self._known[name][method]
+        if name in self._quantities:
+            row = self._quantities[name][method]
             return self._choice.scale_of(row, state) * self._on_grid(self._data[row.path][state])
         XX, YY, XY = (
             self._choice.scale_of(row, state) * self._on_grid(self._data[row.path][state])
@@ -283,15 +293,16 @@ class Fields:
         return von_mises(XX, YY, XY, self._scene.solid.σ_ZZ(XX, YY, XY))
 
     def label(self, name: str, alone: bool) -> str:
-        """Of its colours."""
+        """Label of the colour bar of a quantity."""
         if name not in _MAPS:
-            return self._choice.called(next(iter(self._known[name].values())))
+            return self._choice.called(next(iter(self._quantities[name].values())))
         called, symbol = _MAPS[name]
         return self._choice.label(called, symbol, " " if alone else "\n")
 
     def _of_components(self, name: str) -> bool:
         return (
-            name not in self._known and len({"sigma_XX", "sigma_YY", "sigma_XY"} & set(self._known)) == 3
+            name not in self._quantities
+            and len({"sigma_XX", "sigma_YY", "sigma_XY"} & set(self._quantities)) == 3
         )
 
     def _on_grid(self, values: NDArray) -> NDArray:
@@ -299,38 +310,39 @@ class Fields:
 
 
 def has_map(data: dict[str, Any], method: str = "") -> bool:
-    """Does an archive hold a map of stresses?"""
-    return there(data, stresses.MAP) and bool(by_method(data, (STATE, INSIDE), method))
+    """Return True if an archive holds a map of stresses."""
+    return has_quantities(data, stresses.MAP) and bool(by_method(data, (STATE, INSIDE), method))
 
 
 def inside(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """Stresses inside at the slowest and the fastest speed, and how far both methods are apart."""
-    fields, told = Fields(data, scene, choice), Told(data, scene)
+    """Figure of maps of stresses at the slowest and the fastest speed, and of the methods'
+    differences."""
+    fields, labels = Fields(data, scene, choice), StateLabels(data, scene)
     X, Y = fields.grid()
-    names = [one_of("quantity", name, fields.names) for name in choice.quantities]
+    names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _MAPS if name in fields.names]
-    some = list(choice.states) or _states(told)
-    alone = len(names) == len(some) == 1
-    apart = told.varied(some) or ([C] if C in told.varied() or alone else [])
-    width = choice.size.width if choice.size else COLUMN if len(some) == 1 else PAGE
-    shown, differences = _maps(fields, names, some)
+    states = list(choice.states) or _states(labels)
+    alone = len(names) == len(states) == 1
+    apart = labels.varied(states) or ([C] if C in labels.varied() or alone else [])
+    width = choice.size.width if choice.size else COLUMN if len(states) == 1 else PAGE
+    shown, differences = _maps(fields, names, states)
     largest = max((float(np.abs(off).max()) for off in differences), default=0.0)
-    columns = 2 * len(some)
+    columns = 2 * len(states)
     if len(names) == 1 or width < columns * _LEAST_MAP:
-        differences, columns = [], len(some)
-    titles = [folded(told.label(i, apart), int((width - 1.0) / columns / 0.062)) for i in some]
-    figure = maps_figure(X, Y, shown, titles, differences, choice.size, choice.frames(some))
-    caption = _caption(told, some, fields, largest)
+        differences, columns = [], len(states)
+    titles = [folded(labels.label(i, apart), int((width - 1.0) / columns / 0.062)) for i in states]
+    figure = maps_figure(X, Y, shown, titles, differences, choice.size, choice.frames(states))
+    caption = _caption(labels, states, fields, largest)
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
-    return Drawing("inside", caption, figure, True, not_shown(told, some, how, choice.states))
+    return Drawing("inside", caption, figure, True, not_shown(labels, states, how, choice.states))
 
 
-def _maps(fields: Fields, names: list[str], some: list[int]) -> tuple[list[Map], list[NDArray]]:
-    """What is mapped, and where both methods are known their differences over the largest values."""
+def _maps(fields: Fields, names: list[str], states: list[int]) -> tuple[list[Map], list[NDArray]]:
+    """Maps of stresses by quantity, and differences of both methods over the quantity's largest value."""
     shown, differences = [], []
     for name in names:
         values, *others = (
-            np.array([fields.values(name, method, i) for i in some]) for method in fields.methods
+            np.array([fields.values(name, method, i) for i in states]) for method in fields.methods
         )
         label = fields.label(name, len(names) == 1)
         shown.append(Map(label, values, bool(values.min() < 0.0), fields.interfaces))
@@ -338,12 +350,12 @@ def _maps(fields: Fields, names: list[str], some: list[int]) -> tuple[list[Map],
     return shown, differences
 
 
-def _caption(told: Told, some: list[int], fields: Fields, largest: float) -> str:
-    fixed = [name for name in told.parameters if name not in told.varied(some)]
+def _caption(labels: StateLabels, states: list[int], fields: Fields, largest: float) -> str:
+    fixed = [name for name in labels.parameters if name not in labels.varied(states)]
     method = METHODS[fields.methods[0]]
     text = (
-        f"Stresses inside below the punch (black bar), {method}, at {told.text(some[0], fixed)}. They "
-        "spread from the edges; beyond an arrow at the end of a bar its colours are clipped."
+        f"Stresses inside below the punch (black bar), {method}, at {labels.text(states[0], fixed)}. "
+        "They spread from the edges; beyond an arrow at the end of a bar its colours are clipped."
     )
     if fields.interfaces:
         text += " Dashed lines are the interfaces."
@@ -354,8 +366,8 @@ def _caption(told: Told, some: list[int], fields: Fields, largest: float) -> str
     return text
 
 
-def _states(told: Told) -> list[int]:
-    """The first and the last of what varies most slowly, others at one of their values."""
-    varied = told.varied()
-    some = told.where(told.all, **told.fixed(varied[1:], told.all))
-    return sorted({int(some[0]), int(some[-1])})[:_STATES]
+def _states(labels: StateLabels) -> list[int]:
+    """First and last state of the parameter that varies most slowly, others at one of their values."""
+    varied = labels.varied()
+    states = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
+    return sorted({int(states[0]), int(states[-1])})[:_STATES]

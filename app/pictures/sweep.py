@@ -1,8 +1,9 @@
-"""Single numbers of states over what a scene sweeps.
+"""Single numbers of an archive's states over what its scene sweeps, over the angle of its solid, and over
+the thickness of its uppermost layer.
 
-What the angle of an archive's solid does: its speed limit, edges or contacts; closed form.
-
-What the thickness of an archive's uppermost layer does: K_I, and stresses at its lower face.
+Numbers over a sweep are those of the archive. Over the angle of the solid the closed form gives the speed
+limit, and the exponents and K_I of sharp edges, or contacts with free ends. Over the thickness of the
+uppermost layer the integral equation gives K_I, and the largest stresses along the layer's lower face.
 """
 
 import re
@@ -40,16 +41,16 @@ from ..plan.task import Task
 from ..results.si import contacts_of_states, in_si
 from ..run.methods import on_layers
 from ..scene.scene import Scene
-from .choice import Choice, Drawing, by_method, noun, one_of
-from .state_labels import PLACE, C, N, Told, not_shown, spread
+from .choice import Choice, Drawing, by_method, require_one_of, short_name
+from .state_labels import PLACE, C, N, StateLabels, not_shown, spread
 
-#: Values of a parameter that make a curve, curves that can be told apart, and panels of a page.
+#: Values of a parameter that make a curve, curves that can be distinguished, and panels of a page.
 _VALUES, _CURVES, _PANELS = 3, 6, 12
 
 #: Relative change below which numbers count as constant or, up to a factor, as those of another column.
 _SAME = 1e-5
 
-#: Where answers do not hold, and the speed once more: drawn where they are asked for.
+#: Where answers do not hold, and the speed once more: drawn on request only.
 _LIMITS = {
     row.path.rpartition("/")[2]
     for row in (
@@ -67,46 +68,46 @@ _SPEED = "speed"
 
 @dataclass(frozen=True)
 class Column:
-    """Numbers of states of one name.
+    """Numbers of the states under one name, by each method.
 
     Attributes:
         about: what they are, with symbol.
         unit: in TeX.
-        exact, found: not by finite elements, and by these, (states,).
-        by: the method of the first, "" for none.
+        exact, fem: numbers by another method than finite elements, and by these, (states,).
+        by: method of ``exact``, "" for none.
     """
 
     about: str
     unit: str
     exact: NDArray | None
-    found: NDArray | None
+    fem: NDArray | None
     by: str
 
     @property
     def best(self) -> NDArray:
-        """Its numbers, not by finite elements where there are such."""
-        values = self.exact if self.exact is not None else self.found
+        """Numbers of the states, (states,), not by finite elements where there are such."""
+        values = self.exact if self.exact is not None else self.fem
         assert values is not None
         return values
 
     @property
     def methods(self) -> int:
-        """By how many methods they are known."""
-        return (self.exact is not None) + (self.found is not None)
+        """Number of methods that give these numbers."""
+        return (self.exact is not None) + (self.fem is not None)
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is drawn of an archive.
+    """Curves of a figure: columns that are drawn, their parameter, and the states of each curve.
 
     Attributes:
         over, x: the parameter, and its numbers, (states,).
-        by: name of what tells curves apart, "" for one curve.
+        by: name of the parameter that distinguishes curves, "" for one curve.
         groups: label and states of each curve.
-        fixed: what else differs between states, and where it is looked at.
+        fixed: other parameters that differ between states, and the values at which they are held.
         drawn: names of columns.
-        same: names of those that show nothing else, or no change.
-        more: names of those for which a page has no room.
+        same: names of columns that are constant, or proportional to a drawn one.
+        more: names of columns for which a page has no room.
     """
 
     over: Parameter
@@ -120,185 +121,189 @@ class Sweep:
 
     @property
     def states(self) -> NDArray[np.int64]:
-        """All that are drawn."""
+        """Numbers of all states that are drawn."""
         return np.concatenate([states for _, states in self.groups])
 
 
 def has_parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> bool:
-    """Is something swept that changes something, or wanted?"""
-    told = Told(data, scene)
+    """Return True if something that is swept changes a number, or if the chosen axes can be drawn."""
+    labels = StateLabels(data, scene)
     if choice.x or choice.y or choice.by:
         return bool(_columns(data, scene, choice))
-    return bool(_swept(told, _some(told, choice))) and bool(_sweep(data, scene, told, choice).drawn)
+    return bool(_swept(labels, _selected(labels, choice))) and bool(
+        _sweep(data, scene, labels, choice).drawn
+    )
 
 
 def parameters(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """What varies, over what is swept.
+    """Figure of the numbers of states that vary, over a swept parameter.
 
     Raises:
         BadInput: the states differ in no number, or nothing varies with it.
     """
-    told, known = Told(data, scene), _columns(data, scene, choice)
-    sweep = _sweep(data, scene, told, choice)
+    labels, columns = StateLabels(data, scene), _columns(data, scene, choice)
+    sweep = _sweep(data, scene, labels, choice)
     if not sweep.drawn:
-        raise BadInput(f"--x: no number of the states varies with it; --y takes {', '.join(known)}")
+        raise BadInput(f"--x: no number of the states varies with it; --y takes {', '.join(columns)}")
     panels = [
         Panel(
-            known[name].about,
-            [_line(known[name], label, sweep.x, states) for label, states in sweep.groups],
-            known[name].unit,
+            columns[name].about,
+            [_line(columns[name], label, sweep.x, states) for label, states in sweep.groups],
+            columns[name].unit,
         )
         for name in sweep.drawn
     ]
-    ordered = not sweep.by or told.numeric(sweep.by)
-    exactly = METHODS[SIE if SIE in {known[name].by for name in sweep.drawn} else CLOSED_FORM]
+    ordered = not sweep.by or labels.numeric(sweep.by)
+    exactly = METHODS[SIE if SIE in {columns[name].by for name in sweep.drawn} else CLOSED_FORM]
     figure = curves_figure(panels, sweep.over, ordered, choice.size, exactly)
-    at = f" at {told.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""
+    at = f" at {labels.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""
     caption = f"What follows from {plain(sweep.over.label)}{at}."
     if sweep.same:
         caption += f" Not drawn, being constant or the same up to a factor: {', '.join(sweep.same)}."
-    left_out = not_shown(told, sweep.states.tolist(), "--states, --x and --by", choice.states)
+    left_out = not_shown(labels, sweep.states.tolist(), "--states, --x and --by", choice.states)
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
     return Drawing("parameters", caption, figure, left_out=left_out.strip())
 
 
-def _some(told: Told, choice: Choice) -> NDArray[np.int64]:
-    return np.array(choice.states) if choice.states else told.all
+def _selected(labels: StateLabels, choice: Choice) -> NDArray[np.int64]:
+    return np.array(choice.states) if choice.states else labels.all
 
 
-def _sweep(data: dict[str, Any], scene: Scene, told: Told, choice: Choice) -> Sweep:
-    known, some = _columns(data, scene, choice), _some(told, choice)
-    name, over, x = _over(told, _columns(data, scene, replace(choice, method="")), choice.x, some)
-    by = _by(told, choice.by, name, some)
-    free = [name, by] if name in told.parameters else [by, *told.varied()]
-    fixed = told.fixed([one for one in told.varied(some) if one not in free], some)
-    groups = _groups(told, by, told.where(some, **fixed))
-    some = np.concatenate([states for _, states in groups])
+def _sweep(data: dict[str, Any], scene: Scene, labels: StateLabels, choice: Choice) -> Sweep:
+    columns, selected = _columns(data, scene, choice), _selected(labels, choice)
+    name, over, x = _over(labels, _columns(data, scene, replace(choice, method="")), choice.x, selected)
+    by = _by(labels, choice.by, name, selected)
+    free = [name, by] if name in labels.parameters else [by, *labels.varied()]
+    fixed = labels.fixed([other for other in labels.varied(selected) if other not in free], selected)
+    groups = _groups(labels, by, labels.where(selected, **fixed))
+    selected = np.concatenate([states for _, states in groups])
     same: list[str] = []
     if choice.y:
-        drawn = [one_of("y", one, known) for one in choice.y]
+        drawn = [require_one_of("y", y, columns) for y in choice.y]
     else:
         # Along strokes friction is drawn as a loop.
         elsewhere = [x] if name != PLACE else [x, data[FRICTION.path]]
-        left = {name, *_LIMITS}
-        numbers = {one: column.best[some] for one, column in known.items() if one not in left}
-        order = sorted(numbers, key=lambda one: -known[one].methods)
-        changing = {one for one in numbers if any(_varies(known[one].best[of]) for _, of in groups)}
-        drawn, same = _apart(numbers, order, changing, [values[some] for values in elsewhere])
+        excluded = {name, *_LIMITS}
+        numbers = {key: column.best[selected] for key, column in columns.items() if key not in excluded}
+        order = sorted(numbers, key=lambda key: -columns[key].methods)
+        changing = {key for key in numbers if any(_varies(columns[key].best[of]) for _, of in groups)}
+        drawn, same = _apart(numbers, order, changing, [values[selected] for values in elsewhere])
     most = len(choice.y) or _PANELS
     return Sweep(over, x, by, groups, fixed, drawn[:most], same, drawn[most:])
 
 
 def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Column]:
-    """What an archive has one number a state of, but how good these are.
+    """Columns of an archive by name: quantities with one number a state, except for error estimates.
 
-    In units where they are asked for, and where every state has a half-width of its own: over that,
-    numbers of states could not be compared.
+    They are in SI on request, and where every state has a half-width of its own: numbers over that could
+    not be compared between states.
     """
-    found = {}
+    columns = {}
     in_units = choice.in_si or contacts_of_states(data) is not None
     for name, rows in by_method(data, (STATE,), choice.method).items():
         first = next(iter(rows.values()))
         if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
         by = next((of for of in rows if of != FEM), "")
-        told = in_si(first, name, scene, data) if in_units else None
-        if told is None or told.unit not in _LARGER:
-            told = as_archived(first, name)
-        other = told.unit != first.unit
-        factor, shown = _LARGER[told.unit] if other else (1.0, told.unit)
-        exact, fem = (factor * told.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
+        scaled = in_si(first, name, scene, data) if in_units else None
+        if scaled is None or scaled.unit not in _LARGER:
+            scaled = as_archived(first, name)
+        other = scaled.unit != first.unit
+        factor, shown = _LARGER[scaled.unit] if other else (1.0, scaled.unit)
+        exact, fem = (factor * scaled.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
         label = _label(first).removesuffix(" over $a$" if other else "")
-        found[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
-    return found
+        columns[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
+    return columns
 
 
 def _label(row: Quantity) -> str:
-    """What a quantity is, with formulas set as such; stresses over what they are over."""
-    told = re.sub(r"\bX = (-?a)\b", r"$X = \1$", noun(row))
+    """Name of a quantity for an axis, with formulas in TeX."""
+    text = re.sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
     if row.symbol:
-        told = f"{told.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"
-    return told
+        text = f"{text.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"
+    return text
 
 
-def _swept(told: Told, some: NDArray) -> list[str]:
-    """Numbers that take enough values for a curve, most first."""
-    counts = {name: len(told.distinct(name, some)) for name in told.parameters if told.numeric(name)}
+def _swept(labels: StateLabels, selected: NDArray) -> list[str]:
+    """Names of numeric parameters with enough values for a curve, those with most values first."""
+    counts = {
+        name: len(labels.distinct(name, selected)) for name in labels.parameters if labels.numeric(name)
+    }
     return sorted((name for name in counts if counts[name] >= _VALUES), key=lambda name: -counts[name])
 
 
 def _over(
-    told: Told, known: dict[str, Column], wanted: str, some: NDArray
+    labels: StateLabels, columns: dict[str, Column], requested: str, selected: NDArray
 ) -> tuple[str, Parameter, NDArray]:
-    """Name, axis and numbers of what is drawn over."""
-    numeric = [name for name in told.parameters if told.numeric(name)]
-    if wanted:
-        one_of("x", wanted, [*numeric, _SPEED, *known])
-    swept = _swept(told, some) or told.varied(some)
-    name = C if wanted == _SPEED else wanted or next((name for name in swept if name in numeric), "")
+    """Name, axis and numbers, (states,), of the parameter or quantity that curves are drawn over."""
+    numeric = [name for name in labels.parameters if labels.numeric(name)]
+    if requested:
+        require_one_of("x", requested, [*numeric, _SPEED, *columns])
+    swept = _swept(labels, selected) or labels.varied(selected)
+    name = (
+        C if requested == _SPEED else requested or next((name for name in swept if name in numeric), "")
+    )
     if not name:
         raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
-    if name not in told.parameters:
-        return name, Parameter(known[name].about), known[name].best
-    row, values = told.parameters[name], told.values(name)
+    if name not in labels.parameters:
+        return name, Parameter(columns[name].about), columns[name].best
+    row, values = labels.parameters[name], labels.values(name)
     in_unit = unit(row.unit).removeprefix(r"\,")
     label = _label(row) + (f" $[{in_unit}]$" if in_unit else "")
-    if wanted == _SPEED:
-        return name, Parameter("speed [m/s]"), values * told.c_s
-    return name, Parameter(label, ("speed [m/s]", told.c_s) if name == C else None), values
+    if requested == _SPEED:
+        return name, Parameter("speed [m/s]"), values * labels.c_s
+    return name, Parameter(label, ("speed [m/s]", labels.c_s) if name == C else None), values
 
 
-def _by(told: Told, wanted: str, x: str, some: NDArray) -> str:
-    """What tells the curves apart; nothing for one curve."""
-    varied = [name for name in told.varied(some) if name != x]
-    if wanted:
-        return one_of("by", wanted, varied)
-    law = [name for name in varied if name in (C, N, *told.law)]
+def _by(labels: StateLabels, requested: str, x: str, selected: NDArray) -> str:
+    """Name of the parameter that distinguishes the curves; "" for one curve."""
+    varied = [name for name in labels.varied(selected) if name != x]
+    if requested:
+        return require_one_of("by", requested, varied)
+    law = [name for name in varied if name in (C, N, *labels.law)]
     # Places are the strokes' only where nothing else is swept.
     return next(iter([*law, *varied]), "")
 
 
-def _groups(told: Told, by: str, some: NDArray) -> list[tuple[str, NDArray]]:
+def _groups(labels: StateLabels, by: str, selected: NDArray) -> list[tuple[str, NDArray]]:
     """Label and states of each curve."""
     if not by:
-        return [("", some)]
-    values = spread(told.distinct(by, some), _CURVES)
-    groups = [told.where(some, **{by: value}) for value in values]
-    return [(told.label(int(states[0]), [by]), states) for states in groups]
+        return [("", selected)]
+    values = spread(labels.distinct(by, selected), _CURVES)
+    groups = [labels.where(selected, **{by: value}) for value in values]
+    return [(labels.label(int(states[0]), [by]), states) for states in groups]
 
 
 def _line(column: Column, label: str, x: NDArray, states: NDArray) -> Line:
     order = states[np.argsort(x[states], kind="stable")]
-    exact, found = (
-        values if values is None else values[order] for values in (column.exact, column.found)
-    )
-    return Line(label, x[order], exact, found)
+    exact, fem = (values if values is None else values[order] for values in (column.exact, column.fem))
+    return Line(label, x[order], exact, fem)
 
 
 def _apart(
-    numbers: dict[str, NDArray], order: Sequence[str], changing: set[str], seen: list[NDArray]
+    numbers: dict[str, NDArray], order: Sequence[str], changing: set[str], elsewhere: list[NDArray]
 ) -> tuple[list[str], list[str]]:
-    """Names that show something, in the order of ``numbers``, and those that would show it again."""
+    """Names of numbers that differ from each other, in the order of ``numbers``, and all other names."""
     drawn: list[str] = []
     for name in order:
-        twins = [*seen, *(numbers[other] for other in drawn)]
+        twins = [*elsewhere, *(numbers[other] for other in drawn)]
         if name in changing and not any(_proportional(numbers[name], other) for other in twins):
             drawn.append(name)
     return [name for name in numbers if name in drawn], [name for name in numbers if name not in drawn]
 
 
 def _varies(values: NDArray) -> bool:
-    some = values[np.isfinite(values)]
-    return len(some) > 1 and np.ptp(some) > _SAME * np.abs(some).max()
+    finite = values[np.isfinite(values)]
+    return len(finite) > 1 and np.ptp(finite) > _SAME * np.abs(finite).max()
 
 
-def _proportional(one: NDArray, other: NDArray) -> bool:
-    sizes = np.abs(one).max(), np.abs(other).max()
+def _proportional(first: NDArray, second: NDArray) -> bool:
+    sizes = np.abs(first).max(), np.abs(second).max()
     if not all(0.0 < size < np.inf for size in sizes):
         return False
-    one, other = one / sizes[0], other / sizes[1]
-    return any(np.allclose(one, sign * other, rtol=0.0, atol=_SAME) for sign in (1.0, -1.0))
+    first, second = first / sizes[0], second / sizes[1]
+    return any(np.allclose(first, sign * second, rtol=0.0, atol=_SAME) for sign in (1.0, -1.0))
 
 
 #: Angles that are drawn [°]; a half turn leaves a solid as it is.
@@ -306,12 +311,12 @@ _ANGLES = np.arange(0.0, 181.0, 3.0)
 
 
 def has_angles(scene: Scene) -> bool:
-    """Has the scene's solid an angle?"""
+    """Return True if the scene's solid has an angle."""
     return any(field.name == "angle" for field in fields(scene.solid))  # type: ignore[arg-type]
 
 
 def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """The scene's solid, turned, under the steepest friction and at the fastest speed of the archive."""
+    """Figure over the angle of the solid, under the archive's steepest friction at its fastest speed."""
     g = data[states.RATIO.path]
     steepest = float(g[np.argmax(np.abs(g))])
     V = float(data[states.SPEED.path].max()) * scene.solid.c_s
@@ -348,15 +353,16 @@ def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
-    """-α and -β of sharp edges, and K_I of a flat punch."""
+    """Panels of -α and -β of sharp edges, and of K_I of a flat punch."""
     flat = [_at(body, V, lambda response, body: FlatPunch(response, g)) for body in bodies]
-    left, right = (
+    at_left, at_right = (
         np.array([np.nan if punch is None else -getattr(punch, name) for punch in flat])
         for name in ("β", "α")
     )
     panels = [
         PolarPanel(
-            "$-\\alpha$, $-\\beta$", {"$-\\alpha$, at $X = a$": right, "$-\\beta$, at $X = -a$": left}
+            "$-\\alpha$, $-\\beta$",
+            {"$-\\alpha$, at $X = a$": at_right, "$-\\beta$, at $X = -a$": at_left},
         )
     ]
     if bodies[0].flat:
@@ -366,26 +372,26 @@ def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
 
 
 def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
-    """Half-width, largest pressure and tension, and intensities of an end that is sharp."""
+    """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end."""
 
     def numbers(response: Any, body: Body) -> list[float]:
-        found = contacts(response, np.array([g]), body.profile, body.compression)
-        h = float(found.of("half_width")[0])
+        contact = contacts(response, np.array([g]), body.profile, body.compression)
+        h = float(contact.of("half_width")[0])
         unit = 1e-6 * body.load / (2.0 * h)
         X = surface_grid()
         if not body.free:  # beside a sharp edge it is infinite
             X = X[np.abs(np.abs(X) - 1.0) >= NEAR]
-        tension = float(found.σ_XX(X).max())
-        return [1e3 * h, unit * float(found.largest()[0][0]), unit * tension, *found.of("K_I")[0]]
+        tension = float(contact.σ_XX(X).max())
+        return [1e3 * h, unit * float(contact.largest()[0][0]), unit * tension, *contact.of("K_I")[0]]
 
     rows = [_at(body, V, numbers) for body in bodies]
-    h, pressure, tension, left, right = np.array([row or [np.nan] * 5 for row in rows]).T
+    h, pressure, tension, K_left, K_right = np.array([row or [np.nan] * 5 for row in rows]).T
     titles = {"half-width [mm]": h, "largest pressure [MPa]": pressure, "largest tension [MPa]": tension}
     panels = [
         PolarPanel(title, {"": values}) for title, values in titles.items() if np.isfinite(values).any()
     ]
-    if np.nan_to_num([left, right]).any():
-        ends = {"at $X = a$": right, "at $X = -a$": left}
+    if np.nan_to_num([K_left, K_right]).any():
+        ends = {"at $X = a$": K_right, "at $X = -a$": K_left}
         panels.append(
             PolarPanel("$K_I$", {label: values for label, values in ends.items() if values.any()})
         )
@@ -393,7 +399,7 @@ def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
 
 
 def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:
-    """Of a body at a speed [m/s]; None at the limit and beyond, and where there is no contact."""
+    """Value of ``of`` for a body at a speed [m/s]; None from the limit on, and without a contact."""
     c = V / body.solid.c_s
     if c >= body.solid.limit():
         return None
@@ -420,7 +426,7 @@ _SHOWN = (
 
 
 def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
-    """Has a punch with two sharp edges been solved over uniform layers by the integral equation?"""
+    """Return True if a punch with sharp edges was solved over uniform layers by the integral equation."""
     solved = any(path.startswith(f"states/{SIE}/") for path in data)
     sharp = not (scene.body.found or scene.solve.own_pressure)
     least = _THINNEST * scene.body.half_width
@@ -430,24 +436,24 @@ def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
 
 
 def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
-    """The uppermost layer thinner and thicker, under the steepest friction and at the fastest speed."""
+    """Figure over the thickness of the top layer, under the steepest friction at the fastest speed."""
     assert isinstance(scene.solid, Layered)
     g = data[states.RATIO.path]
     steepest = float(g[np.argmax(np.abs(g))])
     c = float(data[states.SPEED.path].max())
     top, a = scene.solid.layers[0].thickness, scene.body.half_width
     H = np.geomspace(max(_FIRST * top, _THINNEST * a), _LAST * top, _COUNT)
-    found = np.full((_COUNT, len(_SHOWN)), np.nan)
-    for row, thickness in zip(found, H.tolist()):
+    numbers = np.full((_COUNT, len(_SHOWN)), np.nan)
+    for row, thickness in zip(numbers, H.tolist()):
         body = _with_top(scene.body, thickness)
         with suppress(SolveError):
             if c < body.solid.limit():
                 row[:] = _at_thickness(body, c, steepest)
     titles: tuple[str, ...] = _SHOWN
     if choice.in_si:
-        found[:, 2:] *= 1e-6 * scene.body.stress
+        numbers[:, 2:] *= 1e-6 * scene.body.stress
         titles = tuple(title.replace("/(N/2a)$", "$ [MPa]") for title in _SHOWN)
-    panels = [Panel(title, [Line("", H / a, values)]) for title, values in zip(titles, found.T)]
+    panels = [Panel(title, [Line("", H / a, values)]) for title, values in zip(titles, numbers.T)]
     over = Parameter("thickness of the uppermost layer over $a$", ("thickness [mm]", 1e3 * a), top / a)
     caption = (
         "The uppermost layer thinner and thicker, by the integral equation at "
@@ -467,7 +473,7 @@ def _with_top(body: Body, thickness: float) -> Body:
 
 
 def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:
-    """What is drawn at one thickness.
+    """Numbers of all panels at one thickness, (panels,).
 
     Raises:
         SolveError: the equation has no answer.

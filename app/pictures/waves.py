@@ -1,6 +1,8 @@
-"""The slowest waves along a scene's layers.
+"""Waves of a scene: the slowest ones along its layers, and those that a punch sends out under loads that
+oscillate.
 
-What a scene's punch answers to loads that oscillate: its dynamic stiffness over frequency.
+The slowest waves are described by their speed over the wavenumber, the punch by its dynamic stiffness
+over the frequency of the load.
 """
 
 from dataclasses import dataclass
@@ -30,7 +32,7 @@ _ACCURACY = 1e-7
 
 @dataclass(frozen=True)
 class Dispersion:
-    """The dispersion of the slowest wave.
+    """Speed of the slowest wave along layers over its wavenumber.
 
     Attributes:
         kH: wavenumber times the thickness of all layers, (n,).
@@ -48,12 +50,12 @@ class Dispersion:
 
     @property
     def leaks(self) -> bool:
-        """Is there a length of which no wave is slower than those inside?"""
+        """True where no wave of some length is slower than the waves inside the solids."""
         return bool(np.isnan(self.speed).any())
 
 
 def curve(scene: Scene) -> Dispersion:
-    """Of a scene's layers.
+    """Dispersion of the slowest wave along a scene's layers.
 
     Raises:
         BadInput: it has none.
@@ -75,56 +77,56 @@ def curve(scene: Scene) -> Dispersion:
     return Dispersion(kH, 2.0 * np.pi * H / kH, c * solid.c_s, solid.limit() * solid.c_s, ends)
 
 
-def dispersion_drawing(known: Dispersion) -> Drawing:
-    """The curve as a figure."""
-    figure = dispersion_figure(known.kH, known.speed, known.limit, known.ends)
+def dispersion_drawing(slowest: Dispersion) -> Drawing:
+    """Figure of the speed of the slowest wave over its wavenumber."""
+    figure = dispersion_figure(slowest.kH, slowest.speed, slowest.limit, slowest.ends)
     caption = (
         "Speed of the slowest wave along the layers over its wavenumber k times the thickness H of all "
-        f"layers. The dashed line is the highest speed of a punch, {known.limit:.6g} m/s; circles are "
+        f"layers. The dashed line is the highest speed of a punch, {slowest.limit:.6g} m/s; circles are "
         "the waves along the substrate alone (left) and along the solid of the surface (right). Where "
         "there is no curve no such wave is slower than the waves inside one of the solids."
     )
     return Drawing("dispersion", caption, figure)
 
 
-#: Speeds with frictions that are solved at most, and curves that can be told apart.
+#: Speeds with frictions that are solved at most, and curves that can be distinguished.
 MOST, _CURVES = 24, 6
-#: Highest frequency where none is asked for, over c_s/a.
+#: Highest frequency by default, over c_s/a.
 _USUAL = 10.0
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A speed with a friction.
+    """Dynamic stiffness of a punch at a speed with a friction.
 
     Attributes:
         c: speed over c_s.
         g: σ_XY/σ_YY under the punch.
         way: ±1, in which it goes along X, 0 at rest.
-        found: what is answered.
-        plane_waves: what the stiffness over iω comes to at high frequencies, over 2μ a/c_s.
+        oscillation: dynamic stiffness over frequency.
+        plane_waves: limit of the stiffness over iω at high frequencies, over 2μ a/c_s.
     """
 
     c: float
     g: float
     way: int
-    found: Oscillation
+    oscillation: Oscillation
     plane_waves: float
 
     @property
     def words(self) -> str:
-        """What tells it from others."""
+        """Speed, friction and way of the motion, as one line."""
         towards = {1: ", towards +X", -1: ", towards -X", 0: ""}[self.way]
         return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}{towards}"
 
 
 def answers(scene: Scene, first: float, last: float | None, count: int) -> list[Answer]:
-    """Of all speeds and frictions of a scene.
+    """Dynamic stiffness of a scene's punch at all its speeds and frictions.
 
     Args:
         scene: the scene.
-        first, last: angular frequencies over c_s/a; as far as is known, and 10 at most, if none is given.
-        count: of the frequencies, evenly spaced in their logarithm.
+        first, last: angular frequencies over c_s/a; None: the highest computable, at most 10.
+        count: number of frequencies, evenly spaced in their logarithm.
 
     Raises:
         BadInput: there is no answer.
@@ -145,53 +147,55 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     if max(c) >= limit:
         raise BadInput(f"response: c = {max(c):g} is not below the Rayleigh speed {limit:.6g} (over c_s)")
     if last is None:
-        last = min(_USUAL, *(highest(solid.response(one), limit) for one in c))
+        last = min(_USUAL, *(highest(solid.response(speed), limit) for speed in c))
     if not first < last:
         raise BadInput(
             f"response: found frequencies from {first:g} to {last:g} c_s/a, expected them to grow"
         )
-    ω, found = np.geomspace(first, last, count), []
-    for one, way in np.unique(different[:, :2], axis=0).tolist():
+    ω, computed = np.geomspace(first, last, count), []
+    for speed, way in np.unique(different[:, :2], axis=0).tolist():
         try:
-            punch = OscillatingPunch(solid.response(one), limit, ω, int(way) or 1)
+            punch = OscillatingPunch(solid.response(speed), limit, ω, int(way) or 1)
         except ValueError as error:
             raise BadInput(f"response: {error}") from error
-        frictions = different[(different[:, :2] == (one, way)).all(axis=1), 2].tolist()
-        found += [Answer(one, g, int(way), punch.oscillation(g), punch.plane_waves(g)) for g in frictions]
-    return found
+        frictions = different[(different[:, :2] == (speed, way)).all(axis=1), 2].tolist()
+        computed += [
+            Answer(speed, g, int(way), punch.oscillation(g), punch.plane_waves(g)) for g in frictions
+        ]
+    return computed
 
 
 def table(scene: Scene, answer: Answer) -> list[str]:
-    """Lines that tell an answer in SI units."""
-    found, μ = answer.found, scene.solid.μ
-    hertz = found.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
+    """Lines of a table of the dynamic stiffness in SI units."""
+    oscillation, μ = answer.oscillation, scene.solid.μ
+    hertz = oscillation.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
     lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)    Im N/v0 (Pa)    |v0/N| (1/Pa)   phase of v0 (°)"]
-    for ω, f, K in zip(found.ω, hertz, 2.0 * μ * found.stiffness):
+    for ω, f, K in zip(oscillation.ω, hertz, 2.0 * μ * oscillation.stiffness):
         lag = -np.angle(K, deg=True)
         lines.append(
             f"{ω:<10.4g} {f:<15.6g} {K.real:<15.6g} {K.imag:<15.6g} {1.0 / abs(K):<15.6g} {lag:.2f}"
         )
-    return [*lines, f"largest relative error, measured: {found.error.max():.1e}"]
+    return [*lines, f"largest relative error, measured: {oscillation.error.max():.1e}"]
 
 
-def response_drawing(known: list[Answer]) -> Drawing:
-    """Stiffness and damping as a figure."""
-    shown = [known[i] for i in spread(list(range(len(known))), _CURVES)]
-    curves = [_curve(one) for one in shown]
+def response_drawing(computed: list[Answer]) -> Drawing:
+    """Figure of stiffness and damping over frequency."""
+    shown = [computed[i] for i in spread(list(range(len(computed))), _CURVES)]
+    curves = [_curve(answer) for answer in shown]
     caption = (
         "Dynamic stiffness of the punch, N̂/v̂₀ of a load N̂ e^(iωt) about that of steady sliding: its "
         "real part, and its imaginary part over ω, which is what waves carry away. Dashed: plane waves "
         "straight down, to which the latter comes at high frequencies. At low ones the stiffness goes "
         "like 1/log ω: a half-plane has none of its own at rest."
     )
-    left = f"{len(known) - len(shown)} of {len(known)} speeds with frictions not shown."
+    missing = f"{len(computed) - len(shown)} of {len(computed)} speeds with frictions not shown."
     return Drawing(
-        "response", caption, response_figure(curves), left_out=left * (len(shown) < len(known))
+        "response", caption, response_figure(curves), left_out=missing * (len(shown) < len(computed))
     )
 
 
 def _curve(answer: Answer) -> Curve:
-    K, ω = answer.found.stiffness, answer.found.ω
+    K, ω = answer.oscillation.stiffness, answer.oscillation.ω
     parts: NDArray[np.float64] = np.array([K.real, K.imag / ω])
     label = drive_label(answer.c, answer.g, answer.way)
     return Curve(label, ω, parts, answer.plane_waves)

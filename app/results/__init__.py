@@ -1,1 +1,2 @@
-"""What is made of results: in Python, as a page, as figures, for ParaView."""
+"""Results in Python, their checks, and what is made of them: pages, figures, tables, files for
+ParaView."""

@@ -1,11 +1,10 @@
-"""Does an archive say what its own scene and numbers say? Asked of one that fits the schema.
+"""Checks of an archive that fits the schema, against its own scene and against numbers computed again.
 
-What is cheap to compute once more of an archive, whatever method its numbers came from.
-
-Closed forms and the local analysis of all states, or of some spread over many; integral equations of
-layers at the slowest and the fastest speed; indentations and contacts of finite elements against these;
-sizes of linear systems; what was warned of. Not computed again are stresses inside and on the surface by
-finite elements, which are held against what was compared, their estimates, and motions in time.
+Computed again is whatever is cheap, by whichever method the archived numbers were computed: closed forms
+and the local analysis of all states, or of some spread over many; integral equations of layers at the
+slowest and the fastest speed; indentations and contacts of finite elements against these; sizes of linear
+systems; warnings. Not computed again are stresses inside and on the surface by finite elements, which are
+held against the archived comparisons, their estimates, and motions in time.
 """
 
 import json
@@ -57,7 +56,7 @@ from ..scene import read as scenes
 from ..scene.scene import Scene
 
 #: States that are computed again: under flat punches, smooth ones and ones with kinks, over layers, and
-#: where the largest stress is looked for; and numbers of them.
+#: where the largest stress is searched for; and numbers of them.
 _FLAT, _SMOOTH, _KINKED, _LAYERED, _YIELD, _NUMBERS = 2000, 24, 6, 4, 3, 1_000_000
 #: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
 #: apart which were solved with other frictions beside them.
@@ -71,31 +70,34 @@ _ONE_MESH = ("contact", "traction", FOUND)
 
 
 def recomputed_faults(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
-    """What is not as it is computed again, one sentence each.
+    """Differences between archived numbers and numbers computed again, one sentence each.
 
     Args:
-        archive: fits the schema.
-        scene, plan: the archive's.
+        archive: one that fits the schema.
+        scene, plan: of the archive.
     """
     data = archive.data
     yield from _of_warnings(data, archive.attributes["warnings"], scene, plan)
     if runs.RECORD["c"].path in data and not len(data[runs.FAILURES.path]):
         yield from _of_record(data, plan)
-    for methods, some, quantities in _asked(plan):
-        for rows, found in _computed(plan, data, methods, some, quantities):
-            yield from _different(archive, rows, found, plan)
+    for methods, selected, quantities in _recomputed(plan):
+        for rows, computed in _computed(plan, data, methods, selected, quantities):
+            yield from _different(archive, rows, computed, plan)
     yield from _of_finite_elements(archive, scene, plan)
 
 
 def _of_warnings(data: Mapping[str, Any], warnings: str, scene: Scene, plan: Plan) -> Iterator[str]:
-    """Sentences are the same but for numbers, which follow the order in which states were solved."""
+    """Warnings of the scene that the archive lacks, one sentence each.
+
+    Sentences are compared without their numbers, which follow the order in which states were solved.
+    """
     if not plan.methods:
         return
     judge = Judge(scene, ())
     judge.validity.see(data)
-    told = [_without_numbers(text) for text in json.loads(warnings)]
+    archived = [_without_numbers(text) for text in json.loads(warnings)]
     for text in judge.validity.words():
-        if _without_numbers(text) not in told:
+        if _without_numbers(text) not in archived:
             yield f'warnings does not have "{text}"'
 
 
@@ -104,7 +106,7 @@ def _without_numbers(text: str) -> str:
 
 
 def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
-    """Speeds, cells and unknowns of finite elements."""
+    """Speeds, cells and unknowns of finite elements that differ from those of the scene."""
     fem, c = plan.fem, plan.tasks.order.speeds
     assert fem
     record = {name: data[row.path] for name, row in runs.RECORD.items()}
@@ -122,8 +124,8 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
             )
 
 
-def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
-    """What is computed again: methods, states and quantities."""
+def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
+    """Numbers to compute again: methods, states and quantities."""
     count, most_of_all = plan.states, _FLAT if plan.body.flat else _most(plan)
     for method in (CLOSED_FORM, SIE):
         if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
@@ -149,20 +151,22 @@ def _asked(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], lis
 
 
 def _most(plan: Plan) -> int:
-    """States at most whose closed form takes its time."""
+    """Number of states at most whose slow closed form is computed again."""
     return _SMOOTH if smooth(plan.body.profile) else _KINKED
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """At most so many states, the first and the last among them."""
+    """Numbers of at most so many states, the first and the last among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
 
 
-def _tasks(plan: Plan, some: NDArray[np.int64]) -> Iterator[tuple[Task, NDArray[np.int64]]]:
-    """Speeds of some states, and which these are."""
+def _tasks(plan: Plan, selected: NDArray[np.int64]) -> Iterator[tuple[Task, NDArray[np.int64]]]:
+    """Tasks of the speeds of some states, with the numbers of these states."""
     order = plan.tasks.order
     for i, (c, slices) in enumerate(zip(order.speeds, order.runs())):
-        own = np.concatenate([some[(some >= run.start) & (some < run.stop)] for run in slices])
+        own = np.concatenate(
+            [selected[(selected >= run.start) & (selected < run.stop)] for run in slices]
+        )
         if len(own):
             yield Task(i, plan.body, plan.body.response(c), plan.places, slices, order.loads), own
 
@@ -171,24 +175,24 @@ def _computed(
     plan: Plan,
     data: Mapping[str, Any],
     methods: Sequence[str],
-    some: NDArray[np.int64],
+    selected: NDArray[np.int64],
     quantities: Sequence[Quantity],
 ) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
-    """Quantities of some states, speed by speed; nothing where one could not be solved."""
+    """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: make(name, alone, Progress(), Clock()) for name in methods}
     work = Work(alone, data[states.RATIO.path], made, Clock(), np.zeros(plan.states, dtype=bool))
-    for task, rows in _tasks(plan, some):
+    for task, rows in _tasks(plan, selected):
         if f"c = {task.response.c:g}" not in failed:
             yield rows, work.of_states(task, rows)
 
 
 def _different(
-    archive: Archive, rows: NDArray[np.int64], found: Mapping[str, NDArray], plan: Plan
+    archive: Archive, rows: NDArray[np.int64], computed: Mapping[str, NDArray], plan: Plan
 ) -> Iterator[str]:
-    """What an archive holds is not what it is computed as."""
-    for path, values in found.items():
+    """Differences between archived and computed values, one sentence each."""
+    for path, values in computed.items():
         held = _held(archive, path, rows)
         with np.errstate(invalid="ignore"):
             finite = np.where(np.isfinite(values), np.abs(values), 0.0)
@@ -196,9 +200,9 @@ def _different(
             size = np.maximum(finite, 0.0 if values.ndim == 1 else finite.max(axis=axes, keepdims=True))
             allowed = _TOLERANCES * plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
             near = np.abs(held - values) <= allowed * size + _PLACE * _is_place(path)
-        alike = near | (held == values) | (np.isnan(held) & np.isnan(values))
-        if not alike.all():
-            i = int(np.flatnonzero(~alike.reshape(len(rows), -1).all(axis=1))[0])
+        same = near | (held == values) | (np.isnan(held) & np.isnan(values))
+        if not same.all():
+            i = int(np.flatnonzero(~same.reshape(len(rows), -1).all(axis=1))[0])
             yield f"{path} is not what is computed of state {rows[i]}"
 
 
@@ -207,24 +211,24 @@ def _near(held: NDArray, exact: NDArray, share: float) -> bool:
 
 
 def _held(archive: Archive, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """What an archive has of some states."""
+    """Archived values of some states, (states, …)."""
     if path in archive.data:
         return np.asarray(archive.data[path][rows])
     return np.concatenate([archive.rows(slice(row, row + 1), [path])[path] for row in rows.tolist()])
 
 
 def _is_place(path: str) -> bool:
-    """Is it where something is largest? It may lie anywhere where that is flat."""
+    """True for the place of a largest value, which may lie anywhere where the values are flat."""
     return path.endswith(("_position", "_over_a", "_X", "_Y"))
 
 
 def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
-    """Finite elements against the closed form, whether or not the scene asks for that."""
+    """Differences of finite elements from the closed form, even if the scene asks for none."""
     data, fem, body = archive.data, plan.fem, plan.body
     if not fem or body.layered:
         return
-    some = _spread(plan.states, _most(plan))
-    yield from _of_invariants(archive, plan, some)
+    selected = _spread(plan.states, _most(plan))
+    yield from _of_invariants(archive, plan, selected)
     slow = body.solid.limit() > max(plan.tasks.order.speeds)
     if (
         archive.attributes["verdict"] == "FAIL"
@@ -233,7 +237,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
     ):
         return
     if states.INDENTATION.path in data and fem.terms and not body.pressure:
-        yield from _of_indentations(data, plan, some)
+        yield from _of_indentations(data, plan, selected)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
     if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
         yield f"{' and '.join(loads)} are not near each other"
@@ -247,12 +251,14 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
         and not METHODS[CLOSED_FORM].refusal(scene, body, quantity)
     }  # fmt: skip
     both = {path: other for path, other in twins.items() if other in archive.names}
-    for rows, found in _computed(plan, data, (CLOSED_FORM,), some, [QUANTITIES[path] for path in both]):
-        intensities = [abs(values) for path, values in found.items() if "K_I" in path]
-        for path, exact in found.items():
+    for rows, computed in _computed(
+        plan, data, (CLOSED_FORM,), selected, [QUANTITIES[path] for path in both]
+    ):
+        intensities = [abs(values) for path, values in computed.items() if "K_I" in path]
+        for path, exact in computed.items():
             held = _held(archive, both[path], rows)
             if path == states.CENTRE[CLOSED_FORM].path:
-                size = found[states.HALF_WIDTH[CLOSED_FORM].path]
+                size = computed[states.HALF_WIDTH[CLOSED_FORM].path]
             else:
                 size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
             if exact.ndim > 1:
@@ -266,27 +272,27 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
                 yield f"{both[path]} is not near the closed form of state {state}"
 
 
-def _of_invariants(archive: Archive, plan: Plan, some: NDArray[np.int64]) -> Iterator[str]:
-    """Principal and von Mises stresses inside follow from the components."""
+def _of_invariants(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
+    """Principal and von Mises stresses inside that do not follow from the archived components."""
     rows = (*stresses.STRESSES_INSIDE[FEM], *stresses.INVARIANTS_INSIDE[FEM])
     if any(row.path not in archive.names for row in rows):
         return
-    inside = [_held(archive, row.path, some) for row in stresses.STRESSES_INSIDE[FEM]]
+    inside = [_held(archive, row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]]
     for row in stresses.INVARIANTS_INSIDE[FEM]:
         assert row.of
         expected = row.of(SimpleNamespace(inside=inside), plan.body)
         if not np.allclose(
-            _held(archive, row.path, some), expected, rtol=1e-9, atol=1e-12, equal_nan=True
+            _held(archive, row.path, selected), expected, rtol=1e-9, atol=1e-12, equal_nan=True
         ):
             yield f"{row.path} is not what the components give"
 
 
-def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64]) -> Iterator[str]:
-    """v₀ from the pressure of the closed form."""
+def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
+    """Indentations v₀ that differ from those of the closed form's pressure."""
     looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
     method = make(CLOSED_FORM, looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
-    for task, rows in _tasks(looked_at, some):
+    for task, rows in _tasks(looked_at, selected):
         load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])
         body = plan.body.loaded(load)
         try:
@@ -309,15 +315,15 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, some: NDArray[np.int64
             )
 
 
-#: States looked at together.
+#: States checked together.
 _ROWS = 1000
 
-#: Within what numbers that are computed again are the same on any machine.
+#: Relative difference within which numbers that are computed again agree on any machine.
 _SAME = 1e-9
 
 
 def faults(path: Path) -> list[str]:
-    """What is wrong with an archive, one sentence each; every byte of it is read.
+    """Faults of an archive, one sentence each; every byte of it is read.
 
     Raises:
         UnreadableArchive: no archive, a damaged one, or one that does not fit the schema.
@@ -325,21 +331,21 @@ def faults(path: Path) -> list[str]:
     """
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
-        found = [*_of_states(archive, scene)]
+        texts = [*_of_states(archive, scene)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
             plan = make_plan(scene)
-            found += _of_plan(archive, scene, plan)
-            if not found:
-                found += recomputed_faults(archive, scene, plan)
-        return [*found, *_of_numbers(archive), *_of_verdict(archive, scene)]
+            texts += _of_plan(archive, scene, plan)
+            if not texts:
+                texts += recomputed_faults(archive, scene, plan)
+        return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
 def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
-    """Friction is followed once more."""
+    """States and friction that differ from those of the scene, whose friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
-    count, found = len(order(scene)), len(data[SPEED.path])
-    if count != found:
-        yield f"it holds {found} states, its scene has {count}"
+    count, held = len(order(scene)), len(data[SPEED.path])
+    if count != held:
+        yield f"it holds {held} states, its scene has {count}"
         return
     states = enumerate_states(scene)
     for name, values in states.datasets.items():
@@ -350,34 +356,34 @@ def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
             yield f"{name} holds something else than its scene gives"
 
 
-def _same(found: Any, expected: Any) -> bool:
-    if np.shape(found) != np.shape(expected):
+def _same(archived: Any, expected: Any) -> bool:
+    if np.shape(archived) != np.shape(expected):
         return False
     if np.asarray(expected).dtype.kind != "f":
-        return bool((found == expected).all())
+        return bool((archived == expected).all())
     size = np.nanmax(np.abs(expected), initial=0.0)
-    return np.allclose(found, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
+    return np.allclose(archived, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
 def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]:
-    """What the same program would archive of the scene."""
+    """Attributes, positions and names of datasets that differ from those of the scene."""
     attributes, data = archive.attributes, archive.data
     given = of_scene(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer
-            found = np.asarray(attributes[name]).item()  # as Python writes it
-            yield f"{name} says {found!r}, its scene gives {value!r}"
+            archived = np.asarray(attributes[name]).item()  # as Python writes it
+            yield f"{name} says {archived!r}, its scene gives {value!r}"
     for name, positions in plan.positions.items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"
-    known, asked = table(), {quantity.path for quantity in plan.quantities}
-    held = {name for name in archive.names if known[name].solved}
-    yield from (f"{name} is missing, its scene asks for it" for name in sorted(asked - held))
-    yield from (f"{name} is not what its scene asks for" for name in sorted(held - asked))
+    rows, planned = table(), {quantity.path for quantity in plan.quantities}
+    held = {name for name in archive.names if rows[name].solved}
+    yield from (f"{name} is missing, its scene asks for it" for name in sorted(planned - held))
+    yield from (f"{name} is not what its scene asks for" for name in sorted(held - planned))
 
 
 def _of_numbers(archive: reader.Archive) -> Iterator[str]:
-    """Every number is read: finite, in balance, and what was said of it."""
+    """Numbers that are not finite, not in balance, or not as the archived comparisons say."""
     rules = json.loads(archive.attributes["rules"])
     failures = archive.data.get(runs.FAILURES.path, ())
     worst: dict[str, float] = {}
@@ -393,33 +399,36 @@ def _of_numbers(archive: reader.Archive) -> Iterator[str]:
             yield from _out_of_balance(comparison, start)
     for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
         worst[comparison.text] = comparison.value
-    told = json.loads(archive.attributes["comparisons"])
-    if told.keys() != worst.keys() or any(
-        not np.isclose(worst[text], told[text], rtol=_SAME, atol=0.0, equal_nan=True) for text in told
+    archived = json.loads(archive.attributes["comparisons"])
+    if archived.keys() != worst.keys() or any(
+        not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
+        for text in archived
     ):
-        yield f"its numbers give {worst}, its comparisons say {told}"
+        yield f"its numbers give {worst}, its comparisons say {archived}"
 
 
 def _solved(rows: dict[str, Any], failures: Sequence[str]) -> dict[str, Any]:
-    """The states that a solution was found for."""
-    known, c = table(), rows[SPEED.path]
+    """Rows of the states that have a solution."""
+    quantities, c = table(), rows[SPEED.path]
     failed = [x for x in np.unique(c) if any(text.startswith(f"c = {x:g}: ") for text in failures)]
     bad = np.isin(c, failed) & np.any(
         [
             ~np.isfinite(values)
             for name, values in rows.items()
-            if known[name].solved and known[name].over == (STATE,) and known[name].nan_allowed == NEVER
+            if quantities[name].solved
+            and quantities[name].over == (STATE,)
+            and quantities[name].nan_allowed == NEVER
         ],
         axis=0,
     )
     return {
-        name: values[~bad] if known[name].over[:1] == (STATE,) else values
+        name: values[~bad] if quantities[name].over[:1] == (STATE,) else values
         for name, values in rows.items()
     }
 
 
 def _otherwise(data: dict[str, Any], start: int) -> Iterator[str]:
-    """What was computed from other datasets."""
+    """Numbers that do not follow from the datasets from which they were computed, one sentence each."""
     for name, row in table().items():
         if row.of_data is None or any(path not in data for path in (name, *row.needs)):
             continue
@@ -437,7 +446,7 @@ def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]
 
 
 def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
-    """The comparisons that it tells are judged once more."""
+    """Verdict and reasons that do not follow from the archived comparisons."""
     attributes = archive.attributes
     rules = {
         compare.RULES[name].text: name
@@ -445,8 +454,10 @@ def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
         if name in compare.RULES
     }
     judge = Judge(scene, rules.values())
-    told = json.loads(attributes["comparisons"])
-    judge.see([compare.Comparison(rules[text], text, told[text]) for text in told if text in rules])
+    archived = json.loads(attributes["comparisons"])
+    judge.see(
+        [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
+    )
     judge.failures = list(archive.data.get(runs.FAILURES.path, ()))
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:

@@ -19,7 +19,7 @@ from ..errors import BadInput
 from ..scene import read as scenes
 from .si import scaling
 
-#: Where states have values, and the word of output.quantities that asks for them, by table.
+#: Dimension of the values of states, and the word of output.quantities that asks for them, by table.
 TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}
 
 #: Rows held at once.
@@ -27,7 +27,7 @@ _TOGETHER = 20_000
 
 
 def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]:
-    """A table as text, piece by piece, its heads with units first; NaN is an empty cell.
+    """Text of a table, piece by piece, its heads with units first; NaN is an empty cell.
 
     Args:
         path: of an archive.
@@ -54,7 +54,7 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
 
 
 def _rows(archive: reader.Archive, where: str, load: bool) -> list[Quantity]:
-    """What tells states apart, the load too if asked for, positions, all with one value at each."""
+    """Quantities of a table: parameters that distinguish states, positions, all with one value each."""
     first = parameters(archive.data)
     if load:
         first[LOAD.path] = LOAD
@@ -67,38 +67,41 @@ def _rows(archive: reader.Archive, where: str, load: bool) -> list[Quantity]:
 def _columns(
     archive: reader.Archive, rows: list[Quantity], si: bool
 ) -> tuple[list[Quantity], list[Scaled]]:
-    """Those rows that are told, and how."""
+    """Quantities that have a column in the units of the table, and their columns."""
     scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive") if si else None
     scaled = scaling(scene, archive.data)
-    found = ((row, scaled(row, row.path.partition("/")[2].replace("/", "_"))) for row in rows)
-    told = [(row, column) for row, column in found if column]
-    return [row for row, _ in told], [column for _, column in told]
+    scaled_rows = ((row, scaled(row, row.path.partition("/")[2].replace("/", "_"))) for row in rows)
+    kept = [(row, column) for row, column in scaled_rows if column]
+    return [row for row, _ in kept], [column for _, column in kept]
 
 
 def _blocks(
     archive: reader.Archive, rows: list[Quantity], where: str
 ) -> Iterator[tuple[list[int], dict[str, Any]]]:
-    """Numbers of states, and columns by path, of some rows of the table at a time."""
+    """Numbers of states, and columns by path, for blocks of rows of the table."""
     states = len(archive.data[SPEED.path])
     points = next((len(archive.data[row.path]) for row in rows if row.over == (where,)), 1)
     together = max(1, _TOGETHER // max(1, points))
     for start in range(0, states, together):
-        some = slice(start, min(start + together, states))
-        data = archive.rows(some, [row.path for row in rows if row.path in archive.names])
-        data.setdefault(LOAD.path, np.full(some.stop - some.start, archive.attributes["load"]))
+        block = slice(start, min(start + together, states))
+        data = archive.rows(block, [row.path for row in rows if row.path in archive.names])
+        data.setdefault(LOAD.path, np.full(block.stop - block.start, archive.attributes["load"]))
         for first in range(0, points, _TOGETHER):
             at = slice(first, min(first + _TOGETHER, points))
-            shape = some.stop - some.start, at.stop - at.start
+            shape = block.stop - block.start, at.stop - at.start
             columns = {
                 row.path: data[row.path][..., at] if where in row.over else data[row.path][:, None]
                 for row in rows
             }
-            numbers = np.repeat(np.arange(some.start, some.stop), shape[1]).tolist()
-            yield numbers, {path: np.broadcast_to(one, shape).ravel() for path, one in columns.items()}
+            numbers = np.repeat(np.arange(block.start, block.stop), shape[1]).tolist()
+            yield (
+                numbers,
+                {path: np.broadcast_to(values, shape).ravel() for path, values in columns.items()},
+            )
 
 
 def _cells(values: Any) -> list[Any]:
-    """Of a column; text stays."""
+    """Cells of a column, empty for NaN; text stays."""
     return ["" if value != value else value for value in values.tolist()]
 
 

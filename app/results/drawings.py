@@ -1,4 +1,4 @@
-"""Which figures an archive has, and which of them are wanted."""
+"""Figures of an archive by name, and the choice of those that are drawn."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -10,21 +10,21 @@ from galinx.postprocess.quantities.quantity import METHODS
 
 from ..errors import BadInput
 from ..pictures import film, friction, motion, numerics, surface, sweep
-from ..pictures.choice import FILM, Choice, Drawing, Files, Written, one_of, there
+from ..pictures.choice import FILM, Choice, Drawing, Files, Written, require_one_of
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 
-__all__ = ["Drawing", "names", "of_archive", "there", "write"]
+__all__ = ["Drawing", "names", "of_archive", "write"]
 
 _Data = dict[str, Any]
 
-#: Everything, chosen by itself.
+#: A choice that leaves everything open.
 _PLAIN = Choice()
 
 
 @dataclass(frozen=True)
 class _Figure:
-    """A kind of figure: which options it follows, whether an archive has it, and how it is drawn."""
+    """A kind of figure: the options that it follows, whether an archive has it, and how it is drawn."""
 
     follows: set[str]
     has: Callable[[_Data, Scene, Choice], bool]
@@ -32,8 +32,8 @@ class _Figure:
 
 
 def _on_surface(data: _Data, choice: Choice) -> bool:
-    known = surface.quantities(data, choice.method)
-    return bool(known) and set(choice.quantities) <= set(known)
+    available = surface.quantities(data, choice.method)
+    return bool(available) and set(choice.quantities) <= set(available)
 
 
 def _below(data: _Data, scene: Scene, choice: Choice) -> bool:
@@ -86,10 +86,10 @@ _FIGURES = {
 
 
 def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[Drawing]:
-    """Every figure that an archive's data allow and a choice wants, one after the other.
+    """Every figure that an archive's data allow and a choice selects, one after the other.
 
     Raises:
-        BadInput: what is wanted is not there; the message says what is.
+        BadInput: the archive lacks a selected figure or quantity; the message says what it has.
     """
     for name in names(data, scene, choice):
         if name != FILM:
@@ -100,25 +100,25 @@ def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[D
 
 
 def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Written]:
-    """Write what :func:`of_archive` draws, and the film if it is wanted.
+    """Write the figures of :func:`of_archive`, and the film if it is selected.
 
     Raises:
-        BadInput: what is wanted is not there, or cannot be written so.
+        BadInput: the archive lacks a selected figure or quantity, or it cannot be written in this format.
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    if not choice.figures and (files.one in OF_FILMS or set(files.formats) & OF_FILMS.keys()):
+    if not choice.figures and (files.ending in OF_FILMS or set(files.formats) & OF_FILMS.keys()):
         choice = replace(choice, figures=(FILM,))
-    wanted = names(data, scene, choice)
-    files.check(wanted)
+    selected = names(data, scene, choice)
+    files.check(selected)
     in_time = [make for has, make in _films(data) if has]
     made = film.film if not in_time or film.has_film(data, scene, choice) else in_time[0]
-    whole = (lambda: made(data, scene, choice)) if FILM in wanted else None
+    whole = (lambda: made(data, scene, choice)) if FILM in selected else None
     return files.write(of_archive(data, scene, choice), whole)
 
 
 def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
-    """Films of motions in time: does an archive have what they show, and what makes them."""
+    """Films of motions in time: whether an archive has the data, and the function that makes the film."""
     return (
         (motion.has_film(data), motion.film_of_surface),
         (motion.has_pressures(data), motion.pressure_film),
@@ -126,32 +126,32 @@ def _films(data: _Data) -> tuple[tuple[bool, Any], ...]:
 
 
 def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
-    """Of the figures that a choice wants.
+    """Names of the figures that a choice selects.
 
     Raises:
-        BadInput: what is wanted is not there; the message says what is.
+        BadInput: the archive lacks a selected figure or quantity; the message says what it has.
     """
     choice.check_states(data)
     if choice.method:
-        one_of("method", choice.method, METHODS)
+        require_one_of("method", choice.method, METHODS)
     there_are = [name for name, figure in _FIGURES.items() if figure.has(data, scene, _PLAIN)]
     for name in choice.figures:
         # A film that the archive has too few states for says so itself.
-        one_of("figure", name, dict.fromkeys([*there_are, FILM]))
+        require_one_of("figure", name, dict.fromkeys([*there_are, FILM]))
         if ignored := choice.given - _FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
     for name in choice.quantities:
-        one_of("quantity", name, dict.fromkeys(_quantities(data, scene)))
-    wanted = choice.figures or [
+        require_one_of("quantity", name, dict.fromkeys(_quantities(data, scene)))
+    selected = choice.figures or [
         name for name in there_are if name != FILM and choice.given <= _FIGURES[name].follows
     ]
-    found = [name for name in wanted if name == FILM or _FIGURES[name].has(data, scene, choice)]
-    if not found or (choice.figures and len(found) < len(choice.figures)):
+    drawable = [name for name in selected if name == FILM or _FIGURES[name].has(data, scene, choice)]
+    if not drawable or (choice.figures and len(drawable) < len(choice.figures)):
         raise BadInput(
             f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
             f"{', '.join(there_are)}"
         )
-    return found
+    return drawable
 
 
 def _quantities(data: _Data, scene: Scene) -> list[str]:
@@ -160,5 +160,5 @@ def _quantities(data: _Data, scene: Scene) -> list[str]:
 
 
 def _options(names: set[str]) -> str:
-    told = {"quantities": "--quantity"}
-    return ", ".join(told.get(name, f"--{name}") for name in sorted(names))
+    options = {"quantities": "--quantity"}
+    return ", ".join(options.get(name, f"--{name}") for name in sorted(names))

@@ -1,6 +1,8 @@
-"""Whole fields of states, for ParaView: displacement and stresses from finite elements.
+"""Whole fields of single states from finite elements: displacement and stresses, as a dolfinx function or
+for ParaView.
 
-Single states of a scene, solved once more by finite elements to see all of their fields.
+A state of a scene is solved once more, whatever the scene asks for and by whichever method. Its fields
+are given in SI on the mesh of the solid, or on small quadrilaterals within it.
 """
 
 from collections.abc import Callable, Generator, Iterable, Sequence
@@ -35,7 +37,7 @@ from ..scene.scene import FRICTIONS, Output, Scene
 
 @dataclass(frozen=True)
 class OneState:
-    """One state, and what computes it.
+    """A state of a scene, and what finite elements need to solve it.
 
     Attributes:
         number: of the state, from 0.
@@ -43,8 +45,8 @@ class OneState:
         task: the state's speed.
         g: σ_XY/σ_YY under the punch.
         degree: polynomial degree.
-        exact: is there a closed form to compare with?
-        told: what tells the state from others, by the names of archives' columns.
+        exact: True where there is a closed form to compare with.
+        parameters: values that distinguish the state, by the names of archives' columns.
     """
 
     number: int
@@ -53,17 +55,17 @@ class OneState:
     g: float
     degree: int
     exact: bool
-    told: dict[str, Any]
+    parameters: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A state's displacement.
+    """Displacement of a state, by finite elements.
 
     Attributes:
         state: the state.
         space: the finite element space.
-        fields, weights: displacements over N/(2μ), and what of them makes the state's.
+        fields, weights: displacements over N/(2μ), and their factors in the state's displacement.
         pressure: σ_YY over N/(2a) at X over a under the punch.
         comm: the ranks that share the mesh.
     """
@@ -82,12 +84,12 @@ def chosen(
     degrees: Sequence[int | None] | None = None,
     extent: float = 0.0,
 ) -> list[OneState]:
-    """States of a scene, whatever it asks for and by whichever method.
+    """States of a scene by number, prepared for finite elements whatever the scene asks for.
 
     Args:
         scene: the scene.
         numbers: of the states, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
-        degrees: polynomial degrees, one a state; None for that which the scene's tolerance suggests.
+        degrees: polynomial degrees, one a state; None for the degree that the scene's tolerance suggests.
         extent: |X| and |Y| over a that the mesh holds, if it has no walls.
 
     Raises:
@@ -108,28 +110,30 @@ def chosen(
             "every state; fields of single states are there for a given half-width only. Stresses "
             'inside are archived by output.map and the quantity "interior"'
         )
-    wanted = degrees or [None] * len(numbers)
-    _check_states(scene, wanted)
+    state_degrees = degrees or [None] * len(numbers)
+    _check_states(scene, state_degrees)
     columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
     plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
     assert plan.fem
-    fem = replace(reaching(plan.fem, extent, plan.tasks), shared_speeds=False)
+    fem = replace(with_reach(plan.fem, extent, plan.tasks), shared_speeds=False)
     tasks = {task.response.c: task for task in plan.tasks}
-    # Given tractions are solved one degree above the rule: no measured error corrects it here.
+    # Prescribed tractions are solved one degree above the rule: no measured error corrects it here.
     more = scene.solve.mode == "traction"
-    found = []
+    selection = []
     for i, number in enumerate(numbers):
-        told = {name: values[i] for name, values in columns.items()}
-        task = tasks[told["c"]]
-        task = replace(task, body=task.body.loaded(told.get("load")))
-        degree = wanted[i] or fem.degrees[task.number] + more
+        parameters = {name: values[i] for name, values in columns.items()}
+        task = tasks[parameters["c"]]
+        task = replace(task, body=task.body.loaded(parameters.get("load")))
+        degree = state_degrees[i] or fem.degrees[task.number] + more
         exact = "closed_form" in scene.solve.methods
-        found.append(OneState(number, replace(plan, fem=fem), task, told["g"], degree, exact, told))
-    return found
+        selection.append(
+            OneState(number, replace(plan, fem=fem), task, parameters["g"], degree, exact, parameters)
+        )
+    return selection
 
 
 def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
-    """One state after the other, each as long as the next is not asked for; collective.
+    """Solutions of states one after the other, each valid until the next is requested; collective.
 
     Raises:
         SolveError: the equations could not be solved.
@@ -142,17 +146,17 @@ def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
             yield Solved(state, space, fields, weights, pressure, fem.work.comm)
 
 
-def reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
-    """The same with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
+def with_reach(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
+    """Plan of finite elements with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
     corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
     if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):
         return fem
-    wanted = replace(fem.wanted, farthest=corner)
-    return replace(fem, wanted=wanted, refinement=fem.kind.refinement(wanted))
+    wider = replace(fem.wanted, farthest=corner)
+    return replace(fem, wanted=wider, refinement=fem.kind.refinement(wider))
 
 
 def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
-    """The displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
+    """Displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
 
     Arguments are those of :func:`chosen`.
 
@@ -170,10 +174,10 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
     with closing(solved([state])) as states:
         from galinx.solvers.fem.fields import in_physical_plane
 
-        found = next(states)
+        solution = next(states)
         half_width = body.half_width
         return in_physical_plane(
-            found.space, response, found.fields, found.weights, half_width, body.displacement
+            solution.space, response, solution.fields, solution.weights, half_width, body.displacement
         )
 
 
@@ -185,7 +189,7 @@ def displacement_under_punch(
     Args:
         scene: the scene.
         numbers: of the states, as in :func:`chosen`.
-        degree: polynomial degree; None for that which the scene's tolerance suggests.
+        degree: polynomial degree; None for the degree that the scene's tolerance suggests.
 
     Returns:
         Positions over a, (n,), and u and v [m] relative to the surface 100 a away, (states, 2, n).
@@ -195,32 +199,32 @@ def displacement_under_punch(
         SolveError: the equations could not be solved.
     """
     X, fields = np.empty(0), []
-    for one in solved([_alone(state) for state in chosen(scene, numbers, [degree] * len(numbers))]):
-        nodes = one.space.contact
-        X = one.space.chart.surface_position(nodes.s)
+    for solution in solved([_alone(state) for state in chosen(scene, numbers, [degree] * len(numbers))]):
+        nodes = solution.space.contact
+        X = solution.space.chart.surface_position(nodes.s)
         at_nodes = np.empty((2, len(nodes.s)))
         for i in (0, 1):
-            values = [field.getValues(nodes.dofs(i)) for field in one.fields]
-            at_nodes[i, nodes.owned] = scene.body.displacement * (one.weights @ np.array(values))
+            values = [field.getValues(nodes.dofs(i)) for field in solution.fields]
+            at_nodes[i, nodes.owned] = scene.body.displacement * (solution.weights @ np.array(values))
         fields.append(at_nodes)
     return X, np.array(fields)
 
 
 def _alone(state: OneState) -> OneState:
-    """The same with a mesh that no other rank shares."""
+    """State with a mesh that no other rank shares."""
     assert state.plan.fem
     return replace(state, plan=replace(state.plan, fem=replace(state.plan.fem, shared_speeds=True)))
 
 
-def _for_finite_elements(scene: Scene, wanted: set[float]) -> Scene:
-    """The scene with finite elements, at all its speeds that these can do, and those that are wanted.
+def _for_finite_elements(scene: Scene, speeds: set[float]) -> Scene:
+    """Scene with finite elements, at all its speeds that these can solve, and at the given speeds.
 
     All speeds share one mesh; with the same speeds and places it is that of a run. States are steady
     ones, whatever else the scene asks for.
     """
     steady = tuple(name for name in scene.output.quantities if name not in FRICTIONS)
     every = order(scene).speeds
-    possible = tuple(v for v in every if v in wanted or scene.solid.response(v).margin > 0.0)
+    possible = tuple(v for v in every if v in speeds or scene.solid.response(v).margin > 0.0)
     strokes = tuple(
         stroke if isinstance(stroke, str) else replace(stroke, speed=None)
         for stroke in scene.motion.strokes
@@ -241,7 +245,7 @@ def _check_states(scene: Scene, degrees: Sequence[int | None]) -> None:
             "layer: found layers, expected a uniform solid for fields of finite elements; "
             'output.quantities = ["interior"] gives the stresses inside layers'
         )
-    # What the scene fixes, or what its rule gives, which is one more for given tractions.
+    # The scene fixes the degree, or its rule gives it, which is one more for prescribed tractions.
     lowest, highest = min(scene.solve.degree or DEGREES[0], DEGREES[0]), DEGREES[1] + 1
     for degree in degrees:
         if degree is not None and not lowest <= degree <= highest:
@@ -253,7 +257,7 @@ def _check_states(scene: Scene, degrees: Sequence[int | None]) -> None:
         )
 
 
-#: What a field may hold, by name: (unit, long name).
+#: Quantities of a field, by name: (unit, long name).
 ABOUT = {
     "displacement": ("m", "displacement relative to the surface 100 a away"),
     "sigma_XX": ("Pa", "in-plane normal stress along X"),
@@ -269,10 +273,10 @@ ABOUT = {
         "largest difference of sigma_XX, sigma_YY, sigma_XY from the closed form, NaN on the surface",
     ),
 }
-#: What viewers colour by unasked.
+#: Quantity by which viewers colour a field by default.
 COLOURED = "von_mises_for_colours"
 
-#: Stress over N/(2a) from which that has one colour.
+#: Stress over N/(2a) beyond which that quantity has one colour.
 _BRIGHT = 2.0
 
 #: Depth over a above which a point counts as on the surface, where the potentials do not hold.
@@ -281,7 +285,7 @@ _SURFACE = 1e-14
 
 @dataclass(frozen=True)
 class StateField:
-    """One state of a scene on small quadrilaterals, in SI.
+    """Field of a state of a scene on small quadrilaterals, in SI.
 
     Attributes:
         points: positions [m], (n, 2).
@@ -315,37 +319,39 @@ def write_fields(
     with finite_elements_installed():
         from mpi4py import MPI
     if MPI.COMM_WORLD.rank > 0:
-        for found in solved(states):
-            found.comm.send(_piece(found, extent), 0)
+        for solution in solved(states):
+            solution.comm.send(_piece(solution, extent), 0)
         return
     from galinx.postprocess.hdf5 import vtkhdf
 
     steps = (
-        vtkhdf.Step(float(found.state.number), _pieces(found, extent), _told(scene, found.state))
-        for found in solved(states)
+        vtkhdf.Step(
+            float(solution.state.number), _pieces(solution, extent), _attributes(scene, solution.state)
+        )
+        for solution in solved(states)
     )
     vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(states) > 1)
 
 
-def _pieces(found: Solved, extent: float) -> Iterable[StateField]:
-    """Those of all ranks, on rank 0, which has one of another rank at a time."""
-    comm = found.comm
+def _pieces(solution: Solved, extent: float) -> Iterable[StateField]:
+    """Pieces of the field of all ranks, on rank 0, which holds one of another rank at a time."""
+    comm = solution.comm
     others = (comm.recv(source=rank) for rank in range(1, comm.size))
-    return chain([_piece(found, extent)], others)
+    return chain([_piece(solution, extent)], others)
 
 
 def state_field(
     scene: Scene, number: int, extent: float = 10.0, degree: int | None = None
 ) -> StateField | None:
-    """One state of a scene from one factorisation, on rank 0; None on the others. Collective.
+    """Field of a state from one factorisation, on rank 0; None on the others. Collective.
 
     Whatever the scene asks for and by whichever method, this is done with finite elements.
 
     Args:
         scene: the scene.
         number: of the state, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
-        extent: what is shown is |X|, |Y| <= extent, over a.
-        degree: polynomial degree; that which the scene's tolerance suggests if not given.
+        extent: the field is cut at |X|, |Y| = extent, over a.
+        degree: polynomial degree; None for the degree that the scene's tolerance suggests.
 
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
@@ -354,9 +360,9 @@ def state_field(
     _check(scene, extent)
     (state,) = chosen(scene, [number], [degree], extent)
     with closing(solved([state])) as states:
-        found = next(states)
-        whole = _sampled(found, extent).gathered(found.comm)
-        return None if whole is None else _in_si(found, whole)
+        solution = next(states)
+        whole = _sampled(solution, extent).gathered(solution.comm)
+        return None if whole is None else _in_si(solution, whole)
 
 
 def _check(scene: Scene, extent: float) -> None:
@@ -368,14 +374,14 @@ def _check(scene: Scene, extent: float) -> None:
         )
 
 
-def _told(scene: Scene, state: OneState) -> dict[str, Any]:
-    """What a file says of a state beside its fields; numbers in SI."""
+def _attributes(scene: Scene, state: OneState) -> dict[str, Any]:
+    """Attributes of a state in a file beside its fields; numbers in SI."""
     body = state.task.body
     return {
         "title": scene.title,
         "state": state.number,
-        **state.told,
-        "speed": state.told["c"] * body.solid.c_s,
+        **state.parameters,
+        "speed": state.parameters["c"] * body.solid.c_s,
         "load": body.load,
         "half_width": body.half_width,
         "mean_pressure": body.stress,
@@ -384,9 +390,9 @@ def _told(scene: Scene, state: OneState) -> dict[str, Any]:
     }
 
 
-def _piece(found: Solved, extent: float) -> StateField:
-    """This rank's."""
-    return _in_si(found, _sampled(found, extent))
+def _piece(solution: Solved, extent: float) -> StateField:
+    """This rank's piece of the state's field, in SI."""
+    return _in_si(solution, _sampled(solution, extent))
 
 
 def _sampled(found: Solved, extent: float) -> Any:
@@ -400,11 +406,11 @@ def _sampled(found: Solved, extent: float) -> Any:
 
 
 def _in_si(solution: Solved, sampled: Any) -> StateField:
-    """Lengths in m, stresses in Pa, for the scene's load per depth."""
+    """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa."""
     state, task = solution.state, solution.state.task
     body, solid = task.body, task.body.solid
-    found = task.response.stresses(sampled.gradient)
-    XX, YY, XY = body.stress * found
+    stresses = task.response.stresses(sampled.gradient)
+    XX, YY, XY = body.stress * stresses
     ZZ = solid.σ_ZZ(XX, YY, XY)
     mises = von_mises(XX, YY, XY, ZZ)
     displacement = body.displacement * sampled.displacement
@@ -423,29 +429,29 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         exact: FlatPunch | GivenPressure = FlatPunch(task.response, state.g)
         if body.pressure:
             exact = GivenPressure(task.response, state.g, body.pressure)
-        data["sigma_error"] = body.stress * _error(exact, sampled.points, found)
+        data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
     return StateField(body.half_width * sampled.points, sampled.quads, data)
 
 
 def _inside(points: NDArray) -> NDArray[np.bool_]:
-    """Which points lie below the surface, (n,)."""
+    """True for points below the surface, (n,)."""
     X, Y = points.T
     return -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
 
 
 def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
-    """Under the punch over N/(2a), 0 beside it, NaN at its edges and inside, (n,)."""
+    """Contact pressure over N/(2a), 0 beside the punch, NaN at its edges and inside, (n,)."""
     X = points[:, 0]
-    on, found = ~_inside(points), np.full(len(points), np.nan)
+    on, pressure = ~_inside(points), np.full(len(points), np.nan)
     under = on & under_punch(X)
-    found[on & (np.abs(X) > 1.0)] = 0.0
-    found[under] = -solution.pressure(X[under])
-    return found
+    pressure[on & (np.abs(X) > 1.0)] = 0.0
+    pressure[under] = -solution.pressure(X[under])
+    return pressure
 
 
-def _error(exact: FlatPunch | GivenPressure, points: NDArray, found: NDArray) -> NDArray[np.float64]:
+def _error(exact: FlatPunch | GivenPressure, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)
     X, Y = points[inside].T
-    error[inside] = np.abs(found[:, inside] - exact.inside(X, Y)).max(axis=0)
+    error[inside] = np.abs(stresses[:, inside] - exact.inside(X, Y)).max(axis=0)
     return error

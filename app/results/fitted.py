@@ -1,6 +1,7 @@
-"""A law fitted to measured friction: as a section of a scene, and drawn.
+"""Measured friction, and the law that is fitted to it.
 
-Measured friction: a table of comma-separated values, units in its head.
+Friction is read from a table of comma-separated values with units in its head. A fitted law is written as
+a section of a scene, and drawn beside the measured friction.
 """
 
 import csv
@@ -41,7 +42,7 @@ class Measured:
         t: time [s]; that of a slip at 1 m/s where slip was measured alone.
         X: position [m].
         f: friction coefficient.
-        timed: was time measured?
+        timed: True where time was measured.
     """
 
     t: NDArray[np.float64]
@@ -75,22 +76,22 @@ def read(path: Path) -> Measured:
     numbers = np.array([_row(path, line, row, factors) for line, row in rows[1:]]).reshape(
         -1, len(factors)
     )
-    found = dict(zip(factors, numbers.T))
-    clock = found.get("time", found.get("slip", np.zeros(0)))
+    columns = dict(zip(factors, numbers.T))
+    clock = columns.get("time", columns.get("slip", np.zeros(0)))
     if len(clock) < 3 or (np.diff(clock) <= 0.0).any():
-        name = "time" if "time" in found else "slip"
+        name = "time" if "time" in columns else "slip"
         wrong = int(np.argmax(np.diff(clock) <= 0.0)) + 1 if len(clock) >= 3 else len(clock) - 1
         line = rows[min(wrong + 1, len(rows) - 1)][0]
         raise BadInput(f"{path}, line {line}: expected three or more rows in which the {name} grows")
-    if "slip" in found:
-        return _from_rest(found["slip"], found["f"])
-    if not np.ptp(found["position"]):
+    if "slip" in columns:
+        return _from_rest(columns["slip"], columns["f"])
+    if not np.ptp(columns["position"]):
         raise BadInput(f"{path}: found one position in all rows, expected a motion")
-    return Measured(found["time"], found["position"], found["f"], True)
+    return Measured(columns["time"], columns["position"], columns["f"], True)
 
 
 def _from_rest(slip: NDArray, f: NDArray) -> Measured:
-    """Slip is counted from rest, whether a row is there or not."""
+    """Friction over a slip that is counted from rest, whether the table has a row of rest or not."""
     if slip[0] < 0.0:
         raise BadInput(f"found the slip {slip[0]:g} m, expected slips from 0 on")
     if slip[0] > 0.0:
@@ -100,7 +101,7 @@ def _from_rest(slip: NDArray, f: NDArray) -> Measured:
 
 def _columns(path: Path, heads: list[str]) -> dict[str, tuple[int, float]]:
     """Number of the column, and its unit in SI, by name."""
-    found: dict[str, tuple[int, float]] = {}
+    columns: dict[str, tuple[int, float]] = {}
     for n, head in enumerate(heads):
         match = _HEAD.fullmatch(head)
         name = match[1].lower() if match else ""
@@ -111,10 +112,10 @@ def _columns(path: Path, heads: list[str]) -> dict[str, tuple[int, float]]:
             factor = 1.0 if unit in ("", "1") else to_si(f"1 {unit}", _UNITS[name])
         except ValueError as error:
             raise BadInput(f"{path}, line 1, {name}: {error}") from None
-        found[name] = n, factor
+        columns[name] = n, factor
     for table in _TABLES:
-        if set(table) <= found.keys():
-            return {name: found[name] for name in table}
+        if set(table) <= columns.keys():
+            return {name: columns[name] for name in table}
     raise BadInput(f"{path}, line 1: found the columns {excerpt(heads)}, expected {_FORM}")
 
 
@@ -137,12 +138,12 @@ def _row(path: Path, line: int, row: list[str], factors: dict[str, tuple[int, fl
 def fitted(
     name: str, data: Path, fixed: list[str], started: list[str], speed: str, rows: int
 ) -> tuple[Measured, Found]:
-    """Fit a law to a table.
+    """Measured friction of a table, and a law fitted to it.
 
     Args:
         name: of the law.
         data: the table.
-        fixed, started: ``KEY=VALUE`` of parameters that are known, and that the search begins with.
+        fixed, started: ``KEY=VALUE`` of parameters that are held, and of starting values.
         speed: of a table of slips, with its unit.
         rows: of a law's table.
 
@@ -163,10 +164,10 @@ def fitted(
                 raise ValueError(f"--speed: found {V:g} m/s, expected > 0")
             measured = replace(measured, t=measured.t / V)
         way = moves(measured.t, measured.X, kind.depends_on_speed)
-        found = fit(kind, way, measured.f, _values(name, fixed), _values(name, started), rows)
+        result = fit(kind, way, measured.f, _values(name, fixed), _values(name, started), rows)
     except ValueError as error:
         raise BadInput(f"{data}, {name}: {error}") from None
-    return measured, found
+    return measured, result
 
 
 def _values(name: str, words: list[str]) -> dict[str, Any]:
@@ -175,26 +176,26 @@ def _values(name: str, words: list[str]) -> dict[str, Any]:
     Raises:
         ValueError: one of them is none.
     """
-    known = parameters(LAWS[name])
-    found: dict[str, Any] = {}
+    declared = parameters(LAWS[name])
+    values: dict[str, Any] = {}
     for word in words:
         key, equals, text = word.partition("=")
         key = key.strip()
-        if not equals or key not in known:
-            raise ValueError(f"found {short(word)!r}, expected KEY=VALUE with {', '.join(known)}")
-        parameter = known[key]
+        if not equals or key not in declared:
+            raise ValueError(f"found {short(word)!r}, expected KEY=VALUE with {', '.join(declared)}")
+        parameter = declared[key]
         try:
             if parameter.options:
-                found[key] = Choice(parameter.options)(text.strip())
+                values[key] = Choice(parameter.options)(text.strip())
             elif parameter.columns:
-                found[key] = Rows(parameter.columns)(json.loads(text))
+                values[key] = Rows(parameter.columns)(json.loads(text))
             else:
-                found[key] = to_si(_number(text), parameter.unit)
-                if found[key] not in parameter.range:
-                    raise ValueError(f"found {found[key]:g}, expected {parameter.range}")
+                values[key] = to_si(_number(text), parameter.unit)
+                if values[key] not in parameter.range:
+                    raise ValueError(f"found {values[key]:g}, expected {parameter.range}")
         except ValueError as error:
             raise ValueError(f"{key}: {error}") from None
-    return found
+    return values
 
 
 def _number(text: str) -> float | str:
@@ -204,39 +205,41 @@ def _number(text: str) -> float | str:
         return text.strip()
 
 
-def section(name: str, data: Path, measured: Measured, found: Found) -> str:
-    """The section of a scene, with what each number is good for."""
-    known, residual = parameters(type(found.law)), found.f - measured.f
+def section(name: str, data: Path, measured: Measured, result: Found) -> str:
+    """Section of a scene with the fitted law, and the deviation of each number as a comment."""
+    declared, residual = parameters(type(result.law)), result.f - measured.f
     rms = float(np.sqrt(np.nanmean(residual**2)))
-    errors = dict(zip(found.names, found.deviations.tolist()))
+    errors = dict(zip(result.names, result.deviations.tolist()))
     lines = [
-        f"# Fitted by galinx: {type(found.law).about} to {np.isfinite(residual).sum()} samples",
+        f"# Fitted by galinx: {type(result.law).about} to {np.isfinite(residual).sum()} samples",
         f"# of {data.name}; root mean square of the residuals of f: {rms:.3g} (dimensionless);",
         "# ± is one standard deviation",
         "[friction]",
         f"model = {json.dumps(name)}",
     ]
-    for key, value in found.values.items():
-        unit = known[key].unit
+    for key, value in result.values.items():
+        unit = declared[key].unit
         text = f"{value:.9g} {unit}" if unit else value
-        if known[key].columns:
+        if declared[key].columns:
             text = [[float(f"{number:.9g}") for number in row] for row in value]
         elif not unit and not isinstance(value, str):
             text = float(f"{value:.9g}")
-        said = _deviation(key, errors, unit or "dimensionless" * (not known[key].options))
+        said = _deviation(key, errors, unit or "dimensionless" * (not declared[key].options))
         lines.append(f"{key} = {json.dumps(text)}{said}")
     return "\n".join(lines) + "\n"
 
 
 def _deviation(key: str, errors: dict[str, float], unit: str) -> str:
-    """A comment: how far a number may be off, or that it was given."""
+    """Comment on a number: its unit, and its standard deviation or that it was given."""
     mine = {name: value for name, value in errors.items() if name.partition("[")[0] == key}
     if not mine:
         return f"  # {unit + ', ' if unit else ''}given"
-    told = ", ".join("not determined" if np.isnan(value) else f"± {value:.2g}" for value in mine.values())
-    return f"  # {unit if key in mine else 'in SI'}, {told}"
+    texts = ", ".join(
+        "not determined" if np.isnan(value) else f"± {value:.2g}" for value in mine.values()
+    )
+    return f"  # {unit if key in mine else 'in SI'}, {texts}"
 
 
-def figure(measured: Measured, found: Found) -> Any:
-    """Measured and fitted friction, and what lies between."""
-    return fitted_figure(measured.t, measured.X, measured.f, found.f, measured.timed)
+def figure(measured: Measured, result: Found) -> Any:
+    """Figure of measured and fitted friction, and their difference."""
+    return fitted_figure(measured.t, measured.X, measured.f, result.f, measured.timed)

@@ -1,8 +1,7 @@
 """The report of an archive: one HTML page that needs nothing else.
 
-What an archive says of a contact, in a few lines with units: the results that a report begins with.
-
-Tables and curves of an archive as the scripts of a page read them.
+It begins with the results in a few lines with units; its table of states and its curves of stresses are
+written as the scripts of the page read them.
 """
 
 import json
@@ -39,15 +38,15 @@ from ..console import program
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
+    has_study_digits,
     intensities,
     intensity_rows,
-    like_the_studys,
     limit_of_steady_motion,
 )
 from .drawings import Drawing
 from .si import in_si, scaling, stress_of_states
 
-#: Of units, and where the one stands that means nothing.
+#: Prefixes of units, and the position of the empty one.
 _PREFIXES, _MIDDLE = "pnµm kMGT", 4
 
 
@@ -99,7 +98,7 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
 
 
 def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
-    """Of contacts whose ends are found."""
+    """Half-widths, middles and largest pressures of contacts with free ends."""
     for row in _either(data, states.HALF_WIDTH):
         yield Answer("Half-width of the contact", *_span(data[row.path], "m"))
     for row in _either(data, states.CENTRE):
@@ -133,7 +132,7 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
 
 
 def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
-    """What may part a layer from what it lies on: shear, and tension across and along."""
+    """Largest stresses that may part a layer from what it lies on: shear and tension."""
     method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
     if method is None:
         return
@@ -179,21 +178,21 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
 def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     for name, rows in _LIMITS:
         for row in _either(data, rows):
-            told = in_si(row, "", scene, data)
-            if told and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
-                form = "{:.4g}" if told.unit == "1" else ""
-                yield Answer(name, *_span(told.of(data[row.path]), told.unit, form))
+            scaled = in_si(row, "", scene, data)
+            if scaled and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
+                form = "{:.4g}" if scaled.unit == "1" else ""
+                yield Answer(name, *_span(scaled.of(data[row.path]), scaled.unit, form))
 
 
 def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
-    """One of several methods."""
+    """Quantity by the first method that the archive has, as a list of one or none."""
     return [
         rows[method] for method in (FEM, CLOSED_FORM, SIE) if method in rows and rows[method].path in data
     ][:1]
 
 
 def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
-    """Smallest and largest of the states, and which these are."""
+    """Smallest and largest value of the states, and the numbers of these states."""
     if not np.isfinite(values).any():
         return "none", ""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
@@ -201,24 +200,24 @@ def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
 
 
 def _words(least: float, most: float, low: int, high: int, unit: str, form: str) -> tuple[str, str]:
-    told = [form.format(value) if form else _engineering(value, unit) for value in (least, most)]
-    if told[0] == told[1]:
-        return told[0], ""
-    return " to ".join(told), f"states {low} and {high}"
+    texts = [form.format(value) if form else _engineering(value, unit) for value in (least, most)]
+    if texts[0] == texts[1]:
+        return texts[0], ""
+    return " to ".join(texts), f"states {low} and {high}"
 
 
 def _engineering(value: float, unit: str) -> str:
-    """With four digits and a prefix: 113.8 GPa."""
+    """Number with four digits and a prefix: 113.8 GPa."""
     if value == 0.0:
         return f"0 {unit}"
     size = floor(log10(abs(float(f"{value:.3e}"))))
     thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
-    told = f"{value / 1000.0**thousands:.{max(3 + 3 * thousands - size, 0)}f}"
-    return f"{told} {_PREFIXES[thousands + _MIDDLE].strip()}{unit}".replace("-", "−")
+    digits = f"{value / 1000.0**thousands:.{max(3 + 3 * thousands - size, 0)}f}"
+    return f"{digits} {_PREFIXES[thousands + _MIDDLE].strip()}{unit}".replace("-", "−")
 
 
 def summary(data: dict[str, Any], scene: Scene) -> str:
-    """What was computed, in two sentences with units."""
+    """Scene and finite elements of an archive, in two sentences with units."""
     count, c = len(data[states.FRICTION.path]), np.unique(data[states.SPEED.path])
     solid, c_s = scene.solid, scene.solid.c_s
     moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
@@ -238,8 +237,8 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
             f" Finite elements: {mesh} mesh, {cells} cells of degree up to {degree}, "
             f"{unknowns} unknowns, tolerance {scene.solve.tolerance:g}."
         )
-        if told := solved_speeds(data):
-            text += f" {told.capitalize()}."
+        if solved := solved_speeds(data):
+            text += f" {solved.capitalize()}."
     return text
 
 
@@ -251,11 +250,11 @@ _DIGITS, _OF_ERRORS = 6, 2
 
 
 def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, Any]:
-    """Every state with all that has one value a state: what differs between states first.
+    """Table of all states with every quantity of one value a state, parameters that differ first.
 
     Args:
         data: datasets by path.
-        scaling: how quantities are told.
+        scaling: names and units of the columns.
     """
     apart = parameters(data)
     others = [
@@ -276,7 +275,7 @@ def states_table(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[s
     columns += [_column(row, scaling) for row in shown]
     cells = [
         list(range(kept)),
-        *(_plain(_told(row, data[row.path][:kept], scaling), 12) for row in shown),
+        *(_plain(_scaled(row, data[row.path][:kept], scaling), 12) for row in shown),
     ]
     same = ", ".join(f"{_head(row)} = {data[row.path][0]:g}" for row in constant if row.type != TEXT)
     note = f"{counted(count, 'state')}; click on a head to sort."
@@ -292,63 +291,63 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
 
     Args:
         data: datasets by path.
-        scaling: how quantities are told.
+        scaling: units of the stresses.
     """
-    known = {
+    quantities = {
         "σ_XX": stresses.IN_PLANE | layers.IN_PLANE, "σ_YY": stresses.PRESSURE | layers.PRESSURE
     }  # fmt: skip
-    methods = [m for m in METHODS if all(rows[m].path in data for rows in known.values())]
+    methods = [m for m in METHODS if all(rows[m].path in data for rows in quantities.values())]
     if not methods:
         return None
     X = data[stresses.SURFACE_X.path]
     order, apart = np.argsort(X, kind="stable"), parameters(data)
     count = len(data[next(iter(apart))])
-    most = max(_NUMBERS // (len(X) * len(methods) * len(known)), 1)
-    some = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
-    told = scaling(known["σ_XX"][methods[0]], "")
-    in_units = told is not None and told.unit == "Pa"
-    factors = 1e-6 * told.factor * np.ones(count) if told and in_units else np.ones(count)
+    most = max(_NUMBERS // (len(X) * len(methods) * len(quantities)), 1)
+    shown = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+    scaled = scaling(quantities["σ_XX"][methods[0]], "")
+    in_units = scaled is not None and scaled.unit == "Pa"
+    factors = 1e-6 * scaled.factor * np.ones(count) if scaled and in_units else np.ones(count)
     values = [
         [
-            [_plain(factors[i] * data[rows[method].path][i][order], 5) for i in some.tolist()]
-            for rows in known.values()
+            [_plain(factors[i] * data[rows[method].path][i][order], 5) for i in shown.tolist()]
+            for rows in quantities.values()
         ]
         for method in methods
     ]
     varied = [row for row in apart.values() if len(np.unique(data[row.path])) > 1]
     names = [
-        ", ".join([str(i), *(_value(row, data[row.path][i]) for row in varied)]) for i in some.tolist()
+        ", ".join([str(i), *(_value(row, data[row.path][i]) for row in varied)]) for i in shown.tolist()
     ]
     note = "In MPa." if in_units else "Over N/(2a)."
-    note += f" {len(some)} of {count} states." * (len(some) < count)
+    note += f" {len(shown)} of {count} states." * (len(shown) < count)
     return {
         "note": note,
         "data": {
             "unit": "[MPa]" if in_units else "/ (N/2a)",
-            "X": _plain(X[order], 9), "states": names, "quantities": list(known),
+            "X": _plain(X[order], 9), "states": names, "quantities": list(quantities),
             "methods": [METHODS[method] for method in methods], "values": values,
         },
     }  # fmt: skip
 
 
-def _told(row: Quantity, values: NDArray, scaling: Scaling) -> NDArray:
-    told = scaling(row, "")
-    return values if told is None else told.of(values, slice(len(values)))
+def _scaled(row: Quantity, values: NDArray, scaling: Scaling) -> NDArray:
+    scaled = scaling(row, "")
+    return values if scaled is None else scaled.of(values, slice(len(values)))
 
 
 def _column(row: Quantity, scaling: Scaling) -> dict[str, Any]:
     name = row.path.partition("/")[2].replace("/", "_")
-    told = scaling(row, name) or as_archived(row, name)
+    scaled = scaling(row, name) or as_archived(row, name)
     head = _head(row)
-    if told.name != name:
-        head = told.name if row.symbol else head.replace(" over a", "")
-    unit = "" if told.unit in ("1", "none") else f" [{told.unit}]"
+    if scaled.name != name:
+        head = scaled.name if row.symbol else head.replace(" over a", "")
+    unit = "" if scaled.unit in ("1", "none") else f" [{scaled.unit}]"
     error = "error" in row.path or "estimate" in row.path
     digits = None if row.type == TEXT else _OF_ERRORS if error else _DIGITS
     return {
         "head": head + unit,
-        "name": told.name,
-        "csv": told.name + unit,
+        "name": scaled.name,
+        "csv": scaled.name + unit,
         "about": row.about,
         "digits": digits,
     }
@@ -376,7 +375,7 @@ def _plain(values: NDArray, digits: int) -> list[Any]:
     return [None if value != value else float(f"{value:.{digits}g}") for value in values.tolist()]
 
 
-#: What words of a report mean; those that it does not use are left out.
+#: Meanings of a report's terms; those that it does not use are left out.
 TERMS = (
     ("a, N", "half-width of the punch, and load per unit of depth"),
     ("c", "speed over the shear wave speed of the solid, dimensionless"),
@@ -402,10 +401,10 @@ class Report:
     """A report in the making.
 
     Args:
-        data, attributes: an archive.
-        scene: the archive's.
+        data, attributes: datasets by path, and attributes of the root, of an archive.
+        scene: of the archive.
         sheets: tables before that of the states; the published ones where the archive has their states.
-        si: are the table of states and the curves in SI?
+        si: True for the table of states and the curves in SI.
     """
 
     def __init__(
@@ -422,14 +421,14 @@ class Report:
         self._pictures: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:
-        """Take a figure in; it can be saved elsewhere afterwards.
+        """Add a figure; it can be saved elsewhere afterwards.
 
         Args:
             drawing: which.
             png: lines as a file's bytes, where there is one already; else they are drawn for the page, as
                 maps always are, whose files are large.
         """
-        picture = {"caption": drawing.told, "pixels": drawing.pixels, "width": None}
+        picture = {"caption": drawing.full_caption, "pixels": drawing.pixels, "width": None}
         if png is None or drawing.pixels:
             picture["source"] = in_a_page(drawing.figure, drawing.pixels)
         else:  # as wide as it would be if it were drawn for the page
@@ -437,7 +436,7 @@ class Report:
         self._pictures.append(picture)
 
     def text(self) -> str:
-        """The page."""
+        """The page as HTML."""
         attributes, data, scene = self._attributes, self._data, self._scene
         seconds, unit = data[runs.SECONDS.path], attributes["half_width"] / attributes["c_s"]
         longest = max(float(seconds.max()), 1e-9)
@@ -464,23 +463,25 @@ class Report:
             "program": program(),
         }
         words = str(content | {"pictures": [picture["caption"] for picture in self._pictures]})
-        terms = [(term, told) for term, told in TERMS if any(word in words for word in term.split(", "))]
+        terms = [
+            (term, meaning) for term, meaning in TERMS if any(word in words for word in term.split(", "))
+        ]
         return render(content | {"terms": terms})
 
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
     """The study's tables that the archive has all states of, for the study's solid."""
-    if not like_the_studys(scene.solid):
+    if not has_study_digits(scene.solid):
         return []
-    a, found = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
+    a, rows_by_name = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
     return [
         intensities(name, rows, limit_of_steady_motion(name, data, a))
-        for name, rows in found.items()
+        for name, rows in rows_by_name.items()
         if rows
     ]
 
 
 def _versions(attributes: dict[str, Any]) -> str:
-    told = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
-    text = ", ".join(f"{name} {version}" for name, version in told.items())
+    versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
+    text = ", ".join(f"{name} {version}" for name, version in versions.items())
     return f"{text}; {attributes['machine']}; {attributes.get('created', 'not archived')}"

@@ -1,6 +1,6 @@
 """Results in Python: everything the command line does in a few lines, with or without files.
 
-How a result looks in a notebook: its title, verdict and states as HTML.
+In a notebook a result shows its title, verdict and states as HTML.
 """
 
 import json
@@ -25,10 +25,10 @@ _COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
 def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
-    """A few lines and a table; all of it plain, without scripts or styles of its own.
+    """A result as HTML: a few lines and a table, without scripts or styles of its own.
 
     Args:
-        data, attributes: of an archive.
+        data, attributes: datasets by path, and attributes of the root, of an archive.
     """
     verdict = attributes["verdict"]
     colour = _COLOURS.get(verdict, "inherit")
@@ -50,13 +50,13 @@ def _cells(row: Iterable[str]) -> str:
 
 
 def _lines(texts: Iterable[str]) -> str:
-    """Small print."""
-    told = "<br>".join(map(escape, texts))
-    return f"<p><small>{told}</small></p>" if told else ""
+    """Lines of small print as HTML, "" for none."""
+    text = "<br>".join(map(escape, texts))
+    return f"<p><small>{text}</small></p>" if text else ""
 
 
 class Result:
-    """What was computed of a scene.
+    """Result of computing a scene.
 
     Args:
         data: datasets by their path in an archive; units and meanings in ``docs/archive.md``.
@@ -75,7 +75,7 @@ class Result:
         return f"<galinx result {self.attributes['title']!r}: {count} state{plural}, {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        """For notebooks: verdict and states."""
+        """Verdict and states as HTML, for notebooks."""
 
         return html(self.data, self.attributes)
 
@@ -103,7 +103,7 @@ class Result:
 
     @cached_property
     def grid(self) -> Any:
-        """The same over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
+        """xarray.Dataset over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
         from galinx.postprocess.named import over_parameters
 
         return over_parameters(self.dataset)
@@ -112,10 +112,10 @@ class Result:
         """Figures of the result, as :class:`galinx.app.pictures.choice.Drawing`.
 
         Args:
-            options: what is drawn, the attributes of :class:`galinx.app.pictures.choice.Choice`.
+            options: attributes of :class:`galinx.app.pictures.choice.Choice`.
 
         Raises:
-            BadInput: what is wanted is not there.
+            BadInput: the result lacks a chosen figure or quantity.
         """
         from ..pictures.choice import Choice
         from .drawings import of_archive
@@ -128,7 +128,7 @@ class Result:
         Args:
             name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
                 friction where there are no stresses.
-            options: what is drawn, as in :meth:`drawings`.
+            options: as in :meth:`drawings`.
 
         Raises:
             BadInput: the result has no such figure.
@@ -155,10 +155,10 @@ class Result:
             overwrite: files that are no figures of galinx are replaced, too.
             formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
             dpi: dots per inch of what is made of pixels.
-            options: what is drawn, as in :meth:`drawings`.
+            options: as in :meth:`drawings`.
 
         Raises:
-            BadInput: what is wanted is not there, or there is no such format.
+            BadInput: the result lacks a chosen figure or quantity, or there is no such format.
             Occupied: another file than a figure of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
@@ -168,10 +168,10 @@ class Result:
         from .drawings import write
 
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
-        return [one.path for one in write(self.data, self.scene, Choice(**options), files)]
+        return [file.path for file in write(self.data, self.scene, Choice(**options), files)]
 
     def report(self, path: Path | str, overwrite: bool = False, si: bool = False) -> None:
-        """Write a self-contained HTML page, its table of states and its curves in SI where asked for.
+        """Write a self-contained HTML page, its table of states and its curves in SI on request.
 
         Raises:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
@@ -209,7 +209,7 @@ class Result:
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
         numbers = [state] if isinstance(state, int) else list(state)
-        write_fields(self.scene, numbers, target, extent, [self._degree(one) for one in numbers])
+        write_fields(self.scene, numbers, target, extent, [self._degree(number) for number in numbers])
 
     def displacement(self, state: int = 0, extent: float = 10.0) -> Any:
         """The displacement of a state as a dolfinx function, to go on with in dolfinx; on one rank only.
@@ -270,17 +270,17 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     from ..scene.changes import changed
     from ..scene.library import templates
 
-    known = templates()
-    if name not in known:
-        raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), known)}")
-    return scenes.parse(changed(known[name].text, changes or {}), name)
+    available = templates()
+    if name not in available:
+        raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), available)}")
+    return scenes.parse(changed(available[name].text, changes or {}), name)
 
 
 def compute(scene: Scene, progress: bool = False) -> Result:
     """Compute a scene in memory.
 
     Args:
-        scene: what is asked for.
+        scene: the scene.
         progress: show a bar on a terminal.
 
     Raises:

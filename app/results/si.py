@@ -1,4 +1,5 @@
-"""Quantities of archives in SI: what is over N/(2a), a and the wave speed, in Pa, m and m/s."""
+"""Quantities of archives in SI: stresses in Pa instead of over N/(2a), lengths in m instead of over a,
+speeds in m/s."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,16 +16,16 @@ from ..plan.states import order
 from ..scene.scene import Scene
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
-#: Ends of names of places along X: where ends are found they are told from the punch's axis.
+#: Ends of names of places along X: under contacts with free ends they count from the punch's axis.
 _ALONG_X = ("X_over_a", "pressure_position")
 
 
 def scaling(scene: Scene | None, data: Mapping[str, Any]) -> Scaling:
-    """How quantities are told: in SI of a scene, or as archived where none is given.
+    """Scaling of quantities to the SI units of a scene, or as archived where none is given.
 
     Args:
-        scene: that the archive is of.
-        data: of the archive, by path: contacts of states, where these differ.
+        scene: of the archive; None for quantities as archived.
+        data: datasets of the archive by path, with the contacts of states where these differ.
     """
     if scene is None:
         return as_archived
@@ -35,8 +36,8 @@ def unit_of_stress(scene: Scene) -> Any:
     """N/(2a) [Pa], that of each state where they differ in their load, (states,)."""
     if len(scene.punch.loads) == 1:
         return scene.body.stress
-    known = order(scene)
-    return scene.body.loaded(known.load(slice(0, len(known)))).stress
+    sequence = order(scene)
+    return scene.body.loaded(sequence.load(slice(0, len(sequence)))).stress
 
 
 def stress_of_states(data: Mapping[str, Any], scene: Scene) -> NDArray[np.float64]:
@@ -55,8 +56,8 @@ def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | Non
 
 
 def drawn_in_si(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
-    """What :class:`galinx.app.pictures.choice.Choice` is to know of units: ``unit``, and ``ends`` where
-    every state has its own."""
+    """Attributes of :class:`galinx.app.pictures.choice.Choice` for figures in SI: ``unit``, and ``ends``
+    where every state has its own."""
     ends = contacts_of_states(data)
     if not ends and len(scene.punch.loads) == 1:
         return {"unit": 1e-6 * unit_of_stress(scene)}
@@ -71,24 +72,24 @@ def in_si(row: Quantity, name: str, scene: Scene, data: Mapping[str, Any]) -> Sc
 
     Args:
         row: in the table of quantities.
-        name: what it is called as archived.
-        scene: that the archive is of.
-        data: of the archive, by path.
+        name: its name as archived.
+        scene: of the archive.
+        data: datasets of the archive by path.
 
     Returns:
-        None for what another quantity becomes.
+        The column's name, unit and factor; None for a quantity that equals another one in SI.
     """
     body = scene.body
     ends = contacts_of_states(data) if body.found else None
     if body.found and ends is None and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
-        return as_archived(row, name)  # no contact has been found
+        return as_archived(row, name)  # no contact is archived
     if row.unit == "N/(2a)":
         return Scaled(name, "Pa", stress_of_states(data, scene)[:, 0] if ends else unit_of_stress(scene))
     if row.path in _OVER_HALF_WIDTH:
-        told = name.removesuffix("_over_a")
+        name_in_si = name.removesuffix("_over_a")
         if ends is None:
-            return Scaled(told, "m", body.half_width)
-        return Scaled(told, "m", ends[0], ends[1] if row.path.endswith(_ALONG_X) else 0.0)
+            return Scaled(name_in_si, "m", body.half_width)
+        return Scaled(name_in_si, "m", ends[0], ends[1] if row.path.endswith(_ALONG_X) else 0.0)
     if row is SPEED:
         return Scaled("speed", "m/s", body.solid.c_s)
     return None if row is VELOCITY else as_archived(row, name)

@@ -23,7 +23,7 @@ from galinx.solvers.sie.closed_form import FlatPunch
 
 from ..pictures.choice import Choice, Drawing
 from ..pictures.friction import Loops
-from ..pictures.state_labels import PLACE, STROKE, C, Told
+from ..pictures.state_labels import PLACE, STROKE, C, StateLabels
 from ..pictures.surface import SHOWN, stresses_of
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
@@ -36,7 +36,7 @@ from .published import REFERENCE
 SS, HS = 4.786e-7, 0.6
 FM1, BM1, FM2 = "FM1", "BM1", "FM2"
 
-#: Parameters of Dahl's law, one varied after the other, and what the other two are then.
+#: Parameters of Dahl's law, one varied after the other, and the values of the other two meanwhile.
 _MU, _SIGMA, _DELTA = "mu_c", "sigma0_over_load", "delta"
 VARIED = {
     _MU: (0.1, 0.3, 0.5, 0.7),
@@ -90,15 +90,15 @@ _ENDS = (
 
 @dataclass(frozen=True)
 class Stresses:
-    """A figure of stresses: rows of panels, each with the same curves at a value of its own.
+    """A figure of stresses: rows of panels, each with the same curves at its own value of a parameter.
 
     Attributes:
-        caption: what to see in it.
+        caption: what the figure shows.
         at: parameters that all states share.
-        row, rows: parameter that tells the rows apart, and its values.
-        curve, curves: that of the curves.
-        speeds: whose stresses are lines, then markers; of one both are drawn, by the closed form as
-            lines, by finite elements as markers.
+        row, rows: parameter that distinguishes the rows, and its values.
+        curve, curves: parameter that distinguishes the curves, and its values.
+        speeds: over c_s, drawn as lines, then as markers; at a single speed the closed form is drawn as
+            lines, finite elements as markers.
     """
 
     caption: str
@@ -167,15 +167,15 @@ LAWS_SHOWN: dict[str, tuple[str, dict[str, tuple[Any, ...]]]] = {
 def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
     loops, fig6 = Loops(data, scene), scenes.read(SCENES / "fig6.toml")
-    reference = _state(loops.told, REFERENCE)
+    reference = _state(loops.labels, REFERENCE)
     yield Drawing("fig1", _PROBLEM, problem_figure())
     yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])]))
     yield Drawing("fig3", _PROCEDURE, procedure_figure())
     yield _block(scenes.read(SCENES / "box.toml"))
-    yield stresses_drawing("fig5", data, loops.told)
+    yield stresses_drawing("fig5", data, loops.labels)
     yield Drawing("fig6", _PARAMETERS, _loops(Loops(enumerate_states(fig6).datasets, fig6)))
     for name in ("fig7", "fig8", "fig9", "fig10"):
-        yield stresses_drawing(name, data, loops.told)
+        yield stresses_drawing(name, data, loops.labels)
     yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
     yield _laws(scene, data[SURFACE_X.path])
 
@@ -192,7 +192,7 @@ def _block(scene: Scene) -> Drawing:
 
 
 def _sinusoidal(scene: Scene) -> Drawing:
-    """Friction over time and position of a motion that is given point by point."""
+    """Friction over time and position of a motion that is prescribed point by point."""
     loops = Loops(enumerate_states(scene).datasets, scene)
     loop = loops.of(0, [])
     assert loop and scene.motion.path
@@ -213,13 +213,13 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         own = replace(scene, friction=friction, motion=motion)
         states = enumerate_states(own)
         loops = Loops(states.datasets, own)
-        of = [_state(loops.told, {STROKE: FM2, C: c}) for c in (SS, HS)]
+        of = [_state(loops.labels, {STROKE: FM2, C: c}) for c in (SS, HS)]
         punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
-        both = [np.array([np.where(under, one.σ_YY(X), np.nan), one.σ_XX(X)]) for one in punches]
+        both = [np.array([np.where(under, punch.σ_YY(X), np.nan), punch.σ_XX(X)]) for punch in punches]
         curves.append(Curve(called, look, both[0], both[1]))
         shown += [loop for loop in (loops.of(of[0], []),) if loop]
         places.append((_AT, states.columns["f"][of[0]]))
-    says = _slow_and_fast(loops.told, of)
+    says = _slow_and_fast(loops.labels, of)
     labels = [Choice().label(*words) for words in SHOWN.values()]
     figure = laws_figure(
         Panel("", shown), X, labels, Row(f"FM2, $X/L = {_AT:g}$", curves), says, np.array(places)
@@ -230,62 +230,63 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
 
 def _loops(loops: Loops) -> Any:
     """Loops over speed, then over each parameter of the law."""
-    told = loops.told
+    labels = loops.labels
     over = {C: (REFERENCE, SPEEDS)} | {name: (MIDDLE, values) for name, values in VARIED.items()}
     panels = []
     for name, (at, values) in over.items():
-        states = [_state(told, at | {name: value}) for value in values]
+        states = [_state(labels, at | {name: value}) for value in values]
         others = [other for other in REFERENCE if other != name]
         # A panel of the archive's has every loop once; that of the speeds shows that there is but one.
         shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
         if name == C:
             shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
-        panels.append(Panel(told.label(states[0], others), shown, True))
+        panels.append(Panel(labels.label(states[0], others), shown, True))
     return loops_figure(panels)
 
 
-def stresses_drawing(name: str, data: dict[str, Any], told: Told) -> Drawing:
-    """A figure of stresses, by its name."""
+def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
+    """A figure of stresses by its name."""
     figure = STRESSES[name]
     shown = stresses_of(data, Choice())
     rows, states = [], []
     for value in figure.rows:
         at = figure.at | {figure.row: value}
-        found = [
-            [_state(told, at | {figure.curve: one, C: c}) for c in figure.speeds] for one in figure.curves
+        pairs = [
+            [_state(labels, at | {figure.curve: curve, C: c}) for c in figure.speeds]
+            for curve in figure.curves
         ]
-        states += found
-        styles = told.looks([some[0] for some in found], [figure.curve])
+        states += pairs
+        styles = labels.looks([pair[0] for pair in pairs], [figure.curve])
         curves = [
-            _curve(told.label(some[0], [figure.curve]), look, shown, some)
-            for some, look in zip(found, styles)
+            _curve(labels.label(pair[0], [figure.curve]), look, shown, pair)
+            for pair, look in zip(pairs, styles)
         ]
         if name == "fig7":
-            travelled = _state(told, at | {STROKE: BM1, C: SS, PLACE: 1.0 - value})
+            travelled = _state(labels, at | {STROKE: BM1, C: SS, PLACE: 1.0 - value})
             dots = Look(COLOURS[6], LINES[3], "")
             label = "BM1 (SS), $X/L$ travelled since its turn"
             curves.append(Curve(label, dots, _values(shown, CLOSED_FORM, travelled), width=0.8))
-        rows.append(Row(told.label(found[0][0], [figure.row]), curves))
+        rows.append(Row(labels.label(pairs[0][0], [figure.row]), curves))
     if len(figure.speeds) == 1:
         says = ("lines: closed form", "markers: finite elements")
         differ: dict[str, NDArray] = {}
     else:
-        says = _slow_and_fast(told, states[0])
+        says = _slow_and_fast(labels, states[0])
         differ = {} if FEM not in shown[0].values else {
-            word: _differences(shown, [some[n] for some in states]) for n, word in enumerate(("SS", "HS"))
+            word: _differences(shown, [pair[n] for pair in states]) for n, word in enumerate(("SS", "HS"))
         }  # fmt: skip
     drawn = rows_figure(data[SURFACE_X.path], [stress.label for stress in shown], rows, says, differ)
     return Drawing(name, figure.caption + _ENDS, drawn)
 
 
-def _slow_and_fast(told: Told, states: Sequence[int]) -> tuple[str, str]:
-    """What lines and markers stand for, of two states at the study's speeds."""
-    slow, fast = (told.label(state, [C]) for state in states)
+def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
+    """Legend texts of lines and markers, for two states at the study's speeds."""
+    slow, fast = (labels.label(state, [C]) for state in states)
     return f"lines: SS, {slow}", f"markers: HS, {fast}"
 
 
 def _curve(label: str, look: Look, shown: list[Stress], states: Sequence[int]) -> Curve:
-    """Slow as a line and fast as markers, or one speed's closed form and finite elements."""
+    """A curve: the slow state as a line and the fast one as markers, or both methods at one speed."""
     method = CLOSED_FORM if len(states) > 1 else FEM
     has = method in shown[0].values
     markers = _values(shown, method, states[-1]) if has else None
@@ -302,6 +303,6 @@ def _differences(shown: list[Stress], states: list[int]) -> NDArray[np.float64]:
     return np.abs(np.array(apart)).max(axis=1)
 
 
-def _state(told: Told, values: dict[str, Any]) -> int:
-    """The first state whose named parameters have the given values."""
-    return int(told.where(told.all, **values)[0])
+def _state(labels: StateLabels, values: dict[str, Any]) -> int:
+    """Number of the first state whose named parameters have the given values."""
+    return int(labels.where(labels.all, **values)[0])

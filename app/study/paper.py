@@ -48,7 +48,7 @@ from .published import (
 )
 from .statements import statements, statements_sheet
 
-#: What is written besides figures.
+#: Files that are written besides figures, and their kinds.
 _FILES = {
     "study.h5": ARCHIVE, "inside.h5": ARCHIVE, "tables.txt": TABLES, "statements.txt": TABLES,
     "report.html": PAGE,
@@ -60,10 +60,10 @@ _STROKE, _PLACE = "FM1", 0.8
 #: Polynomials of the expansion; one would do for a flat punch.
 _TERMS = 8
 
-#: Degree of the displacements that are printed with four digits, and of what both assemblers compute.
+#: Degree of the displacements that are printed with four digits, and of both assemblers' comparison.
 _DEGREE, _ASSEMBLED = 7, 6
 
-#: What that degree is asked for: only how far both assemblers are apart is read off.
+#: Tolerance at that degree: only the difference of both assemblers is read off.
 _TOLERANCE = 1e-3
 
 
@@ -72,9 +72,9 @@ class Check:
     """A line of the verdict.
 
     Attributes:
-        text: what is compared.
-        value: what came of it, dimensionless, or a number of entries.
-        limit: the largest that passes.
+        text: name of the comparison.
+        value: largest difference, dimensionless, or a number of entries.
+        limit: the largest value that passes.
     """
 
     text: str
@@ -83,18 +83,18 @@ class Check:
 
     @property
     def good(self) -> bool:
-        """Is it within its limit? NaN is not."""
+        """True where the value is within its limit; NaN is not."""
         return bool(self.value <= self.limit)
 
     @property
     def cells(self) -> tuple[str, str, str]:
-        """As a row of a table."""
+        """Cells of a row of the table of the verdict."""
         shown = f"{self.value}" if isinstance(self.value, int) else f"{self.value:.1e}"
         return self.text, shown, f"{self.limit:g}"
 
     @property
     def words(self) -> str:
-        """As a line."""
+        """Text, value and limit as a line."""
         text, value, limit = self.cells
         return f"{text}: {value}, at most {limit}"
 
@@ -144,7 +144,7 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         memory = Memory()
         results.append(Computed(scene, memory, compute(scene, memory, progress)))
     methods, checks = _judged(*results)
-    failed = sum(one.attributes["verdict"] != "PASS" for one in results)
+    failed = sum(result.attributes["verdict"] != "PASS" for result in results)
     checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
     good = all(check.good for check in checks)
     decided = statements_sheet(statements(study.data, study.solid))
@@ -176,11 +176,10 @@ def _computed(name: str, target: Target, progress: Progress) -> Computed:
     if not ranks.is_root():
         return Computed(scene, {}, compute(scene))
     from galinx.postprocess.hdf5 import archive
-    from galinx.postprocess.hdf5 import archive as reader
 
     with archive.Writer(target) as writer:
         writer.finish(compute(scene, writer, progress))
-    return Computed(scene, *reader.read(target.path, just_sealed=True))
+    return Computed(scene, *archive.read(target.path, just_sealed=True))
 
 
 def _draw(
@@ -213,19 +212,19 @@ def _beside() -> list[Scene]:
     The block, and Dahl's friction with the exact pressure as tractions, in one state each; and K_I of the
     tables by either assembler on one mesh.
     """
-    found = []
+    beside = []
     for name, words in (("box", ("sif",)), ("traction", ("sif", "surface"))):
         scene = scenes.read(SCENES / f"{name}.toml")
         motion = replace(scene.motion, c=(FAST,), strokes=("forward",), X_over_L=(_PLACE,))
-        found.append(replace(scene, motion=motion, output=replace(scene.output, quantities=words)))
+        beside.append(replace(scene, motion=motion, output=replace(scene.output, quantities=words)))
     tables = scenes.read(SCENES / "tables4_5.toml")
     motion, output = replace(tables.motion, c=(FAST,)), replace(tables.output, quantities=("sif",))
     for name in ASSEMBLERS:
         solve = replace(
             tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name, tolerance=_TOLERANCE
         )
-        found.append(replace(tables, motion=motion, solve=solve, output=output))
-    return found
+        beside.append(replace(tables, motion=motion, solve=solve, output=output))
+    return beside
 
 
 def _write(target: Target, sheets: Sequence[Sheet]) -> None:
@@ -256,7 +255,7 @@ def _tables(study: Computed) -> list[Sheet]:
 
 
 def _details(study: Computed) -> list[Sheet]:
-    """What the study computes on the way to its tables and figures."""
+    """Tables of friction, of the moving frame, and of intensities with dimensions."""
     scene = study.scene
     laws = [law for law in scene.friction.laws() if isinstance(law, Dahl)]
     return [
@@ -289,7 +288,7 @@ def _displacements(study: Computed) -> Sheet:
 def _judged(
     study: Computed, inside: Computed, block: Computed, tractions: Computed, *assembled: Computed
 ) -> tuple[Sheet, list[Check]]:
-    """The methods beside each other, and every line of the verdict."""
+    """Table of the methods beside each other, and every line of the verdict."""
     scene, data = study.scene, study.data
     off = {
         "rk4": _runge_kutta(scene),
@@ -324,7 +323,7 @@ def _judged(
 
 
 def _methods(study: Computed, block: Computed, off: dict[str, float]) -> Sheet:
-    """Each method at one state, and how far it is from the exact one at all of Tables 4 and 5."""
+    """Table of the methods at one state, and their differences at all of Tables 4 and 5."""
     scene, data = study.scene, study.data
     numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
     law = Dahl(*REFERENCE.values())
@@ -364,7 +363,7 @@ _STEPS = np.linspace(0.0, 1.0, 21)
 
 
 def _along(law: Dahl, scene: Scene, integrator: str) -> list[NDArray]:
-    """f along the strokes, in the order of travel."""
+    """Friction coefficient along the strokes, in the order of travel."""
     strokes = friction_along(
         law, scene.motion.strokes, scene.friction.pre_sliding, _STEPS, integrator=integrator
     )
@@ -372,14 +371,15 @@ def _along(law: Dahl, scene: Scene, integrator: str) -> list[NDArray]:
 
 
 def _runge_kutta(scene: Scene) -> float:
-    """Largest difference of f of the study's scheme to the exact law, over all strokes."""
+    """Largest difference of f by the study's scheme from the exact law, over all strokes."""
     law = Dahl(*REFERENCE.values())
     exact, by_steps = (np.array(_along(law, scene, how)) for how in ("exact", "rk4"))
     return float(np.abs(exact - by_steps).max())
 
 
 def _collocation(scene: Scene, data: dict[str, Any]) -> float:
-    """Largest relative difference of K_I at both ends, over the states of Tables 4 and 5."""
+    """Largest relative difference of K_I by expansion and collocation from the closed form, over both
+    ends and the states of Tables 4 and 5."""
     worst = []
     for c, motion, X in product((SLOW, FAST), ("FM1", "BM1", "FM2"), (0.2, 0.8)):
         i = state_of(data, c, motion, X)
@@ -388,14 +388,14 @@ def _collocation(scene: Scene, data: dict[str, Any]) -> float:
     return float(max(worst))
 
 
-def _apart(one: Computed, other: Computed) -> float:
-    """Largest relative difference of K_I of finite elements, at both edges in all states."""
+def _apart(first: Computed, second: Computed) -> float:
+    """Largest relative difference of K_I of finite elements between two results, at both edges."""
     paths = (of.K_I_LEFT[FEM].path, of.K_I_RIGHT[FEM].path)
-    return float(max(np.abs(other.data[path] / one.data[path] - 1.0).max() for path in paths))
+    return float(max(np.abs(second.data[path] / first.data[path] - 1.0).max() for path in paths))
 
 
 def _raw(data: dict[str, Any]) -> float:
-    """Largest relative difference to the closed form under the punch."""
+    """Largest relative difference of σ_YY of nodal forces from the closed form under the punch."""
     raw, exact = data[stresses.RAW_PRESSURE.path], data[stresses.PRESSURE[CLOSED_FORM].path]
     under = np.isfinite(exact)
     return float(np.abs(raw[under] / exact[under] - 1.0).max())

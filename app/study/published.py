@@ -32,8 +32,8 @@ INTENSITIES = {"table4": "Table 4. Slow speed", "table5": "Table 5. High speed"}
 _KOLOSOV = 2.0
 
 
-def like_the_studys(solid: Solid) -> bool:
-    """Do results in this solid have the study's digits?"""
+def has_study_digits(solid: Solid) -> bool:
+    """Return True if dimensionless results in this solid have the study's digits."""
     return getattr(solid, "κ", None) == _KOLOSOV
 
 
@@ -50,7 +50,7 @@ class IntensityRow:
         motion, X_over_L: the state.
         K_I: stress intensity factors, dimensionless.
         diff_percent: difference of K_I between both places of the stroke over the first [%].
-        diff_of_printed: the same of K_I that are rounded to four digits, which is the study's arithmetic.
+        diff_of_printed: Diff % of K_I that are rounded to four digits, which is the study's arithmetic.
     """
 
     motion: str
@@ -61,7 +61,7 @@ class IntensityRow:
 
     @property
     def agrees(self) -> bool:
-        """Do all computed K_I and Diff % round to what is printed?"""
+        """True where all computed K_I and Diff % round to the printed ones."""
         printed, printed_diff = self.K_I[0], self.diff_percent[0]
         same = all(round(value, _DIGITS) == printed for value in self.K_I[1:])
         return same and all(round(value, 2) == printed_diff for value in self.diff_of_printed)
@@ -128,7 +128,7 @@ def table1_rows() -> list[tuple[list[float], list[float]]]:
 
 
 def table1() -> Sheet:
-    """Table 1, each row printed and computed."""
+    """Table 1: each row printed and computed."""
     return Sheet(
         "Table 1. Dahl's law by Runge-Kutta; x in m, the rest dimensionless",
         ("", "f", "x", "k1", "k2", "k3", "k4"),
@@ -197,7 +197,7 @@ def not_as_printed(solid: Solid, pre_sliding: float) -> int:
     pairs = table1_rows()
     for last, (row, computed) in zip([False] * (len(pairs) - 1) + [True], pairs):
         f = printed["table1"]["corrected_last_f"] if last else row[0]
-        off += sum(round(value, 4) != one for value, one in zip(computed, (f, *row[1:])) if one > 1e-3)
+        off += sum(round(value, 4) != k for value, k in zip(computed, (f, *row[1:])) if k > 1e-3)
         off += abs(computed[1] - row[1]) > 1e-12
     for name, (_, V, time) in speed_rows(solid, pre_sliding).items():
         row = printed["table3"][name]
@@ -258,7 +258,7 @@ def limit_of_steady_motion(name: str, data: dict[str, Any], half_width: float) -
 
 
 def friction_sheet(laws: Iterable[Dahl], pre_sliding: float) -> Sheet:
-    """How friction develops from rest under each law."""
+    """Table of friction from rest under each law."""
     rows = []
     for law in laws:
         f = law.exact(law.rest(), 1, 0.0, pre_sliding * np.array([0.2, 1.0]))[:, 0]
@@ -274,7 +274,7 @@ def friction_sheet(laws: Iterable[Dahl], pre_sliding: float) -> Sheet:
 
 
 def frame_sheet(solid: Isotropic) -> Sheet:
-    """Constants of the moving frame at both speeds."""
+    """Table of the constants of the moving frame at both speeds."""
     rows = []
     for name, c in (("SS", SLOW), ("HS", FAST)):
         at = solid.response(c)
@@ -288,7 +288,7 @@ def frame_sheet(solid: Isotropic) -> Sheet:
 
 
 def dimensions_sheet(data: dict[str, Any], load: float, half_width: float) -> Sheet:
-    """Stress intensity factors with their dimensions at the states of Tables 4 and 5.
+    """Table of stress intensity factors with their dimensions at the states of Tables 4 and 5.
 
     Args:
         data: an archive with these states.
@@ -300,18 +300,18 @@ def dimensions_sheet(data: dict[str, Any], load: float, half_width: float) -> Sh
         table = published()[name]
         for motion, X, *_ in table["rows"]:
             i = state_of(data, table["c"], motion, X)
-            α, β, left, right = (
+            α, β, K_left, K_right = (
                 float(data[row.path][i])
                 for row in (states.ALPHA, states.BETA, states.K_I_LEFT[FEM], states.K_I_RIGHT[FEM])
             )
-            k = left * pressure * a**-β, right * pressure * a**-α
+            k = K_left * pressure * a**-β, K_right * pressure * a**-α
             rows.append(
                 (
                     f"{motion} {table['c']:.4g}",
                     f"{X:g}",
                     f"{β:.4f}",
                     f"{α:.4f}",
-                    *(f"{one:.4f}" for one in k),
+                    *(f"{value:.4f}" for value in k),
                 )
             )
     return Sheet(

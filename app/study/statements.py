@@ -1,7 +1,8 @@
 """The study's statements on its results (its sections 5 and 6), each decided by numbers.
 
-Friction is that of the archive's loops and states, stresses are those of finite elements, or of the
-closed form where an archive has these alone. What words as "close" mean in numbers stands above them.
+Friction is that of the archive's loops and states; stresses are those of finite elements, or of the
+closed form where an archive has these alone. The numbers that stand for words such as "close" are defined
+below.
 """
 
 from collections.abc import Callable, Iterator
@@ -39,8 +40,8 @@ class Statement:
     Attributes:
         number: in the order of the study's text, with a letter where there are several readings.
         claim: what the study says, and where.
-        holds: does it?
-        numbers: that decide.
+        holds: True where the numbers agree with the claim.
+        numbers: the numbers that decide.
     """
 
     number: str
@@ -50,7 +51,7 @@ class Statement:
 
     @property
     def words(self) -> str:
-        """As it is printed."""
+        """Verdict and numbers as they are printed."""
         return f"{'holds' if self.holds else 'does not'}: {self.numbers}"
 
 
@@ -107,9 +108,10 @@ class Results:
         """In-plane stress of a state over N/(2a), at all positions."""
         return self._in_plane[self.state(**state)]
 
-    def apart(self, one: dict[str, Any], other: dict[str, Any]) -> float:
-        """Largest difference of the contact stress of two states, where pressures are compared."""
-        return float(np.abs(self.σ_YY(**one) - self.σ_YY(**other))[self.under].max())
+    def apart(self, first: dict[str, Any], second: dict[str, Any]) -> float:
+        """Largest difference of the contact stress of two states over N/(2a), where pressures are
+        compared."""
+        return float(np.abs(self.σ_YY(**first) - self.σ_YY(**second))[self.under].max())
 
     def loop(self, **law: float) -> NDArray[np.float64]:
         """f along FM1, BM1 and FM2 of a law, each in the order of travel, (3, steps)."""
@@ -123,7 +125,7 @@ class Results:
 
     @property
     def beside(self) -> str:
-        """Where σ_XX is looked at beside the punch, over a, as it is printed."""
+        """Position beside the punch at which σ_XX is read, over a, as it is printed."""
         return f"{self.X[self.ahead]:.3g} a"
 
 
@@ -164,7 +166,7 @@ def statements_sheet(decided: list[Statement]) -> Sheet:
     return Sheet(
         "Statements of the study (sections 5 and 6)",
         ("", "the study", "computed"),
-        [(one.number, one.claim, one.words) for one in decided],
+        [(statement.number, statement.claim, statement.words) for statement in decided],
         (
             f"stresses over N/(2a), mean pressure 1; of σ_YY for |X| ≤ {UNDER:g} a. Near, close, "
             f"negligible: within {NEAR:.0%}; slight: below {SLIGHT:.0%} of what is notable.",
@@ -205,8 +207,8 @@ def _near(r: Results) -> _Decided:
 @_says(_3="f of FM1 and FM2: the difference grows with μ_C and falls with σ₀l/N (6b, c)")
 def _first_and_second(r: Results) -> _Decided:
     by_level, by_stiffness = (
-        [float((loop[0] - loop[2]).mean()) for loop in (r.loop(**one) for one in r.values(name, law))]
-        for name, law in (("mu_c", REFERENCE), ("sigma0_over_load", MILDER))
+        [float((loop[0] - loop[2]).mean()) for loop in (r.loop(**law) for law in r.values(name, others))]
+        for name, others in (("mu_c", REFERENCE), ("sigma0_over_load", MILDER))
     )
     yield (
         _grows(by_level) and _falls(by_stiffness),
@@ -357,16 +359,16 @@ def _lean(r: Results, name: str, X: float) -> tuple[list[float], list[float], li
     _12b="the same: tension behind the punch and compression ahead grow (9b)",
 )
 def _stiffness(r: Results) -> _Decided:
-    left, right, tension, compression = _lean(r, "sigma0_over_load", 0.2)
-    leans = _grows(right) and _falls(left)
+    p_left, p_right, tension, compression = _lean(r, "sigma0_over_load", 0.2)
+    leans = _grows(p_right) and _falls(p_left)
     why = ". It leans back, as 15 has it; with Eq 25's sign it leans ahead, and tension is ahead, too"
     yield (
         leans,
-        f"-σ_YY at -{UNDER:g} a {_to(left)}, at {UNDER:g} a {_to(right)}" + why * (not leans),
+        f"-σ_YY at -{UNDER:g} a {_to(p_left)}, at {UNDER:g} a {_to(p_right)}" + why * (not leans),
     )
     yield (
         _grows(tension) and _grows(compression) and min(tension + compression) > 0.0,
-        f"σ_XX at -{r.beside} {_to(tension)}; ahead {_to([-one for one in compression])}",
+        f"σ_XX at -{r.beside} {_to(tension)}; ahead {_to([-value for value in compression])}",
     )
 
 
@@ -400,14 +402,14 @@ def _second_fast(r: Results) -> _Decided:
     "and compression ahead fall (10)"
 )
 def _less(r: Results) -> _Decided:
-    left, right, tension, compression = _lean(r, "delta", 0.4)
-    slight = max(abs(values[-1] / values[0] - 1.0) for values in (left, right))
-    less = _falls(left) and _grows(right) and _falls(tension) and _falls(compression)
+    p_left, p_right, tension, compression = _lean(r, "delta", 0.4)
+    slight = max(abs(values[-1] / values[0] - 1.0) for values in (p_left, p_right))
+    less = _falls(p_left) and _grows(p_right) and _falls(tension) and _falls(compression)
     why = ". With Eq 25's sign the ends change places, and it does not"
     yield (
         less and slight < NEAR,
-        f"-σ_YY at -{UNDER:g} a {_to(left)}, at {UNDER:g} a {_to(right)}; σ_XX at -{r.beside} "
-        f"{_to(tension)}; ahead {_to([-one for one in compression])}" + why * less,
+        f"-σ_YY at -{UNDER:g} a {_to(p_left)}, at {UNDER:g} a {_to(p_right)}; σ_XX at -{r.beside} "
+        f"{_to(tension)}; ahead {_to([-value for value in compression])}" + why * less,
     )
 
 
@@ -429,13 +431,13 @@ def _intensities(r: Results) -> _Decided:
     slow, fast = ([difference[c, motion] for motion in ("FM1", "BM1", "FM2")] for c in (SLOW, FAST))
     signs = all(first < 0.0 < second and third < 0.0 for first, second, third in (slow, fast))
     larger = all(abs(high) > abs(low) for low, high in zip(slow, fast))
-    told = "; ".join(
+    differences = "; ".join(
         f"{name} " + ", ".join(f"{value:+.2f}" for value in values)
         for name, values in (("SS", slow), ("HS", fast))
     )
     yield (
         off < 1e-6 and signs and larger,
-        f"ends {off:.0e} apart; to 0.8 in FM1, BM1, FM2 by (%) {told}",
+        f"ends {off:.0e} apart; to 0.8 in FM1, BM1, FM2 by (%) {differences}",
     )
 
 

@@ -67,7 +67,7 @@ class Table:
 
     @cached_property
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Positions between which the slope is linear, and the slope there."""
+        """Knots [m] between which the slope is linear, and slopes there, (knots,) each."""
         X, P = self._points
         δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
         d = np.empty(len(X))
@@ -88,7 +88,7 @@ class Table:
 
     @cached_property
     def _pieces(self) -> tuple[NDArray[np.float64], ...]:
-        """Where each parabola is lowest, and its height, slope and curvature there.
+        """Lowest places [m] of the pieces; heights [m], slopes and curvatures [1/m] there, (knots - 1,) each.
 
         Heights are summed from the lowest point on, where no term takes away from another: rounding of
         the height of a far point would be a step at the next kink, under which the pressure is infinite.
@@ -103,7 +103,7 @@ class Table:
         return at, height, slope, np.asarray(np.diff(s) / np.diff(x))
 
     def _piece(self, X: NDArray) -> tuple[NDArray[np.float64], ...]:
-        """Distance from where the parabola at X is lowest; its height, slope and curvature there."""
+        """Distance [m] of X [m] from its piece's lowest place; height, slope and curvature there."""
         x, _ = self._knots
         X = np.asarray(X, dtype=float)
         i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
@@ -112,7 +112,7 @@ class Table:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """The curvature jumps where parabolas meet."""
+        """Positions [m] at which parabolas meet, and the curvature jumps."""
         return tuple(self._knots[0].tolist())
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
@@ -120,7 +120,7 @@ class Table:
         return height + slope * d + curvature * d**2 / 2.0
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Beyond the table it goes on as in its first and last piece."""
+        """Slope at X [m], linear between knots; beyond the table as in its first and last piece."""
         d, _, slope, curvature = self._piece(X)
         return slope + curvature * d
 

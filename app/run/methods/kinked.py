@@ -43,7 +43,7 @@ from galinx.postprocess.yielding import Strength
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
-from galinx.solvers.profiles import cusp, exponent, jumps, kinks
+from galinx.solvers.profiles import cusp, exponent, jumps, kinks, leaving
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.residual import of_contact
@@ -426,7 +426,7 @@ class KinkedLevel:
         exponents = float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
         self.pressure = KinkedPressure(
             space.contact.s, space.degree, space.chart, self.contact.normal[0], places, exponents,
-            cusp(body.profile),
+            leaving(body.profile), work.plan.tolerance,
         )  # fmt: skip
         tips = places if jumps(body.profile) else np.empty(0)
         self.kinks = places if not len(tips) else np.empty(0)
@@ -466,11 +466,14 @@ class KinkedLevel:
         return self.pressure.σ_YY(self._task.places.X)[None]
 
     def _of_forces(self) -> Gauge:
-        """Moments of the pressure over the load, and the pressure over its largest."""
-        σ = self.pressure.σ_YY(self._across)[None]
-        values = np.concatenate([self._moments, σ], axis=1)
-        scale = np.concatenate([2.0 + 0.0 * self._moments, np.abs(σ).max() + 0.0 * σ], axis=1)
-        return Gauge(INTENSITIES, values, scale)
+        """Moments of the pressure over the load, and the pressure over its largest, kinks among the
+        places: there it is a limit, which has less digits than what it is taken from."""
+        at_kinks = [self.pressure.at_kink(i) for i in range(len(self.kinks))]
+        σ = np.append(self.pressure.σ_YY(self._across), at_kinks)[None]
+        values, size = np.concatenate([self._moments, σ], axis=1), float(np.abs(σ).max())
+        scale = np.concatenate([2.0 + 0.0 * self._moments, size + 0.0 * σ], axis=1)
+        left = self.pressure.left_at_kinks / size if at_kinks else 0.0
+        return Gauge(INTENSITIES, values, scale, left)
 
 
 def _off(task: Task, tips: NDArray) -> Task:

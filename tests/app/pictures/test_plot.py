@@ -56,7 +56,7 @@ def test_what_a_figure_leaves_out_is_said(fast, tmp_path):
     titles = [axis.get_title(loc="left") for axis in drawing.figure.axes[:3]]
     assert [re.search(r"c = ([\d.]+)", title)[1] for title in titles] == ["0", "0.6", "0.9"]
     assert drawing.left_out.startswith("12 of 30 states not shown (c = 0.3, 0.8): states 6-11,18-23;")
-    assert "--figure surface --states" in drawing.left_out and drawing.left_out in drawing.told
+    assert "--figure surface --states" in drawing.left_out and drawing.left_out in drawing.full_caption
     chosen = drawn(fast, "surface", states=(*range(6, 12), *range(18, 24)))
     titles = [axis.get_title(loc="left") for axis in chosen.figure.axes[:2]]
     assert [re.search(r"c = ([\d.]+)", title)[1] for title in titles] == ["0.3", "0.8"]

@@ -188,8 +188,8 @@ def test_commands_that_keep_nothing_stop_in_order(tmp_path, ranks):
 
 def test_what_is_ignored_already_stays_ignored(tmp_path):
     script = (
-        "import signal; from galinx.app.process import stop; stop.listen()\n"
-        "print([signal.getsignal(number) == signal.SIG_IGN for number in stop.SIGNALS])"
+        "import signal; from galinx.app import process; process.listen()\n"
+        "print([signal.getsignal(number) == signal.SIG_IGN for number in process.SIGNALS])"
     )
     done = subprocess.run(
         [
@@ -203,11 +203,11 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
 
 def test_a_library_that_drops_the_request_says_nothing_of_it():
     script = (
-        "from galinx.app.process import stop; stop.listen()\n"
+        "from galinx.app import process; process.listen()\n"
         "class Library:\n"
         "    def __init__(self, error): self.error = error\n"
         "    def __del__(self): raise self.error\n"
-        "Library(stop.Asked()); Library(ValueError('its own'))"
+        "Library(process.Asked()); Library(ValueError('its own'))"
     )
     done = subprocess.run(
         [sys.executable, "-c", script],

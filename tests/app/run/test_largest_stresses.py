@@ -136,7 +136,9 @@ def test_largest_values_are_those_of_samples(seed, methods, strokes):
         for method in methods:
             found = np.array([data[f"states/{method}/{name}"][i] for name in NAMES])
             missed = SIGNS * (largest - found) / size
-            assert (np.abs(missed) <= allowed).all(), (method, missed)
+            assert (missed <= allowed).all(), (method, missed)
+            # In the plane samples may miss the top: there the largest has to be the stress at its place.
+            assert (missed[2:] >= -allowed).all(), (method, missed)
             for name, value in zip(NAMES[:2], found):
                 X, Y = (data[f"states/{method}/{name}_{axis}_over_a"][i : i + 1] for axis in "XY")
                 there = MEASURES[name](scene.solid, *contact.stresses(X, Y)[:, 0])

@@ -227,7 +227,8 @@ def test_the_scene_of_fig_6_is_drawn_where_its_lists_meet():
     """Of laws that are no product of lists, each parameter is drawn where most laws have the others."""
     (drawing,) = computed("fig6").drawings(figures=("friction",))
     panels = drawing.figure.axes
-    assert [len(loops_of(axis)) for axis in panels] == [4, 3, 4] and "not shown" not in drawing.told
+    assert [len(loops_of(axis)) for axis in panels] == [4, 3, 4]
+    assert "not shown" not in drawing.full_caption
     assert all(r"\mu_C = 0.5" in axis.get_title(loc="left") for axis in panels[1:])
 
 

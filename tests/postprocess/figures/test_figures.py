@@ -182,8 +182,9 @@ def test_clipped_colours_have_arrows_on_their_bar(drawings):
 
 
 def test_captions_are_plain_text(drawings, study_run):
-    told = [drawing.told for drawing in (*drawings.values(), *of_study(study_run.data, study_run.scene))]
-    assert all(len(text) > 40 and not set("$\\{}") & set(text) for text in told)
+    of_paper = of_study(study_run.data, study_run.scene)
+    captions = [drawing.full_caption for drawing in (*drawings.values(), *of_paper)]
+    assert all(len(text) > 40 and not set("$\\{}") & set(text) for text in captions)
 
 
 def test_files_have_the_resolution_and_the_size_that_are_asked_for(drawings):

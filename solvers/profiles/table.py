@@ -88,7 +88,7 @@ class Table:
 
     @cached_property
     def _pieces(self) -> tuple[NDArray[np.float64], ...]:
-        """Lowest places [m] of the pieces; heights [m], slopes and curvatures [1/m] there, (knots - 1,) each.
+        """Lowest places [m] of pieces; heights [m], slopes, curvatures [1/m] there, (knots - 1,) each.
 
         Heights are summed from the lowest point on, where no term takes away from another: rounding of
         the height of a far point would be a step at the next kink, under which the pressure is infinite.

@@ -15,7 +15,7 @@ as far as the distance times Im p/|p|.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, log, log10
+from math import asinh, ceil, isfinite, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +103,12 @@ _GENTLE_GROWTH, _THIN = 2.5, 0.4
 _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: How much beyond the last place, or the last interface, that holds; then lines grow by a factor.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
+#: By how much the edges of the contact seem off, over the size of the innermost cells and over the
+#: degree's inverse square; measured on 22 stacks at degrees 4 to 12: 0.3 to 0.65.
+_MOVED = 0.8
+#: Functions by which the pressure over a solid that is graded from the surface on is read off with the
+#: share of the tolerance that the innermost cells take otherwise: that share falls with their square.
+_FUNCTIONS = 6.0
 #: Share of the tolerance of stresses that the innermost cells take half of.
 _OF_INNERMOST = 0.3
 #: Tolerance of stresses below which one degree more is always asked for.
@@ -198,9 +204,18 @@ class OnLayers(MeshKind):
         count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / wanted.tolerance)
         return max(ceil(count), _FEWEST) + 2 * self._one_more(wanted)
 
+    @property
+    def graded(self) -> bool:
+        """Is the solid graded from the surface on?"""
+        return bool(self.changes) and isfinite(self.changes[0])
+
     def innermost_size(self, wanted: Wanted) -> float:
         """Of the cells at the edges, over a."""
-        return max(self._innermost(wanted) ** 2, 1e-11)
+        size = self._innermost(wanted) ** 2
+        if self.graded:
+            # What the pressure is read off by is steep at the ends there.
+            size *= (_FUNCTIONS / self.moments(wanted)) ** 2
+        return max(size, 1e-11)
 
     def _innermost(self, wanted: Wanted) -> float:
         if wanted.nearest is None:
@@ -210,6 +225,17 @@ class OnLayers(MeshKind):
 
     def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
         return 0.3 * self.innermost_size(wanted) / margin**0.4
+
+    def moved_edges(self, wanted: Wanted, degree: int, margin: float) -> float:
+        """Distance over a by which the edges of the contact seem off: what the innermost cells make of
+        the singularity.
+
+        Args:
+            wanted: what the mesh is for.
+            degree: of the cells.
+            margin: of the solid's response.
+        """
+        return _MOVED * self.innermost_size(wanted) / (degree**2 * margin**0.4)
 
     def degree(self, wanted: Wanted, margin: float) -> int:
         """One less than usual for K_I alone: the measured error asks for more where it is needed."""

@@ -38,8 +38,10 @@ from scipy.special import roots_jacobi
 from galinx.solvers.contact import under_punch
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import check_reach, jumps, kinks
-from galinx.solvers.solution import Surface, Turns
+from galinx.solvers.sie.prescribed_pressure import LinearPressure
+from galinx.solvers.solution import Between, Surface, Turns
 
+from .estimate import SAFETY
 from .pressure import (
     density_of_forces,
     facets_of,
@@ -287,7 +289,12 @@ def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> 
 #: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
 #: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
 #: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT_CUSP, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), (3e-4, 2e-2), (24, 16), 3
+_SEEN, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
+#: Next to a kink: the nearest of these distances over the farthest, the least and the most of that, and
+#: what the series leave out there over its cube, whose tenth of the tolerance is small enough.
+_NEAREST_AT_KINK, _FARTHEST_AT_KINK, _LEFT_OUT = 0.015, (5e-3, 2e-2), 7e-4
+#: Distance over the usual one up to which a kink is looked at to see what its series leave out.
+FARTHER = 2.0
 #: Distance over a from an end within which stresses beside it tell what they are at it; singular values
 #: below which terms are one.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
@@ -299,7 +306,7 @@ _CLEARED = 0.1
 
 
 def _two_series(
-    gap: float, seen: tuple[float, float], exponent: float, at_end: bool = False
+    gap: float, seen: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
 ) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
     """Where A(d) + d^a B(d) is to be known, and what it is by what it is there.
 
@@ -307,6 +314,7 @@ def _two_series(
         gap: that distances are over.
         seen: the nearest and the farthest.
         exponent: a.
+        logs: are the second series' terms times log d?
         at_end: are there what solids graded from the surface on add, d^(a + 1) log d and d^(a + 2) log d,
             and what is left of an intensity, d^(a - 1), the last of the terms?
 
@@ -315,14 +323,15 @@ def _two_series(
         (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
-    count = _SEEN_AT[0 if at_end else 1]
-    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
     known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
     powers = np.arange(_TERMS_OF_EACH)
 
     def terms(d: NDArray) -> NDArray[np.float64]:
         x = d / high**2
         found = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        if logs:
+            found[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
         if not at_end:
             return found
         more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
@@ -355,14 +364,39 @@ class Series:
         return lambda d: self.by_known(d) @ values
 
 
-def towards_cusp(gap: float, exponent: float) -> Series:
-    """Pressure or slopes next to a kink under which they have a cusp.
+def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 1.0) -> Series:
+    """Pressure or slopes next to a kink where they are finite.
 
     Args:
         gap: distance of the next kink or end, over a.
-        exponent: of the distance from the kink, in (0, 1).
+        exponent: of the distance d from the kink, in (0, 1) at a cusp; 1 where they go as d log d.
+        farthest: distance over the gap from :func:`farthest_at_kink`.
+        farther: distance up to which they are looked at, over that.
     """
-    return Series(*_two_series(gap, _SEEN_AT_CUSP, exponent))
+    seen = _NEAREST_AT_KINK * farthest, farther * farthest
+    return Series(*_two_series(gap, seen, exponent, logs=exponent == 1.0))
+
+
+def farthest_at_kink(tolerance: float) -> float:
+    """Distance from a kink, over that of the next kink or end, up to which it is looked at.
+
+    Nearer to it finite elements have less digits, farther away the series leave out more.
+    """
+    return float(np.clip((0.1 * tolerance / _LEFT_OUT) ** (1.0 / 3.0), *_FARTHEST_AT_KINK))
+
+
+def left_at_kink(usual: NDArray, farther: NDArray) -> float:
+    """Error of the limits from the left and the right of a kink.
+
+    Terms that the series have not grow with their order, and both limits are to be one: half of what
+    they differ by is what else is wrong.
+
+    Args:
+        usual: both limits, (2,), from series that are looked at as far as usual.
+        farther: the same from ones looked at up to ``FARTHER`` times that distance.
+    """
+    left_out = np.abs(farther - usual).max() / (FARTHER**_TERMS_OF_EACH - 1.0)
+    return float(SAFETY * left_out + np.ptp(usual) / 2.0)
 
 
 def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[np.float64]:
@@ -396,6 +430,53 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
     σ_XX = in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
     none = np.where(np.isnan(σ_XX), np.nan, 0.0)
     return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
+
+
+#: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
+#: stress is interpolated.
+_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+#: Highest and lowest places among the few next to which the many are looked at.
+_TOPS = 4
+
+
+def turns_at_knots(
+    pressure: LinearPressure, g: NDArray, σ_XX: Callable[[NDArray], NDArray[np.float64]]
+) -> Turns:
+    """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
+
+    Args:
+        pressure: prescribed.
+        g: σ_XY/σ_YY, (states,).
+        σ_XX: in-plane stress over N/(2a) at positions on the surface, (states, n).
+    """
+    X = np.column_stack([pressure.knots[:-1], _between_knots(pressure, _COARSE)]).ravel()
+    each = σ_XX(np.append(X, 1.0))
+    each[:, [0, -1]] = np.where(pressure.values[[0, -1]] != 0.0, np.nan, each[:, [0, -1]])
+    per = 1 + len(_COARSE)
+    σ = each[:, ::per]
+    σ_YY = np.where(np.isnan(σ), np.nan, pressure.values)
+    knots = np.where(np.isnan(σ), np.nan, pressure.knots)
+    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
+    # A knot belongs to the intervals on both sides of it.
+    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
+    intervals = intervals[(intervals >= 0) & (intervals < len(pressure.knots) - 1)]
+    graded = _between_knots(pressure, _GRADED)[intervals]
+    between = Between(graded, _GRADED, σ_XX(graded.ravel()).reshape(len(g), *graded.shape))
+    return Turns(knots, np.array([σ, σ_YY, g[:, None] * σ_YY]), between)
+
+
+def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
+    """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
+    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(left + width / (1.0 + np.exp(-x)))
+
+
+def _tops(values: NDArray) -> NDArray[np.int64]:
+    """Numbers of the highest places (n,) of curves, (states, n)."""
+    padded = np.pad(np.nan_to_num(values, nan=-np.inf), ((0, 0), (1, 1)), constant_values=-np.inf)
+    inner = padded[:, 1:-1]
+    heights = np.where((inner >= padded[:, :-2]) & (inner >= padded[:, 2:]), inner, -np.inf)
+    return np.unique(np.argsort(-heights, axis=1, kind="stable")[:, :_TOPS])
 
 
 def slopes_towards_ends(
@@ -434,7 +515,7 @@ def slopes_towards_ends(
 
 #: Tops of the samples that are looked at more nearly; samples that a polynomial goes through; places
 #: between the neighbours of a top.
-_TOPS, _THROUGH, _BETWEEN = 3, 8, 65
+_TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
 
 
 def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
@@ -448,13 +529,27 @@ def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
     at, limits = _limits(solution, body)
-    told = np.ones(σ_XX.shape, dtype=bool)
-    for place, reach in _infinite(solution, body, len(σ_XX)):
-        told &= ~(np.abs(X - place[:, None]) <= reach)
-    values = np.where(told, sign * σ_XX, -np.inf)
-    limits = np.where(np.isnan(limits), -np.inf, sign * limits).max(axis=1, initial=-np.inf)
+    infinite = _infinite(solution, body, len(σ_XX))
+    values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
+    limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    return sign * np.maximum(_largest(X, values, pieces), limits)
+    best = np.maximum(values.max(axis=1), limits.max(axis=1, initial=-np.inf))
+    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
+    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
+    between = surface.turns and surface.turns.between
+    if not between:
+        return sign * np.maximum(best, _largest(u, values, pieces))
+    best = np.maximum(best, _largest(u, np.where(np.abs(X) < 1.0, -np.inf, values), pieces))
+    for i, X in enumerate(between.X):
+        values = np.where(_finite(X, infinite), sign * between.σ_XX[:, i], -np.inf)
+        best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
+    return sign * best
+
+
+def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
+    """Which positions, (n,) or (states, n), are off all places of :func:`_infinite`, (states, n)."""
+    each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
+    return np.logical_and.reduce(each)
 
 
 def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -463,8 +558,6 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
     if surface.turns is not None:
         at = np.concatenate([ends, surface.turns.X], axis=1)
         return at, np.concatenate([np.full_like(ends, np.nan), surface.turns.σ[0]], axis=1)
-    if body.pressure:
-        return ends, np.full_like(ends, np.nan)
     exponents = np.column_stack([solution.local.β, solution.local.α])
     return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
 
@@ -482,27 +575,25 @@ def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.fl
     return found
 
 
-def _largest(X: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
+def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
     """Largest of curves, by polynomials through the samples around their highest tops, (states,).
 
     Args:
-        X: positions over a, (n,).
+        u: coordinate in which they are smooth, growing, (n,).
         values: there, -inf where the curve is not told, (states, n).
         pieces: which smooth piece of the curve a sample belongs to, (states, n).
     """
-    u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
-    u = u + np.arcsin(np.clip(X, -1.0, 1.0))
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
-    order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
+    order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS_BETWEEN]
     for column in order.T:
         i = column + 1
-        window = np.clip(i - _THROUGH // 2, 0, len(X) - _THROUGH)[:, None] + np.arange(_THROUGH)
+        window = np.clip(i - _THROUGH // 2, 0, len(u) - _THROUGH)[:, None] + np.arange(_THROUGH)
         # A window that reaches into the next piece is moved back.
         other = pieces[rows, window] != pieces[rows, i[:, None]]
         shift = (other & (window < i[:, None])).sum(axis=1) - (other & (window > i[:, None])).sum(axis=1)
-        window = np.clip(window + shift[:, None], 0, len(X) - 1)
+        window = np.clip(window + shift[:, None], 0, len(u) - 1)
         same = (pieces[rows, window] == pieces[rows, i[:, None]]).all(axis=1)
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]
@@ -551,8 +642,9 @@ class KinkedPressure:
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: places of the kinks over a, in their order.
         exponents: of the pressure at the left and the right end, positive.
-        cusp: exponent of the distance from a kink with which the pressure leaves its value there, if it
-            is below 1; 0 for none.
+        exponent: of the distance from a kink with which the pressure leaves its value there; 1 where a
+            logarithm multiplies it; 0 where it is smooth enough for the cells, or infinite.
+        tolerance: relative, of its limit there.
     """
 
     def __init__(
@@ -563,10 +655,12 @@ class KinkedPressure:
         forces: NDArray,
         kinks: NDArray,
         exponents: tuple[float, float],
-        cusp: float = 0.0,
+        exponent: float = 0.0,
+        tolerance: float = 1e-6,
     ) -> None:
         facets = facets_of(s, degree)
-        self._chart, self.kinks, self._exponents, self._cusp = chart, kinks, exponents, cusp
+        self._chart, self.kinks, self._exponents, self._exponent = chart, kinks, exponents, exponent
+        self._farthest = farthest_at_kink(tolerance)
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
@@ -586,7 +680,7 @@ class KinkedPressure:
         for d, known, values, exponent in ends:
             near = (d > 0.0) & (d < known[0])
             found[near] = towards_end(d[near], known, values, exponent)
-        for number, at in enumerate(self.kinks if self._cusp else ()):
+        for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)
                 near = (d >= 0.0) & (d < series.known.min())
@@ -603,7 +697,7 @@ class KinkedPressure:
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
         found = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
-        if self._cusp:
+        if self._exponent:
             found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
         return max(found)
 
@@ -623,24 +717,43 @@ class KinkedPressure:
         return self.limit_at_kink(number, self._piecewise)
 
     def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
-        """A stress or strain at a kink, by the limit from both sides where it has a cusp there.
+        """A stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
+
+        The innermost cells are so small that rounding of the nodal forces shows in what they tell.
 
         Args:
             number: of the kink.
             values: at positions over a, (n,).
         """
-        at = self.kinks[number]
-        if not self._cusp:
-            return float(values(np.array([at]))[0])
-        both = [(side, self._series(number, side)) for side in (-1.0, 1.0)]
-        limits = [series.through(values(at + side * series.known))(np.zeros(1)) for side, series in both]
-        return float(np.mean(limits))
+        if not self._exponent:
+            return float(values(self.kinks[[number]])[0])
+        return float(np.mean(self._limits(number, values)))
 
-    def _series(self, number: int, side: float) -> Series:
+    @property
+    def left_at_kinks(self) -> float:
+        """Error over N/(2a) of the limits at kinks, as the limits themselves show it."""
+        if not self._exponent:
+            return 0.0
+        return max(
+            left_at_kink(*(self._limits(i, self._piecewise, by) for by in (1.0, FARTHER)))
+            for i in range(len(self.kinks))
+        )
+
+    def _limits(
+        self, number: int, values: Callable[[NDArray], NDArray], farther: float = 1.0
+    ) -> NDArray[np.float64]:
+        """Limits from the left and the right of a kink, (2,), see :func:`towards_kink`."""
+        at, found = self.kinks[number], np.empty(2)
+        for i, side in enumerate((-1.0, 1.0)):
+            series = self._series(number, side, farther)
+            found[i] = series.through(values(at + side * series.known))(np.zeros(1))[0]
+        return found
+
+    def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
         """Of the pressure on one side of a kink."""
         ends = np.concatenate([[-1.0], self.kinks, [1.0]])
         gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
-        return towards_cusp(float(gap), self._cusp)
+        return towards_kink(float(gap), self._exponent, self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         at = self._chart.surface_coordinate(r)

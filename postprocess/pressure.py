@@ -15,8 +15,10 @@ end farther away. In
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
 it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
-graded from the surface on it has terms d log d, d² log d and d² log² d of the distance d from an end
-besides, which no polynomial follows; they stand before these.
+graded from the surface on it has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end besides,
+which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where
+constants change much within h the powers left out fall slowly with the number of functions, and the last
+of these tell what they add to the intensities.
 
 The largest contact pressure, and where it is.
 """
@@ -318,8 +320,20 @@ def _nearer(
 
 #: Longest panel of the rule for products of polynomials, over 1 and over h.
 _FINE = 0.3
-#: Polynomials that tell how well a pressure is resolved.
-_LAST = 2
+#: Polynomials that tell how well a pressure is resolved, and over graded solids, where what is left falls
+#: like a power of their number.
+_LAST, _LAST_GRADED = 2, 4
+#: What is left there over what these add, measured on layers whose moduli grow three to a hundred times.
+_TAIL = 4.0
+#: Highest power of the distance from an end that stands before polynomials with its logarithms.
+_POWERS = 3
+#: Share of h beyond which these are nearly constant: the larger it is, the more nearly functions depend
+#: on one another.
+_SHARE = 0.25
+#: Functions of both ends.
+_OF_ENDS = _POWERS * (_POWERS + 1)
+#: How often functions are made orthonormal: rounding leaves them so but for a share the first time.
+_TIMES = 2
 
 
 @dataclass(frozen=True)
@@ -344,32 +358,41 @@ class Stretch:
         """So many polynomials of ζ, after what belongs to the ends, (len(r), functions)."""
         if not self.graded:
             return chebyshev(self(r), count)
-        return np.asarray(self.of_ends(r, count) @ _to_orthonormal(self, count))
+        with np.errstate(divide="ignore"):
+            x = np.log1p(r) - np.log1p(-r)
+        return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)
 
     def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
         """What belongs to the ends, then polynomials: nearly dependent."""
         found = []
-        for d in ((1.0 - r) / 2.0, (1.0 + r) / 2.0):
-            d = np.clip(d, 0.0, 1.0)
-            log = np.log(np.maximum(d, np.finfo(float).tiny))
-            found += [d * log, d**2 * log, d**2 * log**2]
+        for d in (1.0 - r, 1.0 + r):
+            d = np.maximum(d, 0.0)
+            u = d / (d + _SHARE * self.h)
+            log = np.log(np.maximum(u, np.finfo(float).tiny))
+            found += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
         return np.column_stack([*found, chebyshev(self(r), count)])
 
     def polynomials(self, functions: int) -> int:
         """How many of these functions are polynomials."""
-        return functions - 6 * self.graded
+        return functions - _OF_ENDS * self.graded
 
 
 @cache
-def _to_orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
+def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
 
-    Moments are taken with these: the functions themselves depend on one another so nearly that what
-    rounds their moments would be seen in the pressure.
+    The functions depend on one another nearly, and what rounds their combinations is different at every
+    place. So combinations are those polynomials on panels that have these values at the rule's points,
+    wherever they are asked for: pressure and tests then know the same functions.
+
+    Returns:
+        Values at the points of the rule, (points, functions).
     """
     rule = _rule(-0.5, -0.5, stretch)
-    f = stretch.of_ends(rule.t, count) * np.sqrt(rule.weights)[:, None]
-    return np.asarray(np.linalg.inv(np.linalg.qr(f, mode="r")))
+    f, root = stretch.of_ends(rule.t, count), np.sqrt(rule.weights)[:, None]
+    for _ in range(_TIMES):
+        f = f @ np.linalg.inv(np.linalg.qr(f * root, mode="r"))
+    return np.asarray(f)
 
 
 @dataclass(frozen=True)
@@ -382,11 +405,35 @@ class StretchedPressure(JacobiPressure):
         count = self.stretch.polynomials(self.c.shape[1])
         return np.asarray(self.c @ self.stretch.functions(r, count).T)
 
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges of the contact are a length off, (states, points).
+
+        The pressure is stretched from the opposite edge; its moments change by what the functions do
+        over that way, and the more functions there are, the more of it is read as pressure at the ends.
+
+        Args:
+            r: positions over a in [-1, 1], (points,).
+            length: over a.
+        """
+        count = self.c.shape[1]
+        f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
+        at_r = self.stretch.functions(r, functions)
+        found = np.empty((len(self.c), len(r)))
+        for i, c in enumerate(self.c):
+            weights = _rule(float(self.α[i]), float(self.β[i]), self.stretch).weights
+            moments = _moved(self.stretch, count, length) @ (weights * (f @ c))
+            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
+            found[i] = np.abs(at_r @ to_factor).sum(axis=1)
+        return found
+
     @property
     def unresolved(self) -> NDArray[np.float64]:
-        """The last polynomials' share, relative to the largest of the factor at the ends, (states,)."""
-        last = np.abs(self.c[:, -_LAST:]).sum(axis=1)
-        return np.asarray(last / np.abs(self.factor(np.array([-1.0, 1.0]))).max(axis=1))
+        """The last functions' share of the factor at the ends, of the larger one, (states,)."""
+        ends, last = np.array([-1.0, 1.0]), _LAST_GRADED if self.stretch.graded else _LAST
+        f = self.stretch.functions(ends, self.stretch.polynomials(self.c.shape[1]))
+        added = np.abs(self.c[:, None, -last:] * f[:, -last:]).sum(axis=2)
+        share = added.max(axis=1) / np.abs(self.factor(ends)).max(axis=1)
+        return np.asarray((_TAIL if self.stretch.graded else 1.0) * share)
 
 
 def stretched_from_moments(
@@ -409,3 +456,13 @@ def _rule(α: float, β: float, stretch: Stretch) -> Panels:
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """So many functions at the points of the rule, (points, count)."""
     return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
+
+
+@lru_cache(maxsize=8)
+def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
+    """Changes of functions at the rule's points where the right, or the left, edge is a length off:
+    (2, count, points)."""
+    t = _rule(-0.5, -0.5, stretch).t
+    inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
+    moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]
+    return np.array([(one - _at_points(stretch, count)).T for one in moved])

@@ -192,10 +192,51 @@ class Turns:
     Attributes:
         X: the places over a, (states, k).
         σ: σ_XX, σ_YY, σ_XY there, (3, states, k).
+        between: the in-plane stress between them, where samples of the surface are not near enough to
+            them; None where they are.
     """
 
     X: NDArray[np.float64]
     σ: NDArray[np.float64]
+    between: "Between | None" = None
+
+    def of(self, rows: NDArray) -> "Turns":
+        """Turns of some of the states, or of each several times."""
+        between = self.between and Between(
+            self.between.X, self.between.x, self.between.σ_XX[rows]
+        )  # fmt: skip
+        return Turns(self.X[rows], self.σ[:, rows], between)
+
+    def joined(self, other: "Turns") -> "Turns":
+        """These turns and others of the same states."""
+        σ = np.concatenate([self.σ, other.σ], axis=2)
+        return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
+
+
+@dataclass(frozen=True)
+class Between:
+    """In-plane stress between neighbouring kinks, towards both of which it has a distance's logarithm.
+
+    Attributes:
+        X: positions over a, in intervals between kinks, (intervals, n).
+        x: logarithm of the ratio of their distances from both kinks, in which stresses are smooth, (n,).
+        σ_XX: there, (states, intervals, n).
+    """
+
+    X: NDArray[np.float64]
+    x: NDArray[np.float64]
+    σ_XX: NDArray[np.float64]
+
+
+def together(each: list[Turns]) -> Turns | None:
+    """Turns of one state each as those of all, as many places as the state with most; None of none."""
+    if not each:
+        return None
+    most = max(one.X.shape[1] for one in each)
+    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
+    for i, one in enumerate(each):
+        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
+    return Turns(X, σ)
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,11 @@ _APART = 0.8
 _LEAST_LEFT = 1e-6
 #: Distance over a from a free end within which stresses are continued from farther away.
 _NEAR_FREE_END = 1e-2
+#: Moments more over solids that are graded from the surface on: few polynomials do not make up for what
+#: functions of the ends add away from these.
+_MORE_GRADED = 6
+#: Loosest tolerance of meshes over them: on coarser ones these functions' moments are not sure.
+_LOOSEST_GRADED = 1e-4
 
 
 @dataclass(frozen=True)
@@ -65,8 +70,8 @@ def tests_of(solid: Solid, kind: MeshKind, wanted: Wanted) -> Tests | None:
     """What a pressure over layers is read off by; None where there are none."""
     if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
         return None
-    graded = solid.layers[0].bottom is not None
-    return Tests(Stretch(kind.length, graded), kind.moments(wanted))
+    graded = graded_from_the_surface(solid)
+    return Tests(Stretch(kind.length, graded), kind.moments(wanted) + _MORE_GRADED * graded)
 
 
 def wanted_of_free_ends_on_layers(wanted: Wanted) -> Wanted:
@@ -77,6 +82,18 @@ def wanted_of_free_ends_on_layers(wanted: Wanted) -> Wanted:
     if wanted.nearest is None:
         return wanted
     return replace(wanted, nearest=max(wanted.nearest, _NEAR_FREE_END))
+
+
+def graded_from_the_surface(solid: Layered) -> bool:
+    """Do constants change in the uppermost layer?"""
+    return solid.layers[0].bottom not in (None, solid.layers[0].solid)
+
+
+def wanted_of_graded(wanted: Wanted, solid: Layered) -> Wanted:
+    """What a mesh has to be good for over layers, by whether the uppermost one is graded."""
+    if not graded_from_the_surface(solid):
+        return wanted
+    return replace(wanted, tolerance=min(wanted.tolerance, _LOOSEST_GRADED))
 
 
 def wanted_of_loads(wanted: Wanted) -> Wanted:
@@ -332,7 +349,9 @@ def _wanted(scene: Scene, mode: str, wanted: Wanted) -> Wanted:
     if scene.layers:
         if scene.body.free:
             return wanted_of_free_ends_on_layers(wanted)
-        return wanted_of_loads(wanted) if solve.own_pressure else wanted
+        if solve.own_pressure:
+            return wanted_of_loads(wanted)
+        return wanted_of_graded(wanted, scene.solid)  # type: ignore[arg-type]
     if scene.body.free:
         wanted = wanted_of_free_ends(wanted)
         # Kinks have meshes of their own; at sharp corners the singularity is what asks for the degree.

@@ -23,7 +23,7 @@ from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.errors import SolveError
 from galinx.solvers.sie.free_contact import Exponents, local_exponents
-from galinx.solvers.solution import Body, Surface, Turns
+from galinx.solvers.solution import Body, Surface
 
 from ..methods import METHODS
 from ..plan.task import Plan, Task
@@ -149,7 +149,7 @@ class Alike:
         raw, v_X = (
             None if values is None else values[self._of] for values in (found.raw, found.v_X)
         )  # fmt: skip
-        turns = found.turns and Turns(found.turns.X[self._of], found.turns.σ[:, self._of])
+        turns = found.turns and found.turns.of(self._of)
         return Surface(found.places, found.σ_YY[self._of], found.σ_XX[self._of], raw, v_X, turns)
 
     @cached_property

@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from ..errors import SolveError
-from ..profiles import check_reach, jumps, kinks
+from ..profiles import check_reach, cusp, jumps, kinks
 from ..profiles.flat import Flat
 from ..sie.closed_form import FlatPunch
 from ..sie.free_contact import NEXT_TO_TIP, Balance, Exponents, contacts
@@ -375,7 +375,10 @@ def kinked(
     def slope(r: NDArray) -> NDArray[np.float64]:
         return equation.slope(r) - mean
 
-    alone = FreeEnds(panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q))
+    alone = FreeEnds(
+        panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q),
+        (places, cusp(profile)),
+    )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
     known = on_panels(alone, equation.α, equation.β, longest, places)

@@ -144,9 +144,9 @@ class Panels:
         return np.asarray(legendre.legvander((x - middle) / self.half[panel], _NODES - 1) @ _TO_LEGENDRE)
 
     def values(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
-        """p at any places by its values at the points."""
+        """p at any places by its values at the points, (n, ...)."""
         inside = np.clip(x, -_REACH, _REACH)
-        found = np.empty_like(inside)
+        found = np.empty((*inside.shape, *p.shape[1:]))
         panels = self.panel(inside)
         for panel in np.unique(panels).tolist():
             some = panels == panel

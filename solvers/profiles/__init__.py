@@ -18,10 +18,11 @@ from .profile import (
     half_width,
     jumps,
     kinks,
+    leaving,
     smooth,
 )
 
 __all__ = [
     "PROFILES", "Profile", "check_reach", "cusp", "ends_are_found", "exponent", "half_width", "jumps",
-    "kinks", "smooth",
+    "kinks", "leaving", "smooth",
 ]  # fmt: skip

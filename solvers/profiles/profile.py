@@ -80,6 +80,16 @@ def cusp(profile: Any) -> float:
     return k - 1.0 if 1.0 < k < 2.0 and len(kinks(profile)) else 0.0
 
 
+def leaving(profile: Any) -> float:
+    """Exponent of the distance d from a kink with which the pressure leaves its value there.
+
+    1 stands for d log d, where the slope's derivative jumps; 0 is for kinks at which the pressure is
+    infinite, and for powers |X|^k, k > 2, which leave a smooth one.
+    """
+    logarithm = len(kinks(profile)) and exponent(profile) is None and not jumps(profile)
+    return 1.0 if logarithm else cusp(profile)
+
+
 def check_reach(profile: Any, left: float, right: float, found: str = "the contact would reach") -> None:
     """Is the punch known over a contact? Both ways to find one ask.
 

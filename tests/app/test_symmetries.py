@@ -59,10 +59,7 @@ def test_the_mirror_image(case, allowed):
     for name, values in original.items():
         other, sign = mirrored(name)
         along = [i for i, over in enumerate(declared(name).over) if over in (STATE, POINT, ALONG)]
-        # Its search is not yet the same from both sides: next to kinks it passes over up to 0.3 %.
-        searched = name.endswith(("sigma_XX_max", "sigma_XX_min"))
-        within = max(allowed, 3e-3) if searched else allowed
-        check_same(values, sign * np.flip(image[other], along), within, name)
+        check_same(values, sign * np.flip(image[other], along), allowed, name)
 
 
 @pytest.mark.parametrize("case, allowed", SOLVED)
@@ -74,19 +71,7 @@ def test_other_units(case, allowed):
         check_same(values, image[name] / UNITS[declared(name).unit], min(allowed, 1e-6), name)
 
 
-#: At a cusp stresses over layers are not taken to their limit, which those over uniform solids are.
-_NOT_YET = pytest.mark.xfail(
-    reason="σ_XX at a cusp over layers is that of samples beside it", strict=True
-)
-
-
-@pytest.mark.parametrize(
-    "punch",
-    [
-        pytest.param(name, marks=_NOT_YET if name == "cusp" else ())
-        for name in (*PROFILE, *(name for name, rows in PRESSURE.items() if rows))
-    ],
-)
+@pytest.mark.parametrize("punch", [*PROFILE, *(name for name, rows in PRESSURE.items() if rows)])
 def test_a_layer_of_the_same_solid_is_none(punch):
     """The integral equation of layers, and what follows from it, against that of the uniform solid."""
     words = tuple(word for word in words_of("isotropic") if word != YIELD)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.free_ends import turns_at_knots
 from galinx.postprocess.yielding import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Contacts, Exponents, contacts
@@ -192,7 +193,9 @@ class OwnPressures(Punches):
     def surface(self) -> Surface:
         places = self.task.places
         σ_YY = np.where(places.under, self._pressure(places.X), np.nan)
-        return Surface(places, np.tile(σ_YY, (len(self.g), 1)), self._over_places.σ_XX(places.X))
+        σ_XX = self._over_places.σ_XX
+        turns = turns_at_knots(self._pressure, self.g, σ_XX)
+        return Surface(places, np.tile(σ_YY, (len(self.g), 1)), σ_XX(places.X), turns=turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

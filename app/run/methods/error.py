@@ -26,7 +26,7 @@ from galinx.postprocess.estimate import (
     of_degrees,
     remaining,
 )
-from galinx.postprocess.pressure import JacobiPressure
+from galinx.postprocess.pressure import JacobiPressure, StretchedPressure
 from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
@@ -70,16 +70,20 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
-def of_pressure(pressure: JacobiPressure, moments: NDArray) -> Gauge:
-    """K_I, the pressure all over the contact, and its moments 1 to 5 over the load."""
+def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
+    """K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
+
+    Args:
+        pressure: of the states.
+        moments: of it, (states, moments).
+        moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
+    """
     factor = pressure.factor(_ACROSS)
-    values = np.concatenate([factor, moments[:, 1:6]], axis=1)
-    return Gauge(
-        INTENSITIES,
-        values,
-        np.concatenate([stresses.of_factor(factor), 2.0 + 0.0 * moments[:, 1:6]], axis=1),
-        pressure.unresolved,
-    )
+    values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
+    left = pressure.unresolved
+    if isinstance(pressure, StretchedPressure):
+        left = left + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
+    return Gauge(INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), left)
 
 
 def of_intensities(K_I: NDArray) -> Gauge:

@@ -43,11 +43,11 @@ from galinx.postprocess.yielding import Strength
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space
-from galinx.solvers.profiles import cusp, exponent, jumps, kinks
+from galinx.solvers.profiles import cusp, exponent, jumps, kinks, leaving
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.residual import of_contact
-from galinx.solvers.solution import Body, Surface, Turns
+from galinx.solvers.solution import Body, Surface, Turns, together
 
 from ...plan.fem import FemPlan
 from ...plan.task import OWN_MESHES_KEPT, Task
@@ -287,17 +287,6 @@ class OnOwnMeshes:
         return np.stack([state.inside for state in self.found], axis=1)
 
 
-def together(each: list[Turns]) -> Turns | None:
-    """Of one state each, as many places as the state with most has; None of none."""
-    if not each:
-        return None
-    most = max(one.X.shape[1] for one in each)
-    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
-    for i, one in enumerate(each):
-        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
-    return Turns(X, σ)
-
-
 #: Most kinks in a contact, and how near to its end one may be.
 _MOST, _NEXT_TO_END = 12, 0.98
 
@@ -433,7 +422,7 @@ class KinkedLevel:
         exponents = float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
         self.pressure = KinkedPressure(
             space.contact.s, space.degree, space.chart, self.contact.normal[0], places, exponents,
-            cusp(body.profile),
+            leaving(body.profile), work.plan.tolerance,
         )  # fmt: skip
         tips = places if jumps(body.profile) else np.empty(0)
         self.kinks = places if not len(tips) else np.empty(0)
@@ -467,11 +456,14 @@ class KinkedLevel:
         return self.pressure.σ_YY(self._task.places.X)[None]
 
     def _of_forces(self) -> Gauge:
-        """Moments of the pressure over the load, and the pressure over its largest."""
-        σ = self.pressure.σ_YY(self._across)[None]
-        values = np.concatenate([self._moments, σ], axis=1)
-        scale = np.concatenate([2.0 + 0.0 * self._moments, np.abs(σ).max() + 0.0 * σ], axis=1)
-        return Gauge(INTENSITIES, values, scale)
+        """Moments of the pressure over the load, and the pressure over its largest, kinks among the
+        places: there it is a limit, which has less digits than what it is taken from."""
+        at_kinks = [self.pressure.at_kink(i) for i in range(len(self.kinks))]
+        σ = np.append(self.pressure.σ_YY(self._across), at_kinks)[None]
+        values, size = np.concatenate([self._moments, σ], axis=1), float(np.abs(σ).max())
+        scale = np.concatenate([2.0 + 0.0 * self._moments, size + 0.0 * σ], axis=1)
+        left = self.pressure.left_at_kinks / size if at_kinks else 0.0
+        return Gauge(INTENSITIES, values, scale, left)
 
 
 def _off(task: Task, tips: NDArray) -> Task:
@@ -523,7 +515,7 @@ class KinkedState:
         u_X = np.array([pressure.limit_at_kink(i, level.displacement.strain) for i in range(len(X))])
         σ_XY = float(level.contact.g[0]) * σ_YY
         under = np.array([self.task.response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
-        return Turns(np.append(ends.X, X[None], axis=1), np.concatenate([ends.σ, under[:, None]], axis=2))
+        return ends.joined(Turns(X[None], under[:, None]))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

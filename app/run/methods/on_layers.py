@@ -14,7 +14,7 @@ All is linear in σ_XY/σ_YY: two frictions tell those of all states.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess import stresses
+from galinx.postprocess.free_ends import turns_at_ends, turns_at_knots
 from galinx.postprocess.pressure import largest
 from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import INTENSITIES
@@ -31,13 +32,13 @@ from galinx.solvers.layers.free_contact import Contacts, FoundSpeed, Punch
 from galinx.solvers.layers.kernel import Kernel, Level
 from galinx.solvers.layers.layered import Stack
 from galinx.solvers.layers.stiffness import Medium
-from galinx.solvers.profiles import cusp, kinks
+from galinx.solvers.profiles import cusp, jumps, kinks
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.collocation import weights_hilbert
 from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.free_contact import largest as largest_next_to_kinks
 from galinx.solvers.sie.prescribed_pressure import LinearPressure
-from galinx.solvers.solution import Places, Surface
+from galinx.solvers.solution import Places, Surface, Turns, together
 
 from ...plan.task import Task
 from .method import Solver
@@ -145,7 +146,11 @@ class AtSpeed:
     @cached_property
     def regular(self) -> NDArray[np.float64]:
         """Strains μ u,X that the layers add, (2, nodes, n)."""
-        X, kernel = self.task.places.X, self.speed.kernel
+        return self.regular_at(self.task.places.X)
+
+    def regular_at(self, X: NDArray) -> NDArray[np.float64]:
+        """Strains μ u,X that the layers add at positions (n,) on the surface, (2, nodes, n)."""
+        kernel = self.speed.kernel
         by_kernel = self.nodes.both(lambda pressure: pressure.integral(kernel, X))
         return np.asarray(by_kernel[..., 1] + self.nodes.g[:, None] * by_kernel[..., 0])
 
@@ -378,12 +383,19 @@ class FoundAtSpeed(AtSpeed):
     @cached_property
     def regular(self) -> NDArray[np.float64]:
         X = self.task.places.X
+        return self.nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
 
-        def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
-            by_kernel = pressure.integral(self.speed.scaled(h), X)
-            return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
+    def strain(self, pressure: Any, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
 
-        return self.nodes.of_each(read)
+        Args:
+            pressure: of a contact.
+            g: σ_XY/σ_YY.
+            h: half-width of the contact over the length of all.
+            X: positions over the half-width.
+        """
+        by_kernel = pressure.integral(self.speed.scaled(h), X)
+        return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
 
 
 def _error(level: Level) -> float:
@@ -426,6 +438,35 @@ class FoundPunches(Punches):
         return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
 
     @cached_property
+    def surface(self) -> Surface:
+        profile, found = self.at.task.body.profile, super().surface
+        if jumps(profile) or not len(kinks(profile)):
+            return found
+        ends = turns_at_ends(found, self.local)
+        each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]
+        return replace(found, turns=together(each))
+
+    def _at_kinks(self, i: int) -> Turns:
+        """Stresses of one state under the punch's kinks.
+
+        They are those of its node: with kinks each friction is solved.
+        """
+        node, response, g = int(self._by_nodes[i].argmax()), self.at.task.response, float(self.g[i])
+        pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
+        X, α, β = self._kinks(i), self.edges.α[i], self.edges.β[i]
+        p = pressure.series(X)
+        σ_YY = (1.0 - X) ** α * (1.0 + X) ** β * p
+        H = p * weights_hilbert(α, β, X) + pressure.rest(X, self.at.nodes.near)
+        u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + self.at.strain(pressure, g, h, X)
+        σ = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+        return Turns(X[None], σ[:, None])
+
+    def _kinks(self, i: int) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over a in the contact of one state."""
+        at = (np.array(kinks(self.at.task.body.profile)) - self.centre[i]) / self.half_width[i]
+        return np.asarray(at[np.abs(at) < 1.0])
+
+    @cached_property
     def K_I(self) -> NDArray[np.float64]:
         """At the left and the right end: none at those that are found, by condition, (states, 2)."""
         return np.where(self.free, 0.0, super().K_I)
@@ -441,11 +482,9 @@ class FoundPunches(Punches):
         if not len(kinks(profile)):
             return self._largest
         each = []
-        for i, (m, h) in enumerate(zip(self.centre.tolist(), self.half_width.tolist())):
-            at = [(x - m) / h for x in kinks(profile) if abs(x - m) < h]
-            each.append(
-                largest_next_to_kinks(lambda r: self._pressure(r, i)[0], (at, cusp(profile)))  # noqa: B023
-            )
+        for i in range(len(self.g)):
+            at = self._kinks(i).tolist(), cusp(profile)
+            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at))  # noqa: B023
         value, place = np.array(each).T
         return value, place
 
@@ -518,11 +557,25 @@ class GivenPressures(Punches):
 
     @cached_property
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        response, X, g = self.at.task.response, self.places.X, self.g[:, None]
+        return self._on_surface(self.places.X, self.at.regular)
+
+    def _on_surface(
+        self, X: NDArray, regular: NDArray
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY and σ_XX at X, by strains that the layers add there."""
+        response, g = self.at.task.response, self.g[:, None]
         σ = np.tile(self._pressure(X), (2, len(self.g), 1))
         u_X = response.q * σ + (response.n12 + response.m * g) * self._pressure.hilbert(X)
-        u_X = u_X + self._of_both(self.at.regular)
+        u_X = u_X + self._of_both(regular)
         return σ, response.σ_XX(u_X, σ, g * σ)
+
+    @cached_property
+    def surface(self) -> Surface:
+        def σ_XX(X: NDArray) -> NDArray[np.float64]:
+            _, (now, _) = self._on_surface(X, self.at.regular_at(X))
+            return now
+
+        return replace(super().surface, turns=turns_at_knots(self._pressure, self.g, σ_XX))
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,14 @@ What states share whose pressure is put in: by formula, or the user's own.
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.free_ends import turns_at_knots
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
 from galinx.postprocess.yielding import Strength
 from galinx.solvers.fem.fields import TOGETHER, SurfaceSlopes
@@ -144,11 +145,9 @@ class PiecesSeen:
     def surface(self, g: NDArray) -> Surface:
         """The surface of states with these values of σ_XY/σ_YY."""
         places = self._task.places
-        u_X, v_X = np.einsum("nid,ds->isn", self._on_surface[:, :, 0], _weights(g))
+        u_X, v_X = np.moveaxis(self._on_surface[:, :, 0], 1, 0)
         σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
-        σ = np.nan_to_num(σ_YY)
-        σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
-        return Surface(places, σ_YY, σ_XX, None, v_X)
+        return Surface(places, σ_YY, _in_plane(self._task, u_X, places.X, g), None, (v_X @ _weights(g)).T)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
@@ -157,6 +156,12 @@ class PiecesSeen:
     def around(self, g: NDArray) -> NDArray[np.float64]:
         """The same where stresses are looked at for yield, (3, states, k)."""
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._around, _weights(g)))
+
+
+def _in_plane(task: Task, u_X: NDArray, X: NDArray, g: NDArray) -> NDArray[np.float64]:
+    """σ_XX of states on the surface, (states, n), by strains (n, 2) under σ_YY and an equal σ_XY."""
+    σ = _put_in(task)(X)
+    return task.response.σ_XX((u_X @ _weights(g)).T, σ, g[:, None] * σ)
 
 
 def _weights(g: NDArray) -> NDArray[np.float64]:
@@ -213,6 +218,12 @@ class PiecesLevel:
         G = G.reshape(*points.shape[:2], 2, 2, -1)
         return self._task.response.stresses(G[..., 0] + g[:, None, None, None] * G[..., 1])
 
+    def in_plane(self, X: NDArray, g: NDArray) -> NDArray[np.float64]:
+        """σ_XX of all states at positions on the surface, (states, n)."""
+        assert self._loads
+        G = self._pieces.gradients(self._loads, np.column_stack([X, np.zeros(len(X))]))
+        return _in_plane(self._task, G[:, 0, 0], X, g)
+
     @property
     def mirrored(self) -> bool:
         return True
@@ -240,7 +251,9 @@ class OwnPressures(PutIn):
 
     @cached_property
     def surface(self) -> Surface:
-        return self.at.level.everywhere.surface(self.g)
+        level, g = self.at.level, self.g
+        turns = turns_at_knots(_put_in(self.at.task), g, lambda X: level.in_plane(X, g))
+        return replace(level.everywhere.surface(g), turns=turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
@@ -512,7 +525,14 @@ class LoadsOnLayers(PutIn):
 
     @cached_property
     def surface(self) -> Surface:
-        return self.at.displacement.surface(self.g, weights(self.g), self.at.level.σ_YY(self.g))
+        g, pressure = self.g, _put_in(self.at.task)
+
+        def σ_XX(X: NDArray) -> NDArray[np.float64]:
+            there = self.at.level.displaced(replace(self.at.task, places=Places(X, np.empty((0, 2)))))
+            return there.surface(g, weights(g), np.tile(pressure(X), (len(g), 1))).σ_XX
+
+        found = self.at.displacement.surface(g, weights(g), self.at.level.σ_YY(g))
+        return replace(found, turns=turns_at_knots(pressure, g, σ_XX))
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

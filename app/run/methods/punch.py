@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.meshes.layered import OnLayers
 from galinx.postprocess.free_ends import (
     SHAPES,
     free_ends,
@@ -169,10 +170,18 @@ class PunchLevel:
     def gauges(self, states: ContactStates, pressure: JacobiPressure) -> list[Gauge]:
         """What the error is measured on of states and their pressure."""
         moments = states.tested(self.recovery.moments)
-        found = [error.of_pressure(pressure, moments)]
+        found = [error.of_pressure(pressure, moments, self._moved_edges)]
         if self._gauges.wanted:
             found += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
         return found
+
+    @property
+    def _moved_edges(self) -> float:
+        """Distance over a by which the edges seem off on straight cells along layers; 0 on others."""
+        plan = self._work.plan
+        if not isinstance(plan.kind, OnLayers):
+            return 0.0
+        return plan.kind.moved_edges(plan.wanted, self.space.degree, self.task.response.margin)
 
     def rounding(self, g: NDArray) -> list[float]:
         """What is not the mirror image of itself at -g, of a flat punch: a profile need not be one.

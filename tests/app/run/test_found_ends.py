@@ -350,6 +350,21 @@ def test_the_pressure_at_a_cusp_is_found_by_both_methods():
     np.testing.assert_allclose(place, -m / h, atol=1e-6)
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, *(1e-8,) * THOROUGH])
+@pytest.mark.parametrize("exponent", [1.2, 1.35, 1.6])
+def test_the_error_of_the_pressure_at_a_cusp_is_in_the_estimate(exponent, tolerance):
+    """It is a limit, and there is less in it than in the pressure beside it."""
+    changes = {
+        "motion.c": 0.5, "motion.strokes": ["forward"], "motion.X_over_L": [0.7],
+        "solve.tolerance": tolerance, "output.quantities": ["sif"],
+        "punch.exponent": exponent, "punch.coefficient": 0.02,
+    }  # fmt: skip
+    result = computed("tables4_5", KINKED["power"] | changes)
+    largest = [result.data[f"states/{method}/largest_pressure"][0] for method in ("fem", "closed_form")]
+    error = abs(largest[0] / largest[1] - 1.0)
+    assert error <= result.data["states/fem/estimate"][0] <= tolerance
+
+
 @pytest.mark.parametrize("changes", KINKED.values())
 def test_every_profile_has_an_archive(changes, tmp_path):
     solve = {"solve.methods": ["closed_form"], "output.quantities": ["sif", "surface", "interior"]}

@@ -9,6 +9,7 @@ from galinx.app.scene.read import parse
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.profiles import cusp
 from galinx.solvers.sie.free_contact import contacts
+from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
 MISSED, NEXT_TO_CUSP = 1e-6, 1e-4
@@ -72,15 +73,17 @@ def samples(rng, measure, X, Y, around, rounds=5):
     return values.max()
 
 
+MEASURES = {
+    "von_mises": lambda solid, *σ: von_mises(*σ, solid.σ_ZZ(*σ)),
+    "max_shear": lambda solid, *σ: maximum_shear(*σ),
+}
+
+
 def sampled(contact, solid, rng, fine=2):
-    """Largest von Mises and shear stress, highest σ_XX on the surface, largest pressure of one state."""
+    """Largest von Mises and shear stress, highest and lowest σ_XX on the surface, largest pressure."""
 
     def σ(X, Y):
         return contact.stresses(X, Y)[:, 0]
-
-    def mises(X, Y):
-        XX, YY, XY = σ(X, Y)
-        return von_mises(XX, YY, XY, solid.σ_ZZ(XX, YY, XY))
 
     ξ = np.concatenate([[0.0], np.geomspace(1e-4, 3.0, 8 * fine)])
     η = np.unique(np.concatenate([np.linspace(-np.pi, 0.0, 25 * fine), -np.geomspace(1e-4, 0.1, 6)]))
@@ -93,15 +96,20 @@ def sampled(contact, solid, rng, fine=2):
     inside = X0[np.abs(X0) < 1.0]
     return np.array(
         [
-            samples(rng, mises, X, Y, 125 * fine),
-            samples(rng, lambda X, Y: maximum_shear(*σ(X, Y)), X, Y, 125 * fine),
+            *(
+                samples(rng, lambda X, Y: of(solid, *σ(X, Y)), X, Y, 125 * fine)  # noqa: B023
+                for of in MEASURES.values()
+            ),
             samples(rng, lambda X, Y: σ(X, 0.0 * Y)[0], X0, none(len(X0)), 125 * fine),
+            -samples(rng, lambda X, Y: -σ(X, 0.0 * Y)[0], X0, none(len(X0)), 125 * fine),
             samples(rng, lambda X, Y: -σ(X, 0.0 * Y)[1], inside, none(len(inside)), 125 * fine),
         ]
     )
 
 
-NAMES = ("von_mises", "max_shear", "sigma_XX_max", "largest_pressure")
+NAMES = ("von_mises", "max_shear", "sigma_XX_max", "sigma_XX_min", "largest_pressure")
+#: Signs with which these are highest.
+SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0])
 BOTH = ["closed_form", "fem"]
 CASES = [(seed, tuple(PUNCHES)[seed % 4]) for seed in range(50 if THOROUGH else 4)]
 
@@ -118,10 +126,56 @@ def test_no_sample_is_larger_than_the_largest(seed, profile):
     for i in range(len(data["states/g"])):
         contact = contacts(response, data["states/g"][i : i + 1], body.profile, body.compression)
         largest = sampled(contact, scene.solid, np.random.default_rng(seed), 1 + whole)
-        size = np.array([*largest[:2], max(largest[2], largest[3]), largest[3]])
+        size = np.array([*largest[:2], *[np.abs(largest[2:]).max()] * 2, largest[4]])
         for method in methods:
             found = np.array([data[f"states/{method}/{name}"][i] for name in NAMES])
-            assert (largest - found <= allowed * size).all(), (method, found / largest - 1.0)
+            missed = SIGNS * (largest - found) / size
+            assert (missed <= allowed).all(), (method, missed)
+            for name, value in zip(NAMES[:2], found):
+                X, Y = (data[f"states/{method}/{name}_{axis}_over_a"][i : i + 1] for axis in "XY")
+                there = MEASURES[name](scene.solid, *contact.stresses(X, Y)[:, 0])
+                assert abs(there[0] / value - 1.0) <= allowed, (method, name)
+
+
+def prescribed(rng):
+    """Knots and values of a pressure, 0 at its ends or not."""
+    knots = np.concatenate([[-1.0], np.sort(rng.uniform(-1.0, 1.0, rng.integers(1, 7))), [1.0]])
+    values = -rng.uniform(0.0, 1.0, len(knots))
+    values[[0, -1]] *= rng.integers(2)
+    return knots, values
+
+
+def in_plane_sampled(pressure, solid, c, g):
+    """Highest and lowest σ_XX of a pressure, 0.01 a and more from where it jumps."""
+    exact, knots = GivenPressure(solid.response(c), g, pressure), pressure.knots
+    near = np.concatenate([sign * np.geomspace(1e-13, 1.0, 4000) for sign in (-1.0, 1.0)])
+    X = np.concatenate([np.add.outer(knots, near).ravel(), knots, np.linspace(-4.0, 4.0, 10001)])
+    jumps = knots[[0, -1]][pressure.values[[0, -1]] != 0.0]
+    X = np.append(X, np.add.outer(jumps, [-0.01, 0.01]))
+    X = X[(np.abs(X[:, None] - jumps) >= 0.01 - 1e-12).all(axis=1)]
+    σ_XX = exact.σ_XX(X)
+    return np.array([σ_XX.max(), σ_XX.min()])
+
+
+@pytest.mark.parametrize("seed", range(60 if THOROUGH else 6))
+def test_in_plane_stresses_of_a_pressure_are_largest_at_its_knots_and_beside_them(seed):
+    """σ_XX has d log d at the distance d from a knot, which no polynomial through samples follows."""
+    rng = np.random.default_rng(seed)
+    knots, values = prescribed(rng)
+    changes = {
+        "solve.mode": "traction", "solve.pressure": np.column_stack([knots, values]).tolist(),
+        "solve.tolerance": 1e-6, "solve.methods": BOTH, "solid.nu": float(rng.uniform(0.0, 0.45)),
+        "motion.c": float(rng.uniform(0.0, 0.85)), "friction.mu_c": float(rng.uniform(0.0, 0.9)),
+        "friction.sigma0_over_load": 1e7, "motion.X_over_L": 0.8, "output.quantities": ["surface"],
+    }  # fmt: skip
+    result = computed("traction", changes)
+    for i, g in enumerate(result.data["states/g"].tolist()):
+        c = float(result.data["states/c"][i])
+        pressure = LinearPressure(knots, values)
+        largest = in_plane_sampled(pressure, result.scene.solid, c, g)
+        for method in BOTH:
+            found = [result.data[f"states/{method}/sigma_XX_{end}"][i] for end in ("max", "min")]
+            np.testing.assert_allclose(found, largest, rtol=0.0, atol=2e-6 * np.abs(largest).max())
 
 
 #: With much friction at high speed von Mises is largest at the end.

@@ -489,7 +489,7 @@ def _size(refinement: Refinement, p: int) -> int:
 
 
 def unknowns(mesh: QuadMesh, p: int) -> int:
-    """Unknowns at degree p, two a node: p - 1 nodes an edge, counted by Euler's formula, (p - 1)² a cell."""
+    """Unknowns at degree p, two a node: p - 1 nodes an edge (Euler's formula), (p - 1)² a cell."""
     cells, vertices = len(mesh.cells), len(mesh.points)
     edges = cells + vertices - 1
     return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)

@@ -1,11 +1,13 @@
-"""Gauss's rule on a panel, and functions there by Legendre polynomials.
+"""Approximation of functions of one variable: Legendre and Chebyshev polynomials, rational functions.
 
-Rational functions of one variable through values that are many functions' at once.
+On a panel a function is a sum of Legendre polynomials, by Gauss's rule; on [0, 1] it is a polynomial
+through its values at Chebyshev's points.
 
-The barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j w_j/(z - z_j), passes through
-the values f_k at the nodes z_k whatever the weights w_k are. Here one set of weights serves all
-functions: their denominator is that of the set-valued AAA algorithm (Nakatsukasa, Sète & Trefethen, SIAM
-J. Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken, IMA J. Numer. Anal. 42, 2022).
+Rational functions are in the barycentric form r(z) = Σ_k b_k(z) f_k, b_k(z) = (w_k/(z - z_k)) / Σ_j
+w_j/(z - z_j), which passes through the values f_k at the nodes z_k whatever the weights w_k are. Here one
+set of weights serves many functions: their denominator is that of the set-valued AAA algorithm
+(Nakatsukasa, Sète & Trefethen, SIAM J. Sci. Comput. 40, 2018; Lietaert, Meerbergen, Pérez & Vandereycken,
+IMA J. Numer. Anal. 42, 2022).
 """
 
 from collections.abc import Sequence
@@ -18,31 +20,34 @@ from numpy.typing import NDArray
 
 
 def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Points in (-1, 1) and weights, (nodes,), and from values to coefficients, (nodes, nodes)."""
+    """Gauss's points in (-1, 1) and weights, (nodes,) each, and a matrix (nodes, nodes).
+
+    The matrix takes values at the points to coefficients of Legendre polynomials.
+    """
     τ, w = leggauss(nodes)
     return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
 
 
 def chebyshev_points(count: int) -> NDArray[np.float64]:
-    """Points in [0, 1] at which a smooth function is tabulated, both ends among them from two on."""
+    """Chebyshev's points in [0, 1], with both ends from two points on, (count,)."""
     if count == 1:
         return np.zeros(1)
     return np.asarray((1.0 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2.0)
 
 
 def interpolation(s: NDArray, count: int) -> NDArray[np.float64]:
-    """Values at s in [0, 1] by those at :func:`chebyshev_points`, (*s.shape, count)."""
+    """Matrix from values at :func:`chebyshev_points` to values at s in [0, 1], (*s.shape, count)."""
     at_points, at_s = (chebvander(2.0 * x - 1.0, count - 1) for x in (chebyshev_points(count), s))
     return np.asarray(at_s @ np.linalg.inv(at_points))
 
 
 def barycentric(nodes: NDArray, weights: NDArray, z: NDArray) -> NDArray[np.float64]:
-    """What of the values at nodes makes that at each z, (len(z), nodes); rows sum to 1.
+    """Matrix from values at nodes to values at z, (len(z), nodes); its rows sum to 1.
 
     Args:
         nodes: all different, (nodes,).
         weights: of the barycentric form, (nodes,).
-        z: where, (n,).
+        z: points of evaluation, (n,).
     """
     step = z[:, None] - nodes
     met = step == 0.0
@@ -77,29 +82,29 @@ class Rational:
     weights: NDArray[np.float64]
 
     def shares(self, z: NDArray) -> NDArray[np.float64]:
-        """What of the samples makes the values at each z, (len(z), K)."""
+        """Matrix from the samples to values at z, (len(z), K)."""
         return barycentric(self.z, self.weights, z)
 
 
 def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
-    """The rational function through samples whose denominator the AAA algorithm finds.
+    """Rational function through samples, with the denominator of the AAA algorithm.
 
-    That takes the worst sample for its next node until it comes near all the others; had it to follow
-    their last digits, or no more than one other, it would put poles anywhere. The numerator is the
-    polynomial that is right at all samples.
+    The algorithm takes the sample with the largest error as its next node until it comes near all
+    others; if it had to follow their last digits, or no more than one other sample, it would put poles
+    anywhere. The numerator is the polynomial that interpolates all samples.
 
     Args:
         z: of the samples, all different, (K,), K >= 2.
         values: of the functions there, (K, functions).
-        noise: root of the sum of squares of what is rounding in a sample.
+        noise: root of the sum of squares of the rounding errors of a sample.
     """
     count = len(z)
     # A rotation of the functions among themselves changes no norm, and leaves at most K of them.
     values = rotated(values)
-    found, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
+    fit, nodes = np.tile(values.mean(axis=0), (count, 1)), np.zeros(0, dtype=np.int64)
     weights, rest = np.zeros(0), np.arange(count)
     for _ in range(max(count - _OTHERS, 1)):
-        error = np.linalg.norm(values - found, axis=1)
+        error = np.linalg.norm(values - fit, axis=1)
         error[nodes] = -1.0
         if error.max() <= noise and len(nodes):
             break
@@ -108,12 +113,12 @@ def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
         loewner = (values[rest][:, None] - values[nodes]) / (z[rest][:, None] - z[nodes])[..., None]
         rows = loewner.transpose(0, 2, 1).reshape(-1, len(nodes))
         weights = np.linalg.svd(rows)[2][-1]
-        found = barycentric(z[nodes], weights, z) @ values[nodes]
+        fit = barycentric(z[nodes], weights, z) @ values[nodes]
     return Rational(z, _through_all(z, nodes, weights, rest))
 
 
 def rotated(values: NDArray) -> NDArray[np.float64]:
-    """Functions that are those of the values rotated among themselves, at most as many as samples.
+    """Rotated values of functions, (K, at most K): the rotation changes no norm over the functions.
 
     Args:
         values: (K, functions).
@@ -124,12 +129,12 @@ def rotated(values: NDArray) -> NDArray[np.float64]:
 def _through_all(z: NDArray, nodes: NDArray, weights: NDArray, rest: NDArray) -> NDArray[np.float64]:
     """Weights of the form with the same denominator and a node at every sample."""
     size = np.ptp(z) / 4.0
-    found = np.zeros(len(z))
-    found[nodes] = weights / np.prod((z[nodes][:, None] - z[rest]) / size, axis=1)
+    all_weights = np.zeros(len(z))
+    all_weights[nodes] = weights / np.prod((z[nodes][:, None] - z[rest]) / size, axis=1)
     denominator = (size / (z[rest][:, None] - z[nodes])) @ weights
     others = (z[rest][:, None] - z[rest]) / size + np.eye(len(rest))
-    found[rest] = denominator / np.prod(others, axis=1)
-    return found
+    all_weights[rest] = denominator / np.prod(others, axis=1)
+    return all_weights
 
 
 #: Samples that are no nodes of the AAA algorithm, at least: they determine the denominator.
@@ -140,11 +145,13 @@ _EQUAL = 1e-10
 
 
 def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
-    """The point at which the polynomial with zeros at those chosen is largest; None where it vanishes.
+    """Number of the next Leja point: where the polynomial with zeros at the chosen points is largest.
+
+    None where the polynomial vanishes at all points.
 
     Args:
-        z: points; those that are equal to ten digits are one, (n,).
-        chosen: numbers of those that are chosen.
+        z: points; two that are equal to ten digits count as one, (n,).
+        chosen: numbers of the points that are chosen already.
     """
     steps = np.abs(z[:, None] - z[list(chosen)]) / (np.ptp(z) or 1.0)
     with np.errstate(divide="ignore"):

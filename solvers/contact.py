@@ -1,4 +1,4 @@
-"""Where a contact with two edges is, and the stress that is singular there."""
+"""Positions under a punch with two edges, and the contact stress that is singular at them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def under_punch(X: ArrayLike) -> NDArray[np.bool_]:
-    """Is a position X over a on the surface under the punch? Its edges are not."""
+    """True where a position X over a on the surface is under the punch; False at its edges."""
     return np.abs(np.asarray(X, dtype=float)) < 1.0
 
 

@@ -2,11 +2,11 @@
 
 
 class SolveError(RuntimeError):
-    """A linear solve gave nothing that can be used; the message says what was found."""
+    """A solve has no usable result; the message says what was tried and what came of it."""
 
 
 class MeshError(ValueError):
-    """A mesh lacks what the half-plane needs; the message names it."""
+    """A mesh lacks a boundary or a region that the half-plane needs; the message names it."""
 
 
 class CompilerError(Exception):

@@ -1,4 +1,4 @@
-"""Parameters of physical models: dataclass fields that know their key, unit, range and meaning.
+"""Parameters of physical models: dataclass fields with a key, a unit, a range and a meaning.
 
 Sections of scenes, columns of the states, the schema and the pages of documentation are made from them.
 """
@@ -14,10 +14,10 @@ _METADATA = "galinx parameter"
 
 @dataclass(frozen=True)
 class Range:
-    """Where a number may lie; what is not given does not bound it.
+    """Range of a number.
 
     Attributes:
-        above, at_least, below, at_most: bounds.
+        above, at_least, below, at_most: bounds; None for no bound.
     """
 
     above: float | None = None
@@ -26,7 +26,7 @@ class Range:
     at_most: float | None = None
 
     def __contains__(self, value: Any) -> bool:
-        """Does a number lie there, or every number of an array?"""
+        """Return True if a number, or every number of an array, lies in the range."""
         return bool(
             (self.above is None or np.all(value > self.above))
             and (self.at_least is None or np.all(value >= self.at_least))
@@ -41,20 +41,20 @@ class Range:
 
 @dataclass(frozen=True)
 class Parameter:
-    """What is known of a parameter.
+    """Description of a parameter.
 
     Attributes:
-        key: its name in scenes and archives.
-        about: what it is.
+        key: name in scenes and archives.
+        about: meaning, in a few words.
         unit: SI, "" for dimensionless.
         symbol: as formulas write it, in LaTeX without dollars.
-        range: where it may lie.
-        usual: where it usually lies; beyond, its unit may be another than meant.
-        options: the texts that it may be; none for a number.
-        count: of the numbers that it is, 0 for one number.
+        range: range of its value.
+        usual: usual range; a value beyond it may be in another unit than meant.
+        options: texts to choose from; none for a number.
+        count: length of a tuple of numbers, 0 for one number.
         columns: units of the columns of a table of numbers; none for anything else.
-        measured: of these, the columns that a fit to measurements finds; the others are places.
-        optional: may all of these be left out?
+        measured: numbers of the columns that a fit to measurements determines; the others are places.
+        optional: True if the numbers may be left out.
         note: what documentation says beyond ``about``.
     """
 
@@ -73,7 +73,7 @@ class Parameter:
 
     @property
     def single(self) -> bool:
-        """Is it one number or one text?"""
+        """True if the parameter is one number or one text."""
         return not self.count and not self.columns
 
 
@@ -88,10 +88,10 @@ def parameter(
     note: str = "",
     **bounds: float,
 ) -> Any:
-    """A number as a dataclass's field; ``bounds`` are those of :class:`Range`."""
+    """Field of a dataclass that is a number; ``bounds`` are those of :class:`Range`."""
     shown = symbol or rf"\mathrm{{{key}}}".replace("_", r"\_")
-    known = Parameter(key, about, unit, shown, Range(**bounds), usual, note=note)
-    return dataclasses.field(default=default, metadata={_METADATA: known})
+    description = Parameter(key, about, unit, shown, Range(**bounds), usual, note=note)
+    return dataclasses.field(default=default, metadata={_METADATA: description})
 
 
 def numbers(
@@ -104,9 +104,9 @@ def numbers(
     usual: tuple[float, float] | None = None,
     note: str = "",
 ) -> Any:
-    """So many numbers as a dataclass's field, a tuple; an empty one where they may be left out."""
-    known = Parameter(key, about, unit, usual=usual, count=count, optional=optional, note=note)
-    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
+    """Field of a dataclass that is a tuple of ``count`` numbers; empty if optional and left out."""
+    description = Parameter(key, about, unit, usual=usual, count=count, optional=optional, note=note)
+    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: description})
 
 
 def rows(
@@ -118,18 +118,18 @@ def rows(
     optional: bool = False,
     note: str = "",
 ) -> Any:
-    """A table of numbers as a dataclass's field, a tuple of rows; ``columns`` are the columns' units.
+    """Field of a dataclass that is a table of numbers, a tuple of rows; ``columns`` are their units.
 
-    Where it may be left out, it is empty then.
+    The table is empty if it is optional and left out.
     """
-    known = Parameter(key, about, columns=columns, measured=measured, optional=optional, note=note)
-    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: known})
+    description = Parameter(key, about, columns=columns, measured=measured, optional=optional, note=note)
+    return dataclasses.field(default=() if optional else MISSING, metadata={_METADATA: description})
 
 
 def choice(key: str, about: str, options: tuple[str, ...], *, note: str = "") -> Any:
-    """One of some texts as a dataclass's field; the first is the default."""
-    known = Parameter(key, about, options=options, note=note)
-    return dataclasses.field(default=options[0], metadata={_METADATA: known})
+    """Field of a dataclass that is one of several texts; the first is the default."""
+    description = Parameter(key, about, options=options, note=note)
+    return dataclasses.field(default=options[0], metadata={_METADATA: description})
 
 
 def fields(model: Any) -> dict[str, dataclasses.Field]:
@@ -152,37 +152,37 @@ def values(model: Any) -> dict[str, Any]:
 
 
 def made(kind: Any, given: dict[str, Any]) -> Any:
-    """A model of a class from values by key; what is not given has its default."""
-    known = fields(kind)
-    return kind(**{known[key].name: value for key, value in given.items()})
+    """Model of a class from values by key; parameters without a value have their default."""
+    fields_of_kind = fields(kind)
+    return kind(**{fields_of_kind[key].name: value for key, value in given.items()})
 
 
 def check(model: Any) -> None:
-    """For a model's ``__post_init__``.
+    """Check the values of a model's parameters, in its ``__post_init__``.
 
     Raises:
         ValueError: a parameter is not finite or outside its range; the message names value and range.
     """
     for key, field in fields(model).items():
-        known, value = field.metadata[_METADATA], getattr(model, field.name)
-        if known.options:
-            if not set(np.ravel(value).tolist()) <= set(known.options):
-                options = " or ".join(map(repr, known.options))
+        expected, value = field.metadata[_METADATA], getattr(model, field.name)
+        if expected.options:
+            if not set(np.ravel(value).tolist()) <= set(expected.options):
+                options = " or ".join(map(repr, expected.options))
                 raise ValueError(f"{field.name} = {value!r}: expected {options}")
-        elif known.columns:
-            _check_rows(key, known, value)
-        elif known.count:
-            left_out = known.optional and not value
-            if not left_out and (len(value) != known.count or not np.isfinite(value).all()):
-                raise ValueError(f"{key} = {value!r}: expected {known.count} finite numbers")
-        elif not (np.isfinite(value).all() and value in known.range):
-            bounds = f" {known.range}" if str(known.range) else ""
+        elif expected.columns:
+            _check_rows(key, expected, value)
+        elif expected.count:
+            left_out = expected.optional and not value
+            if not left_out and (len(value) != expected.count or not np.isfinite(value).all()):
+                raise ValueError(f"{key} = {value!r}: expected {expected.count} finite numbers")
+        elif not (np.isfinite(value).all() and value in expected.range):
+            bounds = f" {expected.range}" if str(expected.range) else ""
             raise ValueError(f"{field.name} = {value!r} ({key}): expected a finite number{bounds}")
 
 
-def _check_rows(key: str, known: Parameter, value: Any) -> None:
-    if known.optional and not len(value):
+def _check_rows(key: str, expected: Parameter, value: Any) -> None:
+    if expected.optional and not len(value):
         return
-    wide = len(known.columns)
+    wide = len(expected.columns)
     if not len(value) or any(len(row) != wide for row in value) or not np.isfinite(value).all():
         raise ValueError(f"{key} = {value!r}: expected rows of {wide} finite numbers")

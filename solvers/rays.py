@@ -1,9 +1,9 @@
 """Points next to the knots of a pressure, whose stresses are continued along rays from farther out.
 
 Beside a knot two pieces of the pressure have infinite stresses that cancel, and no difference of large
-numbers is exact. But how stresses go there is known: at the distance x along a ray from a knot like
-1, x and x log x, and log x besides where the pressure ends in a jump. A few values at a small distance
-tell how much there is of each.
+numbers is exact. But the form of the stresses is known: at the distance x along a ray from a knot they
+are a sum of 1, x and x log x, and of log x besides where the pressure ends in a jump. A few values at a
+small distance determine the coefficients.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 #: Distance from a knot within which stresses are continued, over the half-width of the narrower piece.
 NEAR = 2e-6
 
-#: Distances along a ray that tell the rest, over that distance.
+#: Distances along a ray at which stresses are computed, over :data:`NEAR` times the half-width.
 _STEPS = np.array([1.0, 4.0, 16.0, 64.0])
 
 #: Distance over a below which log x grows no more.
@@ -23,13 +23,16 @@ _LEAST = 1e-300
 
 @dataclass(frozen=True)
 class Rays:
-    """Where to look instead of some points, and how what is found there is continued to them.
+    """Places at which stresses are computed, and their weights in the stresses at some points.
+
+    A point next to a knot has a few places farther out along its ray; every other point is its own place.
 
     Attributes:
-        origins: a position X over a on the surface, that of the knot on a ray, (n,).
-        offsets: how far from it, over a, (n, 2): next to a knot the sum has not their digits.
-        owner: number of the point that each belongs to, (n,).
-        weights: of what is found there, (n,).
+        origins: positions X over a on the surface, on a ray that of its knot, (n,).
+        offsets: distances of the places from their origin, over a, (n, 2): next to a knot the sum of
+            both has not their digits.
+        owner: number of the point that a place belongs to, (n,).
+        weights: of the stresses at a place, (n,).
         points: number of points.
     """
 
@@ -40,7 +43,7 @@ class Rays:
     points: int
 
     def continued(self, values: NDArray) -> NDArray[np.float64]:
-        """Values at the points from those found, (n, ...)."""
+        """Values at the points, (points, ...), from values at the places, (n, ...)."""
         result = np.zeros((self.points, *values.shape[1:]))
         weights = self.weights.reshape(-1, *[1] * (values.ndim - 1))
         np.add.at(result, self.owner, weights * values)
@@ -48,13 +51,13 @@ class Rays:
 
 
 def rays(points: NDArray, knots: NDArray, near: NDArray, jumps: NDArray) -> Rays:
-    """Rays to points that are next to a knot; every other point stands for itself.
+    """Rays to the points that are next to a knot.
 
     Args:
         points: positions X, Y over a, (n, 2), Y <= 0.
         knots: positions X over a in their order, (k,).
         near: distance within which a point is next to a knot, over a, (k,).
-        jumps: where the pressure does, (k,).
+        jumps: True at knots where the pressure jumps, (k,).
     """
     between = np.searchsorted((knots[1:] + knots[:-1]) / 2.0, points[:, 0])
     away = points - np.column_stack([knots[between], np.zeros(len(points))])
@@ -74,7 +77,7 @@ def rays(points: NDArray, knots: NDArray, near: NDArray, jumps: NDArray) -> Rays
 
 
 def _terms(x: float | NDArray, jump: bool) -> NDArray[np.float64]:
-    """1, x, x log x, and log x where there is a jump, at distances x > 0: (..., terms)."""
+    """Terms 1, x, x log x, and log x if the pressure jumps, at distances x > 0: (..., terms)."""
     x = np.asarray(x)
     terms = [np.ones_like(x), x, x * np.log(x), np.log(x)]
     return np.stack(terms[: 3 + jump], axis=-1)

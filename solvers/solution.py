@@ -1,4 +1,4 @@
-"""What every method gives: friction states at one speed; lengths over a, stresses over N/(2a)."""
+"""Solutions of every method: friction states at one speed; lengths over a, stresses over N/(2a)."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,12 +18,12 @@ from .solids.solid import Response
 
 @dataclass(frozen=True)
 class Places:
-    """Where stresses are wanted, over a.
+    """Places at which stresses are computed, over a.
 
     Attributes:
         X: positions on the surface, (n,).
         points: positions X, Y inside, (m, 2).
-        around: where stresses are looked at for yield, (k, 2).
+        around: positions X, Y at which stresses are compared with the yield strength, (k, 2).
         interfaces: depths of a layered solid's interfaces, (layers,).
         along: positions X along each of them, (l,).
     """
@@ -36,19 +36,19 @@ class Places:
 
     @cached_property
     def under(self) -> NDArray[np.bool_]:
-        """Which positions on the surface lie under the punch, (n,)."""
+        """True at positions on the surface under the punch, (n,)."""
         return under_punch(self.X)
 
 
 @dataclass(frozen=True)
 class Body:
-    """What slides over what, in SI; its units are numbers, or arrays where its load is one.
+    """Punch and half-plane in SI; units of results are numbers, or arrays where the load is one.
 
     Attributes:
         solid: the half-plane.
         profile: the punch.
-        load: N per depth [N/m], or that of each of some states, (states,).
-        pressure: that is put in; None where it is the punch's.
+        load: N per depth [N/m], a number or one for each state, (states,).
+        pressure: prescribed pressure; None where the punch determines it.
         yield_strength: of the solid, uniaxial [Pa]; None where it is not known.
     """
 
@@ -60,11 +60,11 @@ class Body:
 
     @cached_property
     def found(self) -> bool:
-        """Are ends of the contact found? Every state has a half-width of its own then."""
+        """True if an end of the contact is free; every state has a half-width of its own then."""
         return ends_are_found(self.profile)
 
     def response(self, c: float) -> Response:
-        """The half-plane at a speed over its wave speed.
+        """Response of the half-plane at a speed over its wave speed.
 
         Raises:
             ValueError: a wave in it is not faster.
@@ -77,48 +77,50 @@ class Body:
         """Normal stress out of the plane of σ_XX, σ_YY, σ_XY (3, ..., n) at heights Y over a, (n,)."""
         if not isinstance(self.solid, Layered):
             return self.solid.σ_ZZ(*σ)
-        found = np.empty(σ.shape[1:])
+        values = np.empty(σ.shape[1:])
         for height in np.unique(Y).tolist():
-            some = height == Y
-            found[..., some] = self.solid.at(-height * self.half_width).σ_ZZ(*σ[..., some])
-        return found
+            at = height == Y
+            values[..., at] = self.solid.at(-height * self.half_width).σ_ZZ(*σ[..., at])
+        return values
 
     @property
     def layered(self) -> bool:
-        """Has the half-plane layers?"""
+        """True if the half-plane has layers."""
         return isinstance(self.solid, Layered)
 
     @cached_property
     def free(self) -> bool:
-        """Are both ends of the contact found, whatever the load is?"""
+        """True if both ends of the contact are free, whatever the load is."""
         return not any(getattr(self.profile, "sharp", (True, True)))
 
     @cached_property
     def finite(self) -> bool:
-        """Are all stresses finite, at ends that are found and without a tip?"""
+        """True if all stresses are finite: both ends are free, and the profile has no tip."""
         return self.free and not jumps(self.profile)
 
     @cached_property
     def alike(self) -> bool:
-        """Are contacts of all loads alike, but for their size? Of a flat punch, a power of |X|, or a
-        pressure that is put in."""
+        """True if contacts under all loads differ in size alone.
+
+        That is so for a flat punch, a power of |X| on a uniform solid, and a prescribed pressure.
+        """
         if self.pressure is not None or self.flat:
             return True
-        # Layers have a length, and what a contact sees of them changes with its width.
+        # Layers have a length: their thickness over the contact's width changes with the load.
         return self.free and bool(exponent(self.profile)) and not self.layered
 
     def loaded(self, load: Any = None) -> "Body":
-        """The same under another load [N/m], or under those of some states; this one for none."""
+        """Punch and half-plane under another load [N/m], a number or (states,); unchanged for None."""
         return self if load is None else replace(self, load=load)
 
     def growth(self, load: Any) -> Any:
-        """Half-widths at some loads over that at this body's load, where contacts are alike."""
+        """Half-widths at other loads over that at this load, of contacts that differ in size alone."""
         k = exponent(self.profile) if self.free else None
         return (load / self.load) ** (1.0 / k) if k else np.ones_like(load)
 
     @cached_property
     def half_width(self) -> Any:
-        """a [m]; where ends are found that of a contact at rest without friction."""
+        """Half-width a [m]; with free ends that of the contact at rest without friction."""
         if not self.found:
             return half_width(self.profile)
         if np.ndim(self.load) and self.alike:
@@ -151,13 +153,13 @@ class Body:
         return self.profile.height(self.half_width * X) / self.displacement
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Its derivative: μ v,X under the punch over N/(2a)."""
+        """Slope μ v,X under the punch over N/(2a), at X over a."""
         a = self.half_width
         return self.profile.slope(a * X) * a / self.displacement
 
     @cached_property
     def flat(self) -> bool:
-        """Is the punch flat? Its slope vanishes then wherever it is looked at."""
+        """True if the punch is flat and not tilted: its slope vanishes at 101 positions."""
         if self.found:
             return False
         return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
@@ -179,15 +181,15 @@ class Body:
 
     @property
     def stress(self) -> Any:
-        """Unit of stresses [Pa]; where ends are found each state has its own instead."""
+        """Unit of stresses [Pa]; with free ends each state has its own instead."""
         return self.load / (2.0 * self.half_width)
 
 
 @dataclass(frozen=True)
 class Turns:
-    """Stresses by their limits at places on the surface where they have a power of the distance.
+    """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.
 
-    That is at free ends of a contact, and under kinks of the punch: no sample meets a top there.
+    Near these places stresses go with a power of the distance, and samples miss the largest one.
 
     Attributes:
         X: the places over a, (states, k).
@@ -244,12 +246,12 @@ class Surface:
     """Stresses on the surface Y = 0.
 
     Attributes:
-        places: where.
+        places: positions.
         σ_YY: contact stress, NaN beside the punch, (states, n).
         σ_XX: in-plane stress, (states, n).
-        raw: contact stress by which no exponent is assumed; finite elements alone have it.
+        raw: contact stress without an assumed exponent; finite elements alone have it.
         v_X: slopes μ v,X; finite elements alone have them.
-        turns: stresses by the limit; None where they are infinite at both ends, and nowhere cusped.
+        turns: limits of the stresses; None where they are infinite at both ends, and nowhere cusped.
     """
 
     places: Places
@@ -261,7 +263,7 @@ class Surface:
 
 
 class Solution(Protocol):
-    """Friction states at one speed, from any method; what is not asked for is not computed.
+    """Friction states at one speed, from any method; an attribute is computed when it is first used.
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).

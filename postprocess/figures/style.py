@@ -10,9 +10,7 @@ from functools import wraps
 from textwrap import fill
 from typing import Any, NamedTuple
 
-import matplotlib
 import numpy as np
-from matplotlib import colormaps
 
 #: Widths of a column and of a page of most journals [in].
 COLUMN, PAGE = 3.5, 7.0
@@ -71,6 +69,8 @@ _STYLE = {
 
 def _defaults() -> dict[str, Any]:
     """Matplotlib's own: what somebody has set for other figures, as text by LaTeX, is not for these."""
+    import matplotlib  # a slow import, for nothing where texts alone are typeset
+
     return {key: value for key, value in matplotlib.rcParamsDefault.items() if "backend" not in key}
 
 
@@ -79,7 +79,9 @@ def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(draw)
     def in_style(*arguments: Any, **options: Any) -> Any:
-        with matplotlib.rc_context({**_defaults(), **_STYLE}):
+        from matplotlib import rc_context
+
+        with rc_context({**_defaults(), **_STYLE}):
             return draw(*arguments, **options)
 
     return in_style
@@ -102,6 +104,8 @@ def looks(count: int, ordered: bool = False) -> list[Look]:
     """
     colours: Sequence[Any] = COLOURS
     if ordered and count > 3:
+        from matplotlib import colormaps
+
         colours = colormaps["viridis"](np.linspace(0.0, 0.88, count)).tolist()
     return [
         Look(colours[n % len(colours)], LINES[n % len(LINES)], MARKERS[n % len(MARKERS)])

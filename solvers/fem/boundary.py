@@ -1,15 +1,17 @@
-"""What the far boundary does: it moves as in an infinite solid under the forces that are at the contact.
+"""Displacements that are held, and the far boundary, which moves as in an infinite solid.
 
-Far away a displacement is known by moments of these, Mₙ = ∫ (X/a)ⁿ σ d(X/a): for each of the first ones
-there is a field, of a far boundary that moves as under it. What forces f₀ cause while the boundary is
-held becomes what they cause in the solid by adding these fields with the moments that both have together,
+The contact and the far boundary are held; the forces that this needs are :func:`forces_of_profile` and
+:func:`forces_of_far`.
+
+Far away a displacement is determined by moments of the forces at the contact, Mₙ = ∫ (X/a)ⁿ σ d(X/a): for
+each of the first ones there is a field, of a far boundary that moves as under it. The solution under
+forces f₀ with the boundary held becomes that in the infinite solid by adding these fields with the
+moments that both have together,
 
     M = M(f₀) + B M,   B of the moments that the fields' own forces at the contact have.
 
 After n moments the error goes as R⁻ⁿ⁻¹, R the distance over a: the first one that is left out has fallen
 like R⁻ⁿ there, and what holds it reaches the contact as a strain, with R⁻¹.
-
-What is held: the contact, the far boundary, and the forces that this needs.
 """
 
 from collections.abc import Sequence
@@ -24,14 +26,14 @@ from .space import Space
 
 
 def forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -> PETSc.Vec:
-    """Forces of a contact held at the profile's height, which stands where it is held."""
+    """Nodal forces of a contact held at the profile's height; at held unknowns, the height itself."""
     held = A.createVecRight()
     held.setValues(space.contact.dofs(1), height[space.contact.owned])
     return _forces(A, space, held)
 
 
 def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64]) -> PETSc.Vec:
-    """Forces of a far boundary that moves, (2, nodes), which stands where it is held."""
+    """Nodal forces of a far boundary moved by (2, nodes); at held unknowns, the displacement itself."""
     held, numbers = A.createVecRight(), space.numbers[space.far_nodes]
     for i in (0, 1):
         held.setValues(numbers + i, displacement[i])
@@ -39,7 +41,7 @@ def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64])
 
 
 def _forces(A: PETSc.Mat, space: Space, held: PETSc.Vec) -> PETSc.Vec:
-    """Forces of what is held at ``held``, and there the displacements themselves; frees ``held``."""
+    """Nodal forces of held displacements, and these themselves where they are held; frees ``held``."""
     held.assemble()
     b = product(A, held)
     b.scale(-1.0)
@@ -69,15 +71,15 @@ def set_zero(x: PETSc.Vec, dofs: NDArray[np.int32]) -> None:
 
 
 #: Displacement at the far boundary over that of line loads, below which a moment is not followed: its
-#: square is what would be seen at the contact.
+#: effect at the contact is the square of that.
 _NEGLIGIBLE = 1e-12
 
 
 class FarBoundary:
-    """How the far boundary moves; it does not where the mesh holds it.
+    """Motion of the far boundary under the forces at the contact; none where the mesh holds it.
 
     Args:
-        space: the finite element space, which says how many moments it follows.
+        space: the finite element space, with the number of moments that the boundary follows.
         response: of the half-plane.
         A: the matrix, nothing held.
 
@@ -97,30 +99,32 @@ class FarBoundary:
             space.comm.Allreduce(MPI.IN_PLACE, size, MPI.MAX)
             followed = moved[size > _NEGLIGIBLE * size[0]]
             # A rank may have no node of the far boundary, and takes part all the same.
-            self.loads = [forces_of_far(A, space, one) for pair in followed for one in pair]
+            self.loads = [
+                forces_of_far(A, space, displacement) for pair in followed for displacement in pair
+            ]
 
     def tests(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
         """Powers of positions X over a that forces are tested with, (moments, n)."""
         return np.vander(X, len(self.loads) // 2, increasing=True).T
 
-    def found(self, fields: Sequence[PETSc.Vec]) -> None:
+    def set_fields(self, fields: Sequence[PETSc.Vec]) -> None:
         """Take the fields, and free the loads."""
         self.fields = list(fields)
         for load in self.loads:
             load.destroy()
 
     def take(self, X: NDArray[np.float64], forces: Sequence[NDArray[np.float64]]) -> None:
-        """Learn the forces (2, n) of each field at contact nodes at X over a."""
+        """Take the forces (2, n) of each field at contact nodes at X over a."""
         self._tests, self._forces = self.tests(X), np.array(forces)
-        own = np.array([self._moments(one) for one in forces]).T
+        own = np.array([self._moments(force) for force in forces]).T
         self._all = np.linalg.inv(np.eye(len(own)) - own)
 
     def _moments(self, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Those that are followed of forces (2, n), of σ_YY and σ_XY in turn."""
+        """Moments of forces (2, n) that the boundary follows, of σ_YY and σ_XY in turn, (moments,)."""
         return np.asarray((self._tests @ forces[::-1].T).ravel())
 
     def follow(self, field: PETSc.Vec, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Let the far boundary of a field, in place, move, not be held; returns the field's forces.
+        """Let the far boundary of a field move, in place, not be held; returns the field's forces.
 
         Args:
             field, forces: displacement, and forces (2, n) at the contact nodes.

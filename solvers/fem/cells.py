@@ -1,18 +1,15 @@
-"""What one quadrilateral makes of its nodal values: places and derivatives.
+"""Quadrilateral cells: places, shape functions and derivatives in a cell, its chart, congruent cells.
 
-A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11.
+A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11. Its
+shape functions are products of Lagrange polynomials (:func:`lagrange`, :class:`Shapes`).
 
-Lagrange polynomials of an element's nodes.
+:class:`Chart` is the interface of the coordinates in which a mesh is drawn, and :class:`Contracted` is
+the chart as speed contracts it.
 
-Shape functions of a cell and their slopes at the points of a rule.
-
-What the finite element room asks of the chart in which a mesh lives, and what speed does to it.
-
-Which cells of a mesh are another one, moved and scaled: in a plane they have the same matrix.
-
-The energy of a displacement does not change where lengths are scaled, nor does that of pressures over a
-cell's size. Rings around an edge, each a share of the one outside it, and cells of one size cut from a
-larger one need one matrix each kind, not one each cell.
+Cells that are another cell, moved and scaled, have the same matrix in a plane: the energy of a
+displacement does not change where lengths are scaled, nor does that of pressures over a cell's size.
+Rings around an edge, each a share of the one outside it, and cells of one size cut from a larger one need
+one matrix each kind, not one each cell (:func:`standing_for`).
 """
 
 from collections.abc import Sequence
@@ -46,7 +43,7 @@ def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
 
 
 class Chart(Protocol):
-    """What forms and postprocessing ask of a chart: the coordinates a mesh is drawn in."""
+    """Coordinates in which a mesh is drawn, as forms and postprocessing need them."""
 
     @property
     def name(self) -> str:
@@ -54,18 +51,18 @@ class Chart(Protocol):
 
     @property
     def contracts(self) -> bool:
-        """Is a mesh drawn for what the solid makes of the plane, see :class:`Contracted`?"""
+        """True where a mesh is drawn in the plane as the solid contracts it, see :class:`Contracted`."""
 
     @property
     def similar(self) -> bool:
-        """Have cells that are alike in the chart, moved and scaled, the same matrix?"""
+        """True where cells that are congruent in the chart, but for their size, have the same matrix."""
 
     def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
         """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n).
 
         Args:
             x: points, or UFL's coordinates.
-            of: what has their functions, NumPy or UFL.
+            of: module of cos and the like for x, NumPy or UFL.
         """
 
     def stretch(self, x: NDArray) -> NDArray:
@@ -95,11 +92,11 @@ class Chart(Protocol):
     def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
         """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
 
-        Next to an edge X/a itself no longer tells the distance, so this does.
+        Next to an edge the distance has lost its digits in X/a itself.
 
         Args:
             from_left, from_right: numbers, or UFL's expressions.
-            of: what has their functions, NumPy or UFL.
+            of: module of their functions, NumPy or UFL.
         """
 
 
@@ -136,14 +133,14 @@ class Contracted:
         """Derivatives along X and Y from those along the chart's axes, at its points x (n, 2).
 
         Args:
-            x: where; not at a punch edge of a chart whose stretch vanishes there.
+            x: points of the chart; not at a punch edge of a chart whose stretch vanishes there.
             gradients: array (n, component, axis, fields).
         """
         axes = self.axes(x) / self.chart.stretch(x)[:, None, None]
         return np.einsum("ncxf,nxX->ncXf", gradients, axes, optimize=True)
 
     def axes(self, x: NDArray) -> NDArray[np.float64]:
-        """What makes the same of them but for the chart's stretch: Rᵀ·M at points x (n, 2), (n, 2, 2)."""
+        """Matrices Rᵀ·M from the chart's axes to X and Y, but for the stretch, at x (n, 2): (n, 2, 2)."""
         cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T))
         M = np.array([[1.0, self.p.real], [0.0, self.p.imag]])
         return np.array([[cos, sin], [-sin, cos]]).transpose(2, 0, 1) @ M
@@ -163,7 +160,7 @@ def image(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
 def jacobian(vertices: NDArray, t: NDArray) -> NDArray[np.float64]:
     """∂x/∂t at places t (..., 2) as [..., component of x, component of t].
 
-    ``vertices`` are of one cell, (4, 2), or of one at each place, (..., 4, 2).
+    ``vertices`` are those of a single cell, (4, 2), or of a cell at each place, (..., 4, 2).
     """
     a, b = t[..., :1], t[..., 1:]
     v00, v10, v01, v11 = (vertices[..., i, :] for i in range(4))
@@ -213,7 +210,7 @@ def reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.fl
     """
     (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
     n, rest = len(nodes), u.shape[2:]
-    # Nodes along the second direction come last: the inner sum runs over what lies together.
+    # Nodes along the second direction come last: the inner sum runs over contiguous memory.
     lines = np.moveaxis(u.reshape(n, n, -1), 1, 2).reshape(n, -1)
     along_a, along_b = (
         np.einsum("nfj,nj->nf", (a @ lines).reshape(len(t), -1, n), b)
@@ -238,19 +235,19 @@ def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray
     return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
 
 
-#: Digits of a shape by which cells that may be alike are found; whether they are is looked at then.
+#: Digits of a shape by which cells that may be congruent are grouped, before they are compared.
 _DIGITS = 3
 
-#: How many roundings the vertices of cells that are alike may be apart.
+#: Largest distance between vertices of congruent cells, in roundings.
 _ROUNDINGS = 64.0
 
 
 def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cells that stand for others, and which of these each cell is like.
+    """Cells that stand for all cells congruent to them but for size, and the model of each cell.
 
     Args:
         corners: vertices, (n, 4, 2 or 3).
-        kinds: whole numbers that differ where cells have to be told apart whatever their shape, (n,).
+        kinds: whole numbers that differ where cells differ in more than their shape, (n,).
 
     Returns:
         Arrays (m,) and (n,): numbers of the largest cell of each kind, and a place among these for each
@@ -275,13 +272,13 @@ def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[
 def standing_for(
     corners: NDArray, chart: Chart, response: Response, constants: Sequence[str]
 ) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
-    """Cells whose matrices are those of all, and the cells that have the matrix of each.
+    """Model cells, whose matrices are those of all cells, and the cells that have the matrix of each.
 
     Args:
         corners: vertices in the chart, (n, 4, 3).
         chart: of the mesh.
         response: of the half-plane.
-        constants: that the weak form has.
+        constants: names of the weak form's constants.
     """
     each = np.arange(len(corners))
     if not chart.similar or not len(each):
@@ -297,13 +294,13 @@ def standing_for(
 
 @dataclass(frozen=True)
 class Shapes:
-    """Of the unit square, by Gauss's rule that is exact for their products on parallelograms.
+    """Shape functions of the unit square at points of Gauss's rule, exact for products on parallelograms.
 
     Attributes:
         t: points, (points, 2).
-        weights: of these, (points,).
-        values: (points, nodes).
-        slopes: along both directions of the square, (2, points, nodes).
+        weights: of the points, (points,).
+        values: of the shape functions, (points, nodes).
+        slopes: their derivatives along both directions of the square, (2, points, nodes).
     """
 
     t: NDArray[np.float64]
@@ -313,7 +310,7 @@ class Shapes:
 
     @classmethod
     def of(cls, reference: NDArray) -> "Shapes":
-        """Of the nodes at places in the unit square, (nodes, 2)."""
+        """Shape functions of nodes at places in the unit square, (nodes, 2)."""
         grid, nodes = tensor_order(reference)
         x, w = leggauss(len(nodes) + 1)
         x, w = (x + 1.0) / 2.0, w / 2.0
@@ -327,10 +324,10 @@ class Shapes:
         return cls(t, np.outer(w, w).ravel(), φ, np.array([along, across]))
 
     def on(self, corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weights, and what makes derivatives along the axes of those along a cell's directions.
+        """Weights of the points in a cell, and its inverse Jacobians there.
 
         Args:
-            corners: of a cell, (4, 2).
+            corners: of the cell, (4, 2).
 
         Returns:
             Arrays (points,) and [point, direction, axis].

@@ -61,7 +61,7 @@ class DolfinxSpace(Space):
 
     @cached_property
     def _sizes(self) -> Any:
-        """Sizes of cells, which pressures are over: small cells' weigh as much as large ones'."""
+        """Sizes of cells, by which pressures are divided: small cells' weigh as much as large ones'."""
         D = versions.function_space(self.mesh, versions.pressure_element(0))
         sizes, corners = fem.Function(D), self._all_corners
         sizes.x.array[versions.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
@@ -69,7 +69,7 @@ class DolfinxSpace(Space):
 
     @property
     def _all_corners(self) -> NDArray[np.float64]:
-        """Vertices of all cells that this rank has, ghosts included, (cells, 4, 3)."""
+        """Vertices of all cells of this rank, ghosts included, (cells, 4, 3)."""
         cells = self.mesh.topology.index_map(2)
         return versions.vertices(self.mesh, cells.size_local + cells.num_ghosts)
 
@@ -126,9 +126,9 @@ class DolfinxSpace(Space):
         """Matrix with Dirichlet conditions: "far" on the far boundary, "contact" for v under a punch.
 
         Args:
-            A: the matrix without, which is destroyed.
+            A: the matrix with nothing held, which is destroyed.
             response: of the half-plane.
-            parts: what is held.
+            parts: names of the held parts.
         """
         A.destroy()
         v, zero = self.V.sub(1), np.zeros(2)
@@ -157,7 +157,7 @@ class DolfinxSpace(Space):
         """Consistent nodal forces of the traction under a flat punch, by a linear form over ``ds``.
 
         Raises:
-            TypeError: the traction is another, which no compiled form knows.
+            TypeError: any other traction, for which there is no compiled form.
         """
         if not isinstance(σ_YY, EdgeTraction):
             raise TypeError("expected the traction under a flat punch")
@@ -180,7 +180,7 @@ class DolfinxSpace(Space):
 
     @cached_property
     def _inner(self) -> NDArray[np.bool_]:
-        """No node is eliminated."""
+        """False for every node: none is eliminated, (nodes,)."""
         return np.zeros(len(self.coordinates), dtype=bool)
 
     @property

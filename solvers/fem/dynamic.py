@@ -1,23 +1,23 @@
-"""Matrices of motion in a frame that moves: stiffness, momentum and what the frame carries along.
+"""Equations of motion in a frame that moves: matrices, damping and energies.
 
-All unknowns stay: inside cells waves have to be followed as they are at their boundaries.
+The matrices are stiffness, momentum, what the frame carries along, and damping. All unknowns stay: inside
+cells waves have to be followed as they are at their boundaries.
 
-Damping of waves that cells are too large for.
-
-Where cells grow outwards, a wave that comes among cells which cannot hold it would be thrown back by
-them. So it is damped there: of the velocity seen from the punch, the higher Legendre polynomials of each
-cell lose energy (spectral viscosity: Maday, Ould Kaber & Tadmor, SIAM J. Numer. Anal. 30, 321, 1993)::
+**Damping** is for waves that cells are too large for. Where cells grow outwards, a wave that comes among
+cells which cannot resolve it would be reflected by them. So it is damped there: of the velocity seen from
+the punch, the higher Legendre polynomials of each cell lose energy (spectral viscosity: Maday, Ould Kaber
+& Tadmor, SIAM J. Numer. Anal. 30, 321, 1993)::
 
     w·D w = Σ_cells rate Σ_ij (d_i + d_j) w_ij²,      d_j = exp(-((p - j)/(j - m))²) for j > m
 
-What a cell holds well is left alone, and steady motion altogether. Near the punch nothing is damped,
-but where it turns round: waves that begin at the edges then, suddenly, are sharp, and no cell holds them.
+What a cell resolves well is not damped, and neither is steady motion. Near the punch nothing is damped,
+but where it turns round: waves that begin at the edges then, suddenly, are sharp, and no cell resolves
+them.
 
-Energies of a motion in time, of the whole solid and of a box round the punch that goes with it.
-
-With u̇ as seen from the punch, whose velocity is C, the solid moves at u̇ - C u,X (lengths over a, times
-over a/c_s). Its kinetic energy is half of ∫(u̇ - C u,X)², its strain energy half of ∫(K's density +
-C² u,X²), and its momentum in the field Π = -∫(u̇ - C u,X)·u,X, by which energies seen from both differ::
+**Energies** are those of the whole solid, and of a box round the punch that goes with it. With u̇ as seen
+from the punch, whose velocity is C, the solid moves at u̇ - C u,X (lengths over a, times over a/c_s). Its
+kinetic energy is half of ∫(u̇ - C u,X)², its strain energy half of ∫(K's density + C² u,X²), and its
+momentum in the field Π = -∫(u̇ - C u,X)·u,X, by which energies seen from both differ::
 
     strain + kinetic = (energy of the motion seen from the punch) + C Π
 """
@@ -40,18 +40,18 @@ from .space import Space
 #: Rate at which the highest polynomial is damped, over c_s and the cell's shorter side; the share of
 #: polynomials that are not.
 _RATE, _KEPT = 5.0, 0.6
-#: The same of all cells where the punch turns round.
+#: Rate and share for all cells where the punch turns round.
 _SHARP_RATE, _SHARP_KEPT = 20.0, 0.4
-#: Distance from the punch, over a, at which it begins.
+#: Distance from the punch, over a, at which damping begins.
 _FROM = 1.0
 
 
 def damping(space: Space, sharp: bool = False) -> NDArray[np.float64]:
-    """The form D of each cell and scalar fields, (cells, nodes, nodes).
+    """Damping matrices D of all cells for scalar fields, (cells, nodes, nodes).
 
     Args:
-        space: of the fields.
-        sharp: are there waves that no cell holds?
+        space: the finite element space.
+        sharp: True where there are waves that no cell resolves.
     """
     grid, nodes = cells.tensor_order(space.reference_nodes)
     p = len(nodes) - 1
@@ -93,7 +93,7 @@ class Motion:
     Args:
         space: the space.
         response: of the half-plane at a speed; layers of it are uniform.
-        sharp: are there waves that no cell holds, as where a punch turns round?
+        sharp: True where there are waves that no cell resolves, as where a punch turns round.
     """
 
     space: Space
@@ -102,7 +102,7 @@ class Motion:
 
     @cached_property
     def K(self) -> csr_matrix:
-        """The steady form."""
+        """Matrix of the steady form, (unknowns, unknowns)."""
         space, element = self.space, Element(self.space.reference_nodes)
         dofs = np.arange(element.size)
         H = space.densities(self.response, space.vertices)
@@ -111,17 +111,17 @@ class Motion:
 
     @cached_property
     def M(self) -> csr_matrix:
-        """Of momentum, of one component: the other has the same."""
+        """Matrix of momentum, for one component: the other has an equal one."""
         return self._sum(self._weighted(_of_component(self._products[0], momentum_density())))
 
     @cached_property
     def B(self) -> csr_matrix:
-        """Of what is carried along, u,X·w, of one component."""
+        """Matrix of what the frame carries along, u,X·w, for one component."""
         return self._sum(self._weighted(_of_component(self._products[1], carried_density())))
 
     @cached_property
     def D(self) -> csr_matrix:
-        """Of waves that far cells are too large for, of one component."""
+        """Damping of waves that far cells are too large for, for one component."""
         impedance = np.sqrt(self.ρ * self._of_cells("c66"))
         return self._sum(impedance[:, None, None] * damping(self.space, self.sharp))
 
@@ -131,7 +131,7 @@ class Motion:
         return self._of_cells("ρ")
 
     def _of_cells(self, name: str) -> NDArray[np.float64]:
-        """A constant of each cell over that of the solid at the surface."""
+        """A constant of each cell over that of the solid at the surface, (cells,)."""
         response, Y = self.response, self.space.vertices[:, :, 1].mean(axis=1)
         if not isinstance(response, ByCells):
             return np.ones(len(Y))
@@ -149,7 +149,7 @@ class Motion:
 
     @property
     def X(self) -> NDArray[np.float64]:
-        """Where these are, over a."""
+        """Positions of the contact nodes over a, (nodes,)."""
         return np.asarray(self.space.coordinates[self.contact, 0])
 
     @cached_property
@@ -174,7 +174,7 @@ class Motion:
             weighted = shapes.values * weights[:, None]
             slopes = np.einsum("dqn,qdx->xqn", shapes.slopes, inverse)
             mass.append([weighted.T @ shapes.values])
-            gradient.append([weighted.T @ one for one in slopes])
+            gradient.append([weighted.T @ slope for slope in slopes])
         return np.array(mass), np.array(gradient)
 
     def _sum(self, matrices: NDArray) -> csr_matrix:
@@ -190,7 +190,7 @@ class Motion:
 
 
 def _of_component(products: NDArray, density: NDArray) -> NDArray[np.float64]:
-    """Element matrices of one component from products of shapes: it meets only itself, both alike.
+    """Element matrices of one component from products of shapes; components are uncoupled and equal.
 
     Args:
         products: (cells, axes, a, b).
@@ -201,9 +201,9 @@ def _of_component(products: NDArray, density: NDArray) -> NDArray[np.float64]:
 
 def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
     """A @ w, where A is of one component and w has both of each node."""
-    found = np.empty_like(w)
-    found[0::2], found[1::2] = A @ w[0::2], A @ w[1::2]  # SciPy is slow with two columns
-    return found
+    product = np.empty_like(w)
+    product[0::2], product[1::2] = A @ w[0::2], A @ w[1::2]  # SciPy is slow with two columns
+    return product
 
 
 #: Half-width and depth over a of the box.
@@ -214,11 +214,11 @@ _TOGETHER = 64
 
 @dataclass(frozen=True)
 class _Cells:
-    """Some cells at the points of their rule.
+    """Rules of some cells.
 
     Attributes:
-        weights: (cells, points).
-        inverse: (cells, points, direction, axis).
+        weights: of the points, (cells, points).
+        inverse: inverse Jacobians, (cells, points, direction, axis).
     """
 
     weights: NDArray[np.float64]
@@ -226,9 +226,11 @@ class _Cells:
 
     @classmethod
     def of(cls, shapes: Shapes, vertices: NDArray) -> "_Cells":
-        """Of cells with these vertices, (cells, 4, 2)."""
-        found = [shapes.on(corners) for corners in vertices]
-        return cls(np.array([one for one, _ in found]), np.array([one for _, one in found]))
+        """Rules of cells with given vertices, (cells, 4, 2)."""
+        rules = [shapes.on(corners) for corners in vertices]
+        return cls(
+            np.array([weights for weights, _ in rules]), np.array([inverse for _, inverse in rules])
+        )
 
 
 class Energies:
@@ -246,11 +248,11 @@ class Energies:
         vertices = space.vertices[:, :, :2]
         self._all = _Cells.of(self._shapes, vertices)
         low, high = vertices.min(axis=1), vertices.max(axis=1)
-        left, bottom = np.array([-BOX[0], -BOX[1]]), np.array([BOX[0], 0.0])
-        inside = np.all((low >= left - 1e-12) & (high <= bottom + 1e-12), axis=1)
-        touched = np.all((np.minimum(high, bottom) - np.maximum(low, left)) > 1e-12, axis=1)
+        lowest, highest = np.array([-BOX[0], -BOX[1]]), np.array([BOX[0], 0.0])
+        inside = np.all((low >= lowest - 1e-12) & (high <= highest + 1e-12), axis=1)
+        touched = np.all((np.minimum(high, highest) - np.maximum(low, lowest)) > 1e-12, axis=1)
         self._inside, self._cut = np.flatnonzero(inside), np.flatnonzero(touched & ~inside)
-        parts = [np.array([np.maximum(low[i], left), np.minimum(high[i], bottom)]) for i in self._cut]
+        parts = [np.array([np.maximum(low[i], lowest), np.minimum(high[i], highest)]) for i in self._cut]
         self._parts = _Cells.of(self._shapes, _rectangles(parts))
         self._onto = np.array([
             self._restricted(space.reference_nodes, vertices[i], part)
@@ -258,12 +260,12 @@ class Energies:
         ]).reshape(len(parts), *2 * (len(space.reference_nodes),))  # fmt: skip
 
     def __call__(self, u: NDArray, w: NDArray, way: int) -> NDArray[np.float64]:
-        """Strain and kinetic energy in the box, the same of all, over N²/(4μ), and Π, over N²/(4μ c_s).
+        """Strain and kinetic energy in the box, then of all, over N²/(4μ), and Π, over N²/(4μ c_s): (5,).
 
         Args:
             u: displacements, (unknowns,).
             w: velocities seen from the punch.
-            way: ±1, in which it goes.
+            way: direction of the punch, ±1.
         """
         fields = np.stack([u.reshape(-1, 2), w.reshape(-1, 2)], axis=-1)[self._nodes]
         whole = self._of(self._all, fields, way, np.arange(len(fields)))
@@ -278,24 +280,26 @@ class Energies:
         Args:
             of: the cells.
             fields: displacements and velocities at their nodes, (cells, nodes, component, 2).
-            way: ±1.
-            which: cells of the mesh they are, or are parts of.
+            way: direction of the punch, ±1.
+            which: numbers of these cells in the mesh, or of those whose parts they are, (cells,).
         """
-        found = np.empty((len(fields), 3))
+        energies = np.empty((len(fields), 3))
         for start in range(0, len(fields), _TOGETHER):
-            some = slice(start, start + _TOGETHER)
-            u, w = fields[some, ..., 0], fields[some, ..., 1]
+            batch = slice(start, start + _TOGETHER)
+            u, w = fields[batch, ..., 0], fields[batch, ..., 1]
             by_cell = np.einsum("dqn,mnc->mqcd", self._shapes.slopes, u, optimize=True)
-            slopes = np.einsum("mqcd,mqdx->mqcx", by_cell, of.inverse[some])
+            slopes = np.einsum("mqcd,mqdx->mqcx", by_cell, of.inverse[batch])
             u_X = slopes[..., 0]
             moving = self._shapes.values @ w - way * self._c * u_X
             gradients = slopes.reshape(*slopes.shape[:2], 4)
-            H, ρ = self._H if self._H.ndim == 2 else self._H[which[some]], self._ρ[which[some]]
+            H, ρ = self._H if self._H.ndim == 2 else self._H[which[batch]], self._ρ[which[batch]]
             strain = ((gradients @ H) * gradients).sum(axis=-1) + ρ * self._c**2 * (u_X**2).sum(axis=-1)
             momentum, kinetic = -ρ * (moving * u_X).sum(axis=-1), ρ * (moving**2).sum(axis=-1)
             densities = strain / 2.0, kinetic / 2.0, momentum
-            found[some] = np.stack([(one * of.weights[some]).sum(axis=1) for one in densities], axis=-1)
-        return found
+            energies[batch] = np.stack(
+                [(density * of.weights[batch]).sum(axis=1) for density in densities], axis=-1
+            )
+        return energies
 
     def _restricted(self, reference: NDArray, corners: NDArray, part: NDArray) -> NDArray[np.float64]:
         """Values at the nodes of a part of a cell from those at its own, (nodes, nodes).
@@ -309,8 +313,8 @@ class Energies:
         places = cells.pull_back(
             np.broadcast_to(corners, (len(reference), 4, 2)), part[0] + reference * (part[1] - part[0])
         )
-        one, other = (lagrange(nodes, places[:, axis])[0] for axis in (0, 1))
-        product = (one[:, :, None] * other[:, None, :]).reshape(len(reference), -1)
+        first, second = (lagrange(nodes, places[:, axis])[0] for axis in (0, 1))
+        product = (first[:, :, None] * second[:, None, :]).reshape(len(reference), -1)
         return np.asarray(product[:, np.argsort(grid.ravel())])
 
 

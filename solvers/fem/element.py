@@ -1,15 +1,13 @@
-"""Element matrices of quadrilaterals by tensor products of polynomials along their two directions.
+"""Element matrices of quadrilaterals by tensor products, and static condensation of inner unknowns.
 
 A basis function is a product of one polynomial along each direction, and so are points and weights of the
 quadrature. The sum over all points is then one over a direction and one over the other, each a product of
 dense matrices: at degree 10 about seven times faster than a loop over points and pairs of functions.
 
-Static condensation: each cell's inner unknowns are eliminated before the matrix is assembled.
-
 At degree p all but 4p of a cell's (p + 1)² nodes lie inside it and couple with nothing else. Eliminating
-them cell by cell with dense algebra leaves a matrix with about a sixth of the entries at p = 8, and
-the factorisation is what gains. Loads act on the boundary only, so nothing is lost, and inner
-values are found again where someone asks for them.
+them cell by cell with dense algebra, before the matrix is assembled, leaves a matrix with about a sixth
+of the entries at p = 8, and the factorisation gains most. Loads act on the boundary only, so nothing is
+lost, and inner values are recovered where they are needed.
 """
 
 from collections.abc import Sequence
@@ -25,10 +23,10 @@ from scipy.special import roots_legendre
 from . import cells
 from .cells import Contracted, lagrange
 
-#: Products of functions that are in work at once, so that they stay near the processor.
+#: Products of functions that are computed at once, so that they stay in the processor's cache.
 _PRODUCTS = 700_000
 
-#: Of functions along both directions: values (points, functions) along the first one, and the second.
+#: Factors of functions: values (points, functions) along the first direction, and along the second.
 _Factors = tuple[NDArray, NDArray]
 
 
@@ -74,20 +72,20 @@ class Element:
                 of quadrature, (m, 4, 4, second, first).
             chart: of the mesh, at a speed.
             corners: vertices, (m, 4, 3).
-            parts: rows and columns of each block that is wanted.
+            parts: rows and columns of each block to be computed.
 
         Returns:
             Array (m, rows, columns) for each of ``parts``.
         """
-        wanted = [self._index[np.ix_(*part)] for part in parts]
-        found = [np.empty((len(corners), *index.shape)) for index in wanted]
+        indices = [self._index[np.ix_(*part)] for part in parts]
+        blocks = [np.empty((len(corners), *index.shape)) for index in indices]
         step = max(4, _PRODUCTS // sum(block.size for block in self._blocks))
         for start in range(0, len(corners), step):
-            some = slice(start, start + step)
-            products = self._products(H if H.ndim == 2 else H[some], chart, corners[some, :, :2])
-            for index, block in zip(wanted, found):
-                np.take(products, index, axis=1, out=block[some], mode="clip")
-        return found
+            batch = slice(start, start + step)
+            products = self._products(H if H.ndim == 2 else H[batch], chart, corners[batch, :, :2])
+            for index, block in zip(indices, blocks):
+                np.take(products, index, axis=1, out=block[batch], mode="clip")
+        return blocks
 
     def heights(self, corners: NDArray) -> NDArray[np.float64]:
         """Second coordinates of the points of quadrature, (m, second, first).
@@ -98,7 +96,7 @@ class Element:
         return cells.image(corners[:, None, :, :2], self._places_of_points())[..., 1]
 
     def _places_of_points(self) -> NDArray[np.float64]:
-        """In the unit square, (second, first, 2)."""
+        """Points of quadrature in the unit square, (second, first, 2)."""
         return np.stack(np.meshgrid(self._points, self._points), axis=-1)
 
     def _products(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
@@ -106,7 +104,7 @@ class Element:
         T, weights = self._gradients(chart, corners)
         m, Q = len(corners), len(self._points)
         two_gradients = np.einsum("maAyx,mbByx->mABabyx", T, T * weights[:, None, None])
-        # Of one cell and of each alike: points last, a single one where all are alike.
+        # One form for all cells or one for each: points last, a single one where the form is constant.
         H = H.reshape(-1, *H.shape[-2:], 1, 1) if H.ndim < 5 else H
         rows = np.stack([H[:, :2, :2], H[:, :2, 2:4], H[:, 2:4, 2:4]], axis=1)
         densities = [_contracted(rows, 4, two_gradients.reshape(m, 4, -1, Q, Q))]
@@ -124,7 +122,7 @@ class Element:
         return result
 
     def _gradients(self, chart: Contracted, corners: NDArray) -> tuple[NDArray, NDArray]:
-        """What makes the form's gradients of those along a cell's directions, and the weights of points.
+        """Factors from slopes along a cell's directions to the form's gradients, and weights of points.
 
         Returns:
             Array [cell, direction, axis, second, first], array [cell, second, first].
@@ -141,7 +139,7 @@ class Element:
         return T, self._weights * np.abs(determinant)
 
     def _places(self, grid: NDArray) -> NDArray[np.int64]:
-        """Where each entry of an element matrix is among the products, (size, size)."""
+        """Places of the entries of an element matrix among the products, (size, size)."""
         n, k = self._nodes, self._pressures
         # Of each unknown: its component, 2 for a pressure, and its function along both directions.
         of_nodes = np.divmod(np.argsort(grid.ravel()), n)
@@ -166,16 +164,16 @@ def _contracted(H: NDArray, entries: int, gradients: NDArray) -> NDArray[np.floa
     """Sums over pairs of axes, [cell, components, derivatives, second, first].
 
     Args:
-        H: the form of one cell or of each, (1 or m, ..., second, first); its points are one where all
-            of them are alike.
-        entries: of a component.
+        H: the form of one cell or of each, (1 or m, ..., second, first); of a single point where it is
+            constant.
+        entries: number of entries of a component.
         gradients: products of gradients, [cell, entries, derivatives, second, first].
     """
     m, _, *rest = gradients.shape
     by_component = H.reshape(len(H), -1, entries, *H.shape[-2:])
     if H.shape[-1] == 1:
-        found = by_component[..., 0, 0] @ gradients.reshape(m, entries, -1)
-        return np.asarray(found.reshape(m, -1, *rest))
+        sums = by_component[..., 0, 0] @ gradients.reshape(m, entries, -1)
+        return np.asarray(sums.reshape(m, -1, *rest))
     return np.einsum("mceyx,medyx->mcdyx", by_component, gradients, optimize=True)
 
 
@@ -193,7 +191,7 @@ class _Block:
         )
         self._first, self._second = first, np.concatenate(second)
         self._components, self._pairs = components, first[0].shape[1]
-        #: Numbers of a cell.
+        #: Number of products of a cell.
         self.size = components * self._pairs**2
 
     def fill(self, result: NDArray, density: NDArray) -> None:
@@ -225,7 +223,7 @@ class CellMatrices:
 
     Args:
         reference: places of a cell's nodes in the unit square, (nodes, 2), two unknowns each.
-        inner: which of the nodes lie inside it.
+        inner: numbers of the nodes that lie inside the cell.
         pressures: polynomials along each direction for a discontinuous pressure, whose unknowns follow
             those of the nodes; 0 or at least 2. Two unknowns stay: without its mean the pressure inside
             a cell is not determined.
@@ -234,7 +232,7 @@ class CellMatrices:
     def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
         self.nodes, self.inner, self._pressures = len(reference), inner, pressures
         self._element = Element(reference, pressures)
-        #: How many cells are to be treated at once.
+        #: Number of cells that are treated at once.
         self.at_once = max(16, _NUMBERS // self._element.size**2)
 
     @cached_property
@@ -262,7 +260,7 @@ class CellMatrices:
         """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
 
         Args:
-            H, chart, corners: of :meth:`.element.Element.matrices`.
+            H, chart, corners: see :meth:`Element.matrices`.
         """
         K_bb, K_ib, K_ii = self._parts(H, chart, corners)
         if self._pressures:
@@ -274,12 +272,12 @@ class CellMatrices:
         return _free_of_translations(S, len(self.outer))
 
     def extend(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[Any]:
-        """What gives the inner unknowns from the outer ones: E = -K_ii⁻¹ K_ib, (m, i, b)."""
+        """Extensions E = -K_ii⁻¹ K_ib, which give inner unknowns from outer ones, (m, i, b)."""
         _, K_ib, K_ii = self._parts(H, chart, corners)
         return -np.linalg.solve(K_ii, K_ib)
 
     def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
-        """K_bb, K_ib and K_ii."""
+        """Blocks K_bb, K_ib and K_ii of the element matrices, b outer and i inner unknowns."""
         b, i = self.outer_dofs, self.inner_dofs
         K_bb, K_ib, K_ii = self._element.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
         if self._pressures:

@@ -1,26 +1,21 @@
-"""Displacements along the surface Y = 0, as piecewise polynomials gathered from all ranks.
+"""Displacement fields of the half-plane on its surface, inside it, and for export.
 
-Displacement gradients inside the half-plane, of combinations of fields, at any points.
-
-Inner unknowns were condensed; they are found again for the cells that hold a point, and for no other.
-
-What cells tell of fields by their deformation alone, to its last digits.
+On the surface Y = 0 displacements are piecewise polynomials, gathered from all ranks. Inside, gradients
+of combinations of fields are evaluated at any points: inner unknowns were condensed, and are recovered
+for the cells that hold a point, and for no other.
 
 All of the half-plane moves with a load, and near the end of a load cells are a billionth of that motion:
-in their displacement the deformation has lost its digits. It has them in a field and a small correction,
-if these are added only after each cell's own motion is gone.
+in their displacement the deformation has lost its digits. A field and a small correction together hold
+it, if they are added only after each cell's own motion was subtracted (:func:`shapes`).
 
-A combination of condensed fields, sampled over whole cells: what a picture of the solid shows.
+For a picture of the solid a combination of condensed fields is sampled over whole cells
+(:class:`SampledField`). Cells of high degree are cut into small quadrilaterals, polygons along the sides
+of a box. Each cell has points of its own, since stresses jump from cell to cell.
 
-Cells of high degree are cut into small quadrilaterals. Each cell has points of its own, since stresses
-jump from cell to cell.
-
-Polygons cut along the sides of a box; what lies outside is left out.
-
-A displacement as a dolfinx function on a mesh of the physical plane, for those who go on in dolfinx.
-
-The program's own meshes are drawn in charts. Here every cell is curved as the chart bends it, by
-polynomials of the degree of the displacement, whose nodal values stay the same.
+For users who go on in dolfinx a displacement is exported as a dolfinx function on a mesh of the physical
+plane (:func:`in_physical_plane`). The program's own meshes are drawn in charts; in the exported mesh
+every cell is curved as the chart bends it, by polynomials of the degree of the displacement, whose nodal
+values stay the same.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -67,19 +62,19 @@ class SurfaceTrace:
     def derivative(self, s: ArrayLike) -> NDArray[np.float64]:
         """du/ds and dv/ds of every field at surface coordinates ``s``: (n, 2, fields).
 
-        Between two facets these jump; there they are those of the right one.
+        Between two facets they jump; there the right facet's values are taken.
         """
         by_node, u, length = self._around(s)
         return np.einsum("ni,ni...->n...", by_node, u) / length[:, None, None]
 
     def rounding(self, s: ArrayLike) -> NDArray[np.float64]:
-        """What the last digits of the displacements can do to these: (n, 2, fields)."""
+        """Error by rounding of du/ds and dv/ds of every field at ``s``: (n, 2, fields)."""
         by_node, u, length = self._around(s)
         worst = np.einsum("ni,ni...->n...", np.abs(by_node), np.abs(u)) / length[:, None, None]
         return np.finfo(float).eps * worst
 
     def _around(self, s: ArrayLike) -> tuple[NDArray, NDArray, NDArray]:
-        """Derivatives by nodal values of the facets there, these values, and the facets' lengths."""
+        """Derivatives by nodal values of the facets at ``s``, these values, and the facets' lengths."""
         s = np.asarray(s, dtype=float)
         first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
         facet = np.searchsorted(first, s, side="right") - 1
@@ -90,7 +85,7 @@ class SurfaceTrace:
 
     @property
     def _reference_nodes(self) -> NDArray[np.float64]:
-        """Node positions on the unit facet; the elements' are the same on all."""
+        """Node positions on the unit facet, (p+1,), the same for all facets."""
         widest = np.argmax(self.s[:, -1] - self.s[:, 0])
         s = self.s[widest]
         return (s - s[0]) / (s[-1] - s[0])
@@ -120,12 +115,12 @@ class SurfaceSlopes:
         return u_X, v_X
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        """What the last digits of the fields can do to μ u,X of combinations, (states, n)."""
+        """Error by rounding of μ u,X of combinations with weights (states, fields): (states, n)."""
         return np.abs(weights) @ self._rounding[:, : weights.shape[1]].T
 
 
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
-    """Trace of the given displacement fields on the whole surface."""
+    """Trace of displacement fields on the whole surface. Collective."""
     facets = space.surface_facets(("contact", "free surface"))
     u = space.fetch(fields, space.numbers[facets.nodes])
     parts = space.comm.allgather((facets.s, u))
@@ -146,7 +141,7 @@ Values = Callable[[NDArray[np.int64]], NDArray]
 
 
 class KeptValues:
-    """Values of condensed fields in this rank's cells, found once for each that is asked for.
+    """Values of condensed fields in this rank's cells, computed once for each cell.
 
     Args:
         space: the finite element space.
@@ -159,28 +154,28 @@ class KeptValues:
         self._kept: dict[int, NDArray] = {}
 
     def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Collective; see ``Values``."""
+        """Values at all nodes of cells, (cells, nodes, 2, fields). Collective."""
         new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
-        found = self._new(new)
-        self._kept |= dict(zip(new.tolist(), found))
-        u = np.empty((len(cells), *found.shape[1:]))
+        values = self._new(new)
+        self._kept |= dict(zip(new.tolist(), values))
+        u = np.empty((len(cells), *values.shape[1:]))
         for i, cell in enumerate(cells.tolist()):
             u[i] = self._kept[cell]
         return u
 
 
 class InteriorGradients:
-    """Displacement gradients along X and Y at given points, some of them at a time.
+    """Displacement gradients along X and Y at given points, in batches of points.
 
-    Where they are many, what is kept of the fields are their values at nodes, of which there are fewer.
+    Where points are many, the fields' values at nodes are kept instead, of which there are fewer.
 
     Args:
         space: the finite element space.
         response: that the fields are solutions for.
         fields: displacements over N/(2μ), condensed.
         points: positions over a with Y <= 0, (n, 2).
-        values: of the fields in cells, as of :class:`KeptValues`; found anew if not given.
-        side: at an interface 1 for what is above it, -1 for what is below.
+        values: of the fields in cells, as of :class:`KeptValues`; computed anew if not given.
+        side: 1 for the solid above an interface at its points, -1 for that below.
 
     Raises:
         MeshError: a point lies outside the mesh.
@@ -211,22 +206,29 @@ class InteriorGradients:
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
-        return np.concatenate([found for _, found in self.by_batches(weights)], axis=1)
+        return np.concatenate([gradients for _, gradients in self.by_batches(weights)], axis=1)
 
     def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
-        """The same, and of which points it is, for some points after the others. Collective."""
+        """Slices of m points in turn, and gradients there as of :meth:`of`, (states, m, 2, 2).
+
+        Collective.
+        """
         states, fields = weights.shape
         for i, batch in enumerate(self._batches):
-            some = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
+            batch_points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
             if self._basis is None and states < self._fields:
                 combined = batch.gradients(self._nodal.combined(weights))
-                yield some, np.moveaxis(combined, -1, 0)
+                yield batch_points, np.moveaxis(combined, -1, 0)
             else:
                 basis = batch.gradients(self._nodal) if self._basis is None else self._basis
-                yield some, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
+                yield batch_points, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
 
     def of_each(self, weights: NDArray) -> NDArray[np.float64]:
-        """The same where the points are those of the first combination, of the second, and so on.
+        """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own.
+
+        Args:
+            weights: of the fields, (states, fields); the first n/states points are those of the first
+                combination, the next ones of the second, and so on.
 
         Returns:
             Array (states, n/states, 2, 2).
@@ -281,7 +283,7 @@ class _Nodal:
         return other
 
     def of(self, cell: int) -> NDArray[np.float64]:
-        """Of one of the cells, (p+1, p+1, 2, fields)."""
+        """Values at the nodes of one of the cells, (p+1, p+1, 2, fields)."""
         return self.values[np.searchsorted(self.cells, cell)]
 
 
@@ -308,16 +310,16 @@ class _Batch:
         if isinstance(response, ByCells):
             of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
             of_points = response.solids(points[:, 1], side)
-            held = held.some(of_cells[held.cell] == of_points[held.point])
+            held = held.select(of_cells[held.cell] == of_points[held.point])
         order = np.argsort(held.cell, kind="stable")
         self._point, self._t = held.point[order].astype(np.int32), held.t[order]
         self.cells, self._first = np.unique(held.cell[order], return_index=True)
-        found = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
-        if not found.all():
-            X, Y = points[np.argmin(found)]
+        count = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
+        if not count.all():
+            X, Y = points[np.argmin(count)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
         #: How many cells hold a point, which are many on a border only.
-        self._found = found.astype(np.int16)
+        self._found = count.astype(np.int16)
 
     def gradients(self, nodal: _Nodal) -> NDArray[np.float64]:
         """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective."""
@@ -328,7 +330,7 @@ class _Batch:
             result[self._point[first:end]] += gradients_in_plane(
                 self._vertices[cell], nodal.nodes, self._t[first:end], nodal.of(cell)
             )
-        # On the border between cells the gradient jumps; it is their mean.
+        # On the border between cells the gradient jumps; the mean of both is taken.
         result = self._comm.allreduce(result) / self._found[:, None, None, None]
         return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
 
@@ -346,15 +348,15 @@ class _Held:
     cell: NDArray[np.int64]
     t: NDArray[np.float64]
 
-    def some(self, which: NDArray) -> "_Held":
-        """Those of the pairs."""
+    def select(self, which: NDArray) -> "_Held":
+        """The pairs with these numbers, or where a mask is true."""
         return _Held(self.point[which], self.cell[which], self.t[which])
 
 
 def _locate(vertices: NDArray, x: NDArray) -> _Held:
     cell, point = _near(vertices, x)
     t = pull_back(vertices[cell], x[point])
-    return _Held(point, cell, t).some(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
+    return _Held(point, cell, t).select(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
 
 
 def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -368,17 +370,17 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     last = np.searchsorted(along, high[:, 0], side="right")
     cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for i in np.flatnonzero(first < last):
-        some = slice(first[i], last[i])
-        found = order[some][(low[i, 1] <= across[some]) & (across[some] <= high[i, 1])]
-        cell.append(np.full(len(found), i))
-        point.append(found)
+        candidates = slice(first[i], last[i])
+        inside = order[candidates][(low[i, 1] <= across[candidates]) & (across[candidates] <= high[i, 1])]
+        cell.append(np.full(len(inside), i))
+        point.append(inside)
     return np.concatenate(cell), np.concatenate(point)
 
 
 def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
     """Nodal forces of a condensed field; collective.
 
-    The matrix times the field is the same, but for what rounding makes of the cells' motion.
+    Equal to the matrix times the field, but without the rounding of the cells' own motion.
     """
     result, numbers = field.duplicate(), space.outer_numbers
     result.zeroEntries()
@@ -425,25 +427,25 @@ def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
         extent: over a.
 
     Returns:
-        Its corners in turn, (n, 2); none where nothing is left.
+        Its corners in turn, (n, 2); none where nothing remains.
     """
     polygon = corners
     for axis, bound, sign in ((0, extent, 1.0), (0, -extent, -1.0), (1, -extent, -1.0)):
-        beyond, left = sign * (polygon[:, axis] - bound), []
-        for i, here in enumerate(polygon):
-            one, other = beyond[i - 1], beyond[i]
-            if one * other < 0.0:
-                crossing = polygon[i - 1] + one / (one - other) * (here - polygon[i - 1])
+        beyond, kept = sign * (polygon[:, axis] - bound), []
+        for i, corner in enumerate(polygon):
+            before, after = beyond[i - 1], beyond[i]
+            if before * after < 0.0:
+                crossing = polygon[i - 1] + before / (before - after) * (corner - polygon[i - 1])
                 crossing[axis] = bound
-                left.append(crossing)
-            if other <= 0.0:
-                left.append(here)
-        polygon = np.reshape(left, (-1, 2))
+                kept.append(crossing)
+            if after <= 0.0:
+                kept.append(corner)
+        polygon = np.reshape(kept, (-1, 2))
     return polygon
 
 
 def in_quads(count: int) -> NDArray[np.int64]:
-    """A convex polygon of so many corners, 3 at least, in quadrilaterals; a triangle doubles its last."""
+    """Quadrilaterals of a convex polygon of 3 or more corners, (n, 4); a triangle doubles its last."""
     last = count - 1
     return np.array([(0, i, min(i + 1, last), min(i + 2, last)) for i in range(1, last, 2)])
 
@@ -456,7 +458,7 @@ def in_physical_plane(
     length: float,
     displacement: float,
 ) -> Any:
-    """A combination of displacement fields; on one rank only.
+    """A combination of displacement fields as a dolfinx function in the physical plane; on one rank only.
 
     Args:
         space: the finite element space.
@@ -476,15 +478,15 @@ def in_physical_plane(
     mesh = versions.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
     values = displacement * _nodal(space, response, fields, weights)
     V = versions.space(mesh, versions.vector_element(space.degree), {})
-    found = fem.Function(V, name="displacement")
-    # It is asked for at all nodes of one cell after the other.
-    found.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
-    found.x.scatter_forward()
-    return found
+    function = fem.Function(V, name="displacement")
+    # dolfinx evaluates it at all nodes of one cell after the other.
+    function.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
+    function.x.scatter_forward()
+    return function
 
 
 def _evenly(reference: NDArray) -> NDArray[np.float64]:
-    """The same nodes of a cell, spaced evenly, which all versions of dolfinx take a cell's own for."""
+    """Places of a cell's nodes, spaced evenly as in all versions of dolfinx's own cells, (nodes, 2)."""
     _, side = tensor_order(reference)
     return np.abs(reference[..., None] - side).argmin(axis=-1) / (len(side) - 1.0)
 
@@ -497,12 +499,12 @@ def _nodal(
     field.zeroEntries()
     field.maxpy(weights.tolist(), list(fields[: len(weights)]))
     numbers = np.arange(len(space.vertices))
-    found = [
+    values = [
         space.cell_values([field], response, numbers[cells])[..., 0]
         for cells in space.pieces(len(numbers))
     ]
     field.destroy()
-    return np.concatenate(found)
+    return np.concatenate(values)
 
 
 #: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
@@ -556,18 +558,18 @@ def sample(
     chart = space.contracted(response)
     X = chart.to_physical(image(vertices, t))
     low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
-    wanted = np.all((low < extent) & (high > -extent), axis=2)
+    touched = np.all((low < extent) & (high > -extent), axis=2)
     whole = np.all((low >= -extent) & (high <= extent), axis=2)
-    cells = np.flatnonzero(wanted.any(axis=1))
+    cells = np.flatnonzero(touched.any(axis=1))
     field = fields[0].duplicate()
     field.zeroEntries()
     field.maxpy(weights.tolist(), list(fields[: len(weights)]))
     grid, nodes = tensor_order(space.reference_nodes)
     pieces = []
     for piece in space.pieces(space.comm.allreduce(len(cells), MPI.MAX)):
-        some = cells[piece]
-        for cell, u in zip(some, space.cell_values([field], response, some)[:, grid]):
-            crossing = corners[wanted[cell] & ~whole[cell]]
+        numbers = cells[piece]
+        for cell, u in zip(numbers, space.cell_values([field], response, numbers)[:, grid]):
+            crossing = corners[touched[cell] & ~whole[cell]]
             at, cut = _cut(chart, vertices[cell], t, crossing, extent)
             quads = np.concatenate([corners[whole[cell]], cut])
             displacement = reference_values(nodes, at, u)[..., 0]
@@ -616,7 +618,7 @@ def _gradients(
 
 
 def _without_unused(field: SampledField) -> SampledField:
-    """The same without points that no quadrilateral has."""
+    """The field with only those points that a quadrilateral has."""
     used, quads = np.unique(field.quads, return_inverse=True)
     return SampledField(
         field.points[used], quads.reshape(-1, 4), field.displacement[used], field.gradient[used]

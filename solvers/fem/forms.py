@@ -29,8 +29,8 @@ class Form:
     Attributes:
         energy: the integrand of two gradients, or of two pairs of gradient and pressure, and of
             constants; bilinear and symmetric.
-        constants: what these are called in a solid's response.
-        pressure: with an unknown pressure in each cell besides the displacement.
+        constants: names of these in a solid's response.
+        pressure: True where each cell has an unknown pressure besides the displacement.
     """
 
     energy: Callable[..., Any]
@@ -42,7 +42,7 @@ class Form:
         return _density(self, tuple(float(getattr(response, name)) for name in self.constants))
 
     def densities(self, constants: NDArray) -> NDArray[np.float64]:
-        """The same of many constants, one row each, (m, 4, 4) or (m, 5, 5)."""
+        """The integrand at unit gradients for each row of constants, (m, 4, 4) or (m, 5, 5)."""
         rows, which = np.unique(constants, axis=0, return_inverse=True)
         return np.array([_density(self, tuple(row)) for row in rows.tolist()])[which]
 
@@ -77,7 +77,7 @@ def moving(Gu: Any, Gw: Any, constants: Any) -> Any:
 
 
 def anisotropic(Gu: Any, Gw: Any, constants: Any) -> Any:
-    """The same of any solid; constants are its stiffness over c₆₆, six numbers, and c over √(c₆₆/ρ)."""
+    """σ(u):ε(w)/c₆₆ - c² u,X·w,X of any solid: six stiffnesses over c₆₆, and c over √(c₆₆/ρ)."""
     c11, c12, c16, c22, c26, c66, c = constants
     C = ufl.as_matrix([[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]])
     strain, other = (ufl.as_vector([G[0, 0], G[1, 1], G[0, 1] + G[1, 0]]) for G in (Gu, Gw))
@@ -85,7 +85,7 @@ def anisotropic(Gu: Any, Gw: Any, constants: Any) -> Any:
 
 
 def mixed(trial: tuple[Any, Any], test: tuple[Any, Any], constants: Any) -> Any:
-    """The same with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
+    """Energy with an unknown p = -λ div u/μ (times the chart's stretch), for ν up to 1/2.
 
     2 ε(u):ε(w) - c² u,X·w,X - p div w - q div u - (μ/λ) p q, symmetric and indefinite. Where the
     displacement alone carries λ, rounding grows with it.
@@ -121,12 +121,12 @@ def weak_form(
     """∫ energy(u, w) dx as bilinear forms of dolfinx, by the spaces of test and trial functions.
 
     Args:
-        form: whose energy it is.
+        form: the weak form with its energy.
         spaces: of the displacement, and of the pressure where the form has one.
         chart: in which the mesh is drawn.
         plane: Re p and Im p of the plane X + pY that is drawn.
         constants: of the form, in its order: numbers or functions of dolfinx.
-        size: of cells, over which pressures are; not used without these.
+        size: of cells, by which pressures are divided; not used without pressures.
         degree: of quadrature.
     """
     dx = ufl.dx(metadata={"quadrature_degree": degree})
@@ -158,17 +158,17 @@ def traction_form(
     """
     ds = ufl.Measure("ds", subdomain_data=facets, metadata={"quadrature_degree": degree})
     w, x = ufl.TestFunction(space), ufl.SpatialCoordinate(space.mesh)
-    left, right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
-    return traction(left, right) * w[1] * stretch * ds(tag)
+    from_left, from_right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
+    return traction(from_left, from_right) * w[1] * stretch * ds(tag)
 
 
 def momentum(u: Any, w: Any) -> Any:
-    """u·w: what ∂²/∂t² of the displacement makes, lengths over a and times over a/c_s."""
+    """u·w, the form of ∂²u/∂t², lengths over a and times over a/c_s."""
     return ufl.inner(u, w)
 
 
 def carried(Gu: Any, w: Any) -> Any:
-    """u,X·w: -2c times that of ∂u/∂t is what a frame that moves makes of time's derivatives."""
+    """u,X·w, the form of convection: -2c times that of ∂u/∂t comes from the frame's motion."""
     return ufl.inner(Gu[:, 0], w)
 
 

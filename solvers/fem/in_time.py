@@ -1,33 +1,28 @@
-"""A flat punch that is pressed on and slides, from rest or steady motion on: finite elements in time.
+"""Finite elements in time: a flat punch that slides, or prescribed tractions, on a half-plane.
 
 In the frame of the punch M ü + (D - 2c B) u̇ + K u are the forces of the contact. Velocities w = u̇ are
 stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order
-(ESDIRK4(3)6L[2]SA of Kennedy and Carpenter), stiffly accurate and L-stable: with the matrix
-S = M + γh (D - 2c B) + (γh)² K each stage is S w = b + γh·forces, under a punch that moves at v̇₀.
+(ESDIRK4(3)6L[2]SA of Kennedy and Carpenter), stiffly accurate and L-stable: the last stage is the end of
+the step, and the first one the end of the step before. With the matrix S = M + γh (D - 2c B) + (γh)² K
+each stage is S w = b + γh·forces, under a punch that moves at v̇₀.
 
-Where the punch turns round, what is carried along changes sign. The solid goes on as it did, so that
-the velocities seen from the punch jump, M Δw = Δc B u.
-
-The scheme of steps in time: diagonally implicit Runge-Kutta of order four, stages of second order.
-
-ESDIRK4(3)6L[2]SA of Kennedy and Carpenter, stiffly accurate and L-stable: the last stage is the end of
-the step, and the first one the end of that before.
-
-A matrix with a rigid flat punch on its contact nodes, whose friction may be any.
-
-Sought are x and the normal reactions r with A x = b + (g r along X, r along Y), x = -η along Y under the
-punch, x = 0 far away, and Σ r given. With the normal reactions P of unit tangential forces ::
+**A rigid flat punch on the contact nodes, with any friction** (:class:`PunchConstraint`). Sought are x
+and the normal reactions r with A x = b + (g r along X, r along Y), x = -η along Y under the punch, x = 0
+far away, and Σ r prescribed. With the normal reactions P of unit tangential forces ::
 
     (I - g P) r = ρ + η ρ_η
 
 where ρ are those to b. The fields of these forces and of η are solved for once.
 
-A half-plane at rest that is loaded by given tractions, suddenly or not: finite elements in time.
+**A punch that is pressed on and slides** from rest or steady motion on (:class:`SlidingInTime`). Where
+the punch turns round, what is carried along changes sign. The solid goes on as it did, so that the
+velocities seen from the punch jump, M Δw = Δc B u.
 
-Seen from the load M ü - 2c B u̇ + K u = (share of the load) f, by the steps of
-:mod:`galinx.solvers.fem.in_time`; the pressure is known, so that nothing is asked of the contact.
+**Prescribed tractions on a half-plane at rest**, applied suddenly or not (:class:`LoadedInTime`). Seen
+from the load M ü - 2c B u̇ + K u = (share of the load) f, by the same steps without a contact problem.
 
-What a motion in time does to the surface: strains along it, and the pressure between its nodes.
+On the surface, strains and the pressure between nodes follow from displacements and nodal forces
+(:class:`SurfaceInTime`).
 """
 
 from collections.abc import Callable, Sequence
@@ -61,12 +56,12 @@ A = (
 TIMES = (0.5, 83 / 250, 31 / 50, 17 / 20, 1.0)
 
 
-class Pressed:
-    """A matrix of a space's unknowns under a punch.
+class PunchConstraint:
+    """Linear systems of a space under a rigid flat punch with any friction.
 
     Args:
         A: the matrix.
-        motion: tells which nodes are under the punch, and which far away.
+        motion: the equations, with the nodes under the punch and those far away.
         clock: takes the time of what is done.
 
     Raises:
@@ -100,10 +95,10 @@ class Pressed:
         x[self._free] = self._factor.solve(b[self._free])
         ρ = self._rows @ x - b[self._Y]
         P, ρ_η = self._reactions[:, :-1], self._reactions[:, -1]
-        found = lu_solve(lu_factor(np.eye(len(P)) - g * P), np.column_stack([ρ, ρ_η]))
-        parts = found.sum(axis=0)
+        reactions = lu_solve(lu_factor(np.eye(len(P)) - g * P), np.column_stack([ρ, ρ_η]))
+        parts = reactions.sum(axis=0)
         η = (total - parts[0]) / parts[1]
-        r = found[:, 0] + η * found[:, 1]
+        r = reactions[:, 0] + η * reactions[:, 1]
         x += self._fields @ np.append(g * r, η)
         return x, r
 
@@ -114,7 +109,7 @@ class Pressed:
 
 #: Points of a facet's rule beyond those for products of shapes: the weight next door is no polynomial.
 _MORE = 12
-#: Distance over a from a place to either side of it: more than that within which facets are one.
+#: Distance over a from a place to either side of it: larger than the tolerance in telling facets apart.
 _BESIDE = 1e-8
 
 
@@ -136,36 +131,36 @@ class SurfaceInTime:
     def strain(self, u: NDArray) -> NDArray[np.float64]:
         """μ u,X over N/(2a) of displacements (unknowns,): (n,); between two cells the mean of both."""
         trace = SurfaceTrace(self._s, u.reshape(-1, 2)[self._nodes][..., None])
-        left, right = (trace.derivative(self.X + beside)[:, 0, 0] for beside in (-_BESIDE, _BESIDE))
-        return np.asarray((left + right) / 2.0)
+        before, after = (trace.derivative(self.X + beside)[:, 0, 0] for beside in (-_BESIDE, _BESIDE))
+        return np.asarray((before + after) / 2.0)
 
     def pressure(self, forces: NDArray, α: float, β: float) -> NDArray[np.float64]:
-        """σ_YY over N/(2a), 0 beside the punch: the weight (1 - X)^α (1 + X)^β times what shapes tell.
+        """σ_YY over N/(2a) at ``X``, (n,), 0 beside the punch: (1 - X)^α (1 + X)^β times a sum of shapes.
 
-        Its products with these, integrated, are the nodal forces.
+        The integrals of its products with the shapes are the nodal forces.
 
         Args:
-            forces: consistent ones over N/2 at the contact nodes, (nodes,).
+            forces: consistent nodal forces over N/2 at the contact nodes, (nodes,).
             α, β: exponents at X = a and X = -a.
         """
         X, p = self._motion.X, self._degree
-        mass, told = np.zeros((len(X), len(X))), np.zeros((len(self.X), len(X)))
+        mass, shapes = np.zeros((len(X), len(X))), np.zeros((len(self.X), len(X)))
         of_place = np.clip(np.searchsorted(X[::p], self.X, side="right") - 1, 0, len(X) // p - 1)
-        for k, (left, right) in enumerate(pairwise(X[::p])):
-            some = slice(k * p, k * p + p + 1)
-            t, w = _rule(left, right, (α, β), (k == 0, right == X[-1]), p + 1 + _MORE)
+        for k, (start, end) in enumerate(pairwise(X[::p])):
+            nodes = slice(k * p, k * p + p + 1)
+            t, w = _rule(start, end, (α, β), (k == 0, end == X[-1]), p + 1 + _MORE)
             φ, _ = lagrange(self._reference, t)
-            mass[some, some] += φ.T @ (w[:, None] * φ)
-            here = of_place == k
-            told[here, some] = lagrange(self._reference, (self.X[here] - left) / (right - left))[0]
+            mass[nodes, nodes] += φ.T @ (w[:, None] * φ)
+            within = of_place == k
+            shapes[within, nodes] = lagrange(self._reference, (self.X[within] - start) / (end - start))[0]
         under = np.abs(self.X) < 1.0
         weight = np.zeros_like(self.X)
         weight[under] = (1.0 - self.X[under]) ** α * (1.0 + self.X[under]) ** β
-        return np.asarray(weight * (told @ solve(mass, forces, assume_a="pos")))
+        return np.asarray(weight * (shapes @ solve(mass, forces, assume_a="pos")))
 
     @property
     def _reference(self) -> NDArray[np.float64]:
-        """Places of nodes on the unit facet, as the widest one tells them."""
+        """Places of nodes on the unit facet, from the widest facet, (p+1,)."""
         widest = self._s[np.argmax(self._s[:, -1] - self._s[:, 0])]
         return np.asarray((widest - widest[0]) / (widest[-1] - widest[0]))
 
@@ -173,13 +168,13 @@ class SurfaceInTime:
 def _rule(
     left: float, right: float, exponents: tuple[float, float], ends: tuple[bool, bool], points: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places in a facet and weights, with those of the pressure among them.
+    """Places in a facet and weights of integrals with the pressure's weight (1 - X)^α (1 + X)^β.
 
     Args:
-        left, right: its ends over a.
+        left, right: ends of the facet over a.
         exponents: α and β.
-        ends: is its left one X = -a, its right one X = a?
-        points: how many.
+        ends: True where its left end is X = -a, and where its right end is X = a.
+        points: number of points.
     """
     (α, β), half = exponents, (right - left) / 2.0
     at_left, at_right = β * ends[0], α * ends[1]
@@ -193,25 +188,25 @@ def _rule(
 #: Time over a/c_s after a turn at which friction is that of the way back.
 _AFTER = 1e-7
 
-#: What is told of displacements, velocities seen from the punch, and the way it goes, ±1.
+#: Numbers to record, by displacements, velocities seen from the punch, and its direction, ±1.
 Watch = Callable[[NDArray, NDArray, int], NDArray]
 
 
 @dataclass(frozen=True)
 class Steps:
-    """What was found after each step; lengths over a, stresses over N/(2a), so forces over N/2.
+    """Results after each step; lengths over a, stresses over N/(2a), so forces over N/2.
 
     Attributes:
         t: times over a/c_s, (steps,).
-        v0: indentation over N/(2μ) since the first of all times.
+        v0: indentation over N/(2μ) since t = 0.
         forces: consistent nodal forces of σ_YY at the contact nodes from left to right, (steps, nodes).
         work_of_load, work_of_friction: of the contact's forces along Y and X by velocities seen from the
             punch, over N²/(4μ).
         energy: of the motion seen from the punch, (u̇M u̇ + u K u)/2 over N²/(4μ), less that at first: that
             work but for what is absorbed, for what is carried along is skew, and K has ρ(V u,X)²/2 taken
             away. Where the punch turns round it jumps.
-        absorbed: that of waves which cells far away are too large for, over N²/(4μ).
-        watched: what each of those that watched told, at first and after each step, (1 + steps, …).
+        absorbed: energy of waves which cells far away are too large for, over N²/(4μ).
+        watched: records of each ``Watch``, at first and after each step, (1 + steps, …).
     """
 
     t: NDArray[np.float64]
@@ -225,18 +220,18 @@ class Steps:
 
     @property
     def work(self) -> NDArray[np.float64]:
-        """Of both."""
+        """Work of load and friction together, over N²/(4μ), (steps,)."""
         return self.work_of_load + self.work_of_friction
 
 
 @dataclass(frozen=True)
 class Phase:
-    """So many equal steps one way.
+    """Equal steps in one direction.
 
     Attributes:
         direction: ±1, towards +X or back.
         duration: over a/c_s.
-        steps: their number.
+        steps: number of steps.
     """
 
     direction: int
@@ -245,13 +240,13 @@ class Phase:
 
     @property
     def h(self) -> float:
-        """The step."""
+        """Length of a step over a/c_s."""
         return self.duration / self.steps
 
 
 @dataclass
 class _State:
-    """Displacements, velocities, accelerations, and powers of load, friction and what is absorbed."""
+    """Displacements, velocities, accelerations, and powers of load, friction and damping."""
 
     u: NDArray
     w: NDArray
@@ -260,7 +255,7 @@ class _State:
 
 
 class SlidingInTime:
-    """All motions at one speed.
+    """Motions of a sliding punch at one speed.
 
     Args:
         motion: the equations.
@@ -275,7 +270,7 @@ class SlidingInTime:
         with self._clock("assembly"):
             self._K, self._M, self._D, self._B = motion.K, motion.M, motion.D, motion.B
         self._Y = 2 * motion.contact + 1
-        self._pressed: dict[tuple[float, int], Pressed] = {}
+        self._punches: dict[tuple[float, int], PunchConstraint] = {}
 
     def run(
         self,
@@ -288,16 +283,16 @@ class SlidingInTime:
         """March through all phases.
 
         Args:
-            phases: one after the other; two ways only if the speed is not 0.
+            phases: one after the other; in two directions only if the speed is not 0.
             g: σ_XY/σ_YY under the punch at a time; it may jump at a turn.
             load: share of N at a time; from rest load(0) = 0 with no slope there.
-            steady: begin in the steady motion of what there is at t = 0, not at rest.
-            watching: each is shown the motion at first and after each step.
+            steady: begin in the steady motion under load and friction at t = 0, not at rest.
+            watching: functions that record the motion, at first and after each step.
         """
         state = self._steady(g(0.0), load(0.0)) if steady else self._rest()
         first_v0, first_energy = -state.u[self._Y[0]], self._energy(state)
-        found, t, way = [], 0.0, phases[0].direction
-        seen = [[watch(state.u, state.w, way) for watch in watching]]
+        records, t, way = [], 0.0, phases[0].direction
+        watched = [[watch(state.u, state.w, way) for watch in watching]]
         for phase in phases:
             if phase.direction != way:
                 self._turn(state, phase.direction - way, g(t + _AFTER), load(t))
@@ -306,12 +301,12 @@ class SlidingInTime:
             for _ in range(phase.steps):
                 r, done = self._step(state, stages, phase.h, t, g, load)
                 t += phase.h
-                found.append((t, -state.u[self._Y[0]] - first_v0, r, *done, self._energy(state)))
-                seen.append([watch(state.u, state.w, way) for watch in watching])
-        times, v0, forces, by_load, by_friction, absorbed, energy = map(np.array, zip(*found))
+                records.append((t, -state.u[self._Y[0]] - first_v0, r, *done, self._energy(state)))
+                watched.append([watch(state.u, state.w, way) for watch in watching])
+        times, v0, forces, by_load, by_friction, absorbed, energy = map(np.array, zip(*records))
         return Steps(
             times, v0, forces, np.cumsum(by_load), np.cumsum(by_friction), energy - first_energy,
-            np.cumsum(absorbed), tuple(map(np.array, zip(*seen))),
+            np.cumsum(absorbed), tuple(map(np.array, zip(*watched))),
         )  # fmt: skip
 
     def _rest(self) -> _State:
@@ -320,52 +315,52 @@ class SlidingInTime:
 
     def _steady(self, g: float, load: float) -> _State:
         state = self._rest()
-        pressed = self._under(self._K)
-        state.u, _ = pressed.solve(np.zeros(self._motion.size), g, -2.0 * load)
-        pressed.destroy()
+        punch = self._under(self._K)
+        state.u, _ = punch.solve(np.zeros(self._motion.size), g, -2.0 * load)
+        punch.destroy()
         return state
 
     def _turn(self, state: _State, change: int, g: float, load: float) -> None:
-        """From one way to the other: velocities jump, and accelerations are others."""
+        """Turn the punch round: velocities seen from it jump, and accelerations change."""
         Δc, way = self._motion.response.c * change, np.sign(change)
-        pressed = self._under(kron(self._M, identity(2)).tocsr())
+        punch = self._under(kron(self._M, identity(2)).tocsr())
         pushed = of_both(self._M, state.w) + Δc * of_both(self._B, state.u)
-        state.w, _ = pressed.solve(pushed, g, 0.0)
-        left = -of_both(self._rates(way), state.w) - self._K @ state.u
-        state.a, r = pressed.solve(left, g, -2.0 * load)
-        pressed.destroy()
+        state.w, _ = punch.solve(pushed, g, 0.0)
+        force = -of_both(self._rates(way), state.w) - self._K @ state.u
+        state.a, r = punch.solve(force, g, -2.0 * load)
+        punch.destroy()
         state.powers = self._powers(r, state.w, g)
 
-    def _under(self, matrix: csr_matrix) -> Pressed:
-        return Pressed(matrix, self._motion, self._clock)
+    def _under(self, matrix: csr_matrix) -> PunchConstraint:
+        return PunchConstraint(matrix, self._motion, self._clock)
 
     def _rates(self, way: int) -> csr_matrix:
         return self._D - 2.0 * way * self._motion.response.c * self._B
 
-    def _stages(self, h: float, way: int) -> Pressed:
-        """The matrix of all stages, kept for the next motion."""
+    def _stages(self, h: float, way: int) -> PunchConstraint:
+        """The matrix of all stages of step h, kept for the next motion."""
         key = (round(h, 12), way)
-        if key not in self._pressed:
+        if key not in self._punches:
             S = kron(self._M + γ * h * self._rates(way), identity(2)) + (γ * h) ** 2 * self._K
-            self._pressed[key] = self._under(S.tocsr())
-        return self._pressed[key]
+            self._punches[key] = self._under(S.tocsr())
+        return self._punches[key]
 
     def _step(
-        self, state: _State, stages: Pressed, h: float, t: float,
+        self, state: _State, stages: PunchConstraint, h: float, t: float,
         g: Callable[[float], float], load: Callable[[float], float],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
-        """Take a step; normal reactions at its end, and both works and the energy absorbed in it."""
+        """Take a step; returns normal reactions at its end, and both works and absorbed energy in it."""
         velocities, accelerations, powers = [state.w], [state.a], [state.powers]
         for weights, time in zip(A, TIMES):
-            before = state.u + h * sum(of * one for of, one in zip(weights, velocities))
-            given = state.w + h * sum(of * one for of, one in zip(weights, accelerations))
+            u_explicit = state.u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
+            w_explicit = state.w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
             at = t + h * time
-            b = of_both(self._M, given) - γ * h * (self._K @ before)
+            b = of_both(self._M, w_explicit) - γ * h * (self._K @ u_explicit)
             now, r = stages.solve(b, g(at), -2.0 * load(at) * γ * h)
             velocities.append(now)
-            accelerations.append((now - given) / (γ * h))
+            accelerations.append((now - w_explicit) / (γ * h))
             powers.append(self._powers(r / (γ * h), now, g(at)))
-        state.u, state.w, state.a = before + γ * h * now, now, accelerations[-1]
+        state.u, state.w, state.a = u_explicit + γ * h * now, now, accelerations[-1]
         state.powers = powers[-1]
         return r / (γ * h), h * np.array([*A[-1], γ]) @ np.array(powers)
 
@@ -377,18 +372,18 @@ class SlidingInTime:
 
     def destroy(self) -> None:
         """Free the factors."""
-        for pressed in self._pressed.values():
-            pressed.destroy()
+        for punch in self._punches.values():
+            punch.destroy()
 
 
 @dataclass(frozen=True)
 class SurfaceMotion:
-    """What the surface does; lengths over a, displacements over N/(2μ).
+    """Motion of the surface; lengths over a, displacements over N/(2μ).
 
     Attributes:
         t: times over a/c_s, (steps,).
-        X: where its nodes are, from left to right, (nodes,).
-        u: their displacements, (steps, nodes, 2).
+        X: positions of its nodes from left to right, (nodes,).
+        u: displacements of the nodes, (steps, nodes, 2).
     """
 
     t: NDArray[np.float64]
@@ -397,7 +392,7 @@ class SurfaceMotion:
 
 
 class LoadedInTime:
-    """All loads at one speed with one step size.
+    """Motions under prescribed tractions at one speed with one step size.
 
     Args:
         motion: the equations.
@@ -432,34 +427,34 @@ class LoadedInTime:
         """March from rest.
 
         Args:
-            steps: how many.
-            σ_YY: pressure under the punch over N/(2a), where all of it is there.
+            steps: number of steps.
+            σ_YY: full pressure on the contact over N/(2a).
             g: σ_XY/σ_YY.
-            load: its share at a time; at 0, too, from which on it is smooth.
+            load: share of the pressure at a time, smooth from t = 0 on, where it may jump.
             knots: positions X over a between which the pressure is smooth.
         """
         h, M, K, free = self._h, self._motion.M, self._motion.K, self._free
         f = self._forces(σ_YY, g, knots)
         u, w = np.zeros(len(f)), np.zeros(len(f))
         a = self._at_once(f * load(0.0))
-        found = np.zeros((steps, len(self._surface), 2))
+        displacements = np.zeros((steps, len(self._surface), 2))
         for n in range(steps):
             velocities, accelerations = [w], [a]
             for weights, time in zip(A, TIMES):
-                before = u + h * sum(of * one for of, one in zip(weights, velocities))
-                given = w + h * sum(of * one for of, one in zip(weights, accelerations))
-                b = of_both(M, given) + γ * h * (load(h * (n + time)) * f - K @ before)
+                u_explicit = u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
+                w_explicit = w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
+                b = of_both(M, w_explicit) + γ * h * (load(h * (n + time)) * f - K @ u_explicit)
                 now = np.zeros(len(f))
                 now[free] = self.factor.solve(b[free])
                 velocities.append(now)
-                accelerations.append((now - given) / (γ * h))
-            u, w, a = before + γ * h * now, now, accelerations[-1]
-            found[n] = u.reshape(-1, 2)[self._surface]
+                accelerations.append((now - w_explicit) / (γ * h))
+            u, w, a = u_explicit + γ * h * now, now, accelerations[-1]
+            displacements[n] = u.reshape(-1, 2)[self._surface]
         X = self._motion.space.coordinates[self._surface, 0]
-        return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, found)
+        return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, displacements)
 
     def _at_once(self, f: NDArray) -> NDArray[np.float64]:
-        """Accelerations at rest by forces that are there at once."""
+        """Accelerations at rest under forces that are applied suddenly."""
         a = np.zeros(len(f))
         if f.any():
             M = kron(self._motion.M, identity(2)).tocsr()

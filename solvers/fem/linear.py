@@ -1,8 +1,9 @@
-"""PETSc's direct solver with the checks that PETSc leaves to its caller.
+"""Linear solvers of PETSc: factors of symmetric and unsymmetric matrices, and algebraic multigrid.
 
-Conjugate gradients with algebraic multigrid: for matrices whose factor does not fit into memory.
-
-PETSc's direct solver for matrices that are not symmetric, on one rank.
+:class:`Factor` is PETSc's direct solver with the checks that PETSc leaves to its caller.
+:class:`Multigrid` runs conjugate gradients with algebraic multigrid, for matrices whose factor does not
+fit into memory. :class:`UnsymmetricFactor` is the direct solver for matrices that are not symmetric, on
+one rank.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -50,8 +51,8 @@ class Factor:
         definite: positive definite, so that Cholesky's method needs no pivots.
 
     Attributes:
-        solves: back-substitutions done.
-        iterations: 0, as of every direct solver.
+        solves: number of back-substitutions.
+        iterations: 0, as for every direct solver.
         condition: MUMPS's estimate of the condition number, known after the first solve; 0 for a matrix
             of more than ``ANALYSED`` unknowns.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
@@ -96,7 +97,7 @@ class Factor:
         if status in _MEMORY + _TOO_SMALL:
             largest, total = (self._mumps.getMumpsInfog(i) for i in (16, 17))
             raise SolveError(
-                f"the factorisation ran out of memory (MUMPS's status {status}); it wanted {largest} MB "
+                f"the factorisation ran out of memory (MUMPS's status {status}); it needs {largest} MB "
                 f"a rank, {total} MB in all: use more ranks, a larger tolerance, or more memory"
             )
         raise SolveError(
@@ -140,14 +141,14 @@ class Factor:
             B.assemble()
             X = B.duplicate()
             self._mumps.matSolve(B, X)
-            found = []
+            solutions = []
             for b, column in zip(loads, X.getDenseArray().T):
                 x = self.A.createVecRight()
                 x.setArray(column)
                 self._check(x, b)
-                found.append(x)
+                solutions.append(x)
             B.destroy(), X.destroy()
-            return found
+            return solutions
 
     def _solve(self, b: PETSc.Vec) -> PETSc.Vec:
         x = self.A.createVecRight()
@@ -181,7 +182,7 @@ class Factor:
 
 @contextmanager
 def defaults(options: Mapping[str, object]) -> Iterator[None]:
-    """Puts options that the user has not given into PETSc's database, for as long as they are needed."""
+    """Put options that the user has not set into PETSc's database, for as long as they are needed."""
     database = PETSc.Options(PREFIX)
     pushed = [name for name in options if not database.hasName(name)]
     for name in pushed:
@@ -193,7 +194,7 @@ def defaults(options: Mapping[str, object]) -> Iterator[None]:
             database.delValue(name)
 
 
-#: |b - Ax|/|b| that is asked for. Contact forces need more; refinement gives it.
+#: Largest |b - Ax|/|b|. Contact forces need more; refinement gives it.
 TOLERANCE = 1e-10
 LIMIT = 1000
 
@@ -228,7 +229,7 @@ class Multigrid:
         rigid: the three rigid motions at this rank's rows, (rows, 3).
 
     Attributes:
-        solves: solves done.
+        solves: number of solves.
         iterations: the most that a solve took.
         condition: 0, it is not estimated.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
@@ -282,7 +283,7 @@ class Multigrid:
         return [self.solve(b) for b in loads]
 
     def destroy(self) -> None:
-        """Free what PETSc holds."""
+        """Free PETSc's memory now."""
         self._ksp.destroy(), self.A.destroy()
 
 
@@ -341,30 +342,34 @@ class UnsymmetricFactor:
         """Solutions for right-hand sides (n,) or (n, count).
 
         Raises:
-            SolveError: a solution is not one.
+            SolveError: a solution does not solve its system.
         """
         with self._clock("back-substitutions"):
             if b.ndim == 1:
                 x, y = (PETSc.Vec().createWithArray(np.array(b), comm=PETSc.COMM_SELF) for _ in range(2))
                 self._mumps.solve(x, y)
-                found = np.array(y.array_r)
+                solution = np.array(y.array_r)
                 x.destroy(), y.destroy()
             else:
-                found = self._many(b)
+                solution = self._many(b)
         if not self._checked or b.ndim == 2:
-            left = float(np.linalg.norm(self._A @ found - b)) / max(float(np.linalg.norm(b)), 1e-300)
-            if np.any(b) and not left <= _RESIDUAL:
-                raise SolveError(f"a linear solve left |b - Ax|/|b| = {left:.3g}, expected {_RESIDUAL:g}")
+            residual = float(np.linalg.norm(self._A @ solution - b)) / max(
+                float(np.linalg.norm(b)), 1e-300
+            )
+            if np.any(b) and not residual <= _RESIDUAL:
+                raise SolveError(
+                    f"a linear solve left |b - Ax|/|b| = {residual:.3g}, expected {_RESIDUAL:g}"
+                )
             self._checked = True
-        return found
+        return solution
 
     def _many(self, b: NDArray) -> NDArray[np.float64]:
-        given = PETSc.Mat().createDense(b.shape, array=np.asfortranarray(b), comm=PETSc.COMM_SELF)
-        found = PETSc.Mat().createDense(b.shape, comm=PETSc.COMM_SELF)
-        found.setUp()
-        self._mumps.matSolve(given, found)
-        values = np.array(found.getDenseArray())
-        given.destroy(), found.destroy()
+        loads = PETSc.Mat().createDense(b.shape, array=np.asfortranarray(b), comm=PETSc.COMM_SELF)
+        solutions = PETSc.Mat().createDense(b.shape, comm=PETSc.COMM_SELF)
+        solutions.setUp()
+        self._mumps.matSolve(loads, solutions)
+        values = np.array(solutions.getDenseArray())
+        loads.destroy(), solutions.destroy()
         return values
 
     def destroy(self) -> None:

@@ -1,26 +1,22 @@
 """Rigid punch with friction and two sharp edges on the finite element half-plane, its pressure unknown.
 
 Trial functions have v = -v₀ + P on the contact nodes, test functions w_Y + g w_X = 0 there. Nodal
-reactions are then the consistent contact forces and no penalty or multiplier is met. With the normal
-displacement held and the tangential free, the matrix is symmetric and does not know g: if T r are
-the normal reactions caused by tangential forces r, friction asks for
+reactions are then the consistent contact forces; no penalty and no multiplier is needed. With the normal
+displacement held and the tangential free, the matrix is symmetric and does not depend on g: if T r are
+the normal reactions caused by tangential forces r, friction requires
 
     (I - g T) R = R₀.
 
-The Krylov space of (T, R₀) serves every g at that speed; a profile P that is not flat has one of its own.
-For few nodes T is there as a matrix.
-Of a contact whose ends are found P is a combination of some shapes, each with a space of its own.
+The Krylov space of (T, R₀), made by Arnoldi's method, holds the contact forces of every g at that speed;
+a profile P that is not flat has a space of its own. For few contact nodes T is formed as a matrix. For a
+contact with free ends P is a combination of several shapes, each with a space of its own. Every state of
+a punch with friction is a sum of these parts.
 
-The Krylov space in which the contact forces of every friction lie, made by Arnoldi's method.
-
-States of a punch with friction as sums of its parts, whatever these were found by.
-
-A punch at a speed between others at which it was solved: what a fit says of these, put together.
-
-At a solved speed the parts of a punch are sampled at some frictions, between which they are polynomials
-in g to rounding. At another speed each number is a sum over the solved speeds, with the same shares for
-all. What an edge's singularity does to a number is taken out before and put in again: a force or a slope
-at a distance d goes as d^α with an exponent that changes with speed.
+At a speed between others at which the punch was solved, its parts are interpolated. At a solved speed
+they are sampled at some frictions, between which they are polynomials in g to rounding. At another speed
+each number is a sum over the solved speeds, with the same weights for all numbers. The effect of an
+edge's singularity is divided out before and multiplied in again: a force or a slope at a distance d goes
+as d^α with an exponent that changes with speed.
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,7 +37,7 @@ from .boundary import FarBoundary, forces_of_profile, ones, product, set_zero
 from .linear import Factor, Multigrid
 from .space import Space
 
-#: Least relative residual of contact forces that is asked for; the last digits are rounding.
+#: Least relative residual of contact forces that can be required; the last digits are rounding.
 LEAST = 1e-13
 LIMIT = 120
 
@@ -56,10 +52,10 @@ class KrylovSpace:
         field: the punch without friction.
         forces: its forces in X and Y at the contact nodes, (2, n).
         refines: solutions are refined.
-        left: relative residual of the contact forces that may be left, if it is above the least.
+        left: relative residual of the contact forces that may remain, if it is above the least.
 
     Attributes:
-        fields, forces: the first, then those of each tangential load.
+        fields, forces: without friction first, then those of each tangential load.
         complete: the space holds every answer.
     """
 
@@ -97,19 +93,19 @@ class KrylovSpace:
         """Coefficients y of R = V y for every g, (states, m); None where the space is too small.
 
         Raises:
-            SolveError: it has grown to its limit.
+            SolveError: the space has grown to its limit.
         """
         m = len(self.fields) - 1
         if not m:
             return None
-        y, left = self.solve(g)
-        worst = int(np.argmax(left))
-        if self.complete or left[worst] <= self._left:
+        y, residuals = self.solve(g)
+        worst = int(np.argmax(residuals))
+        if self.complete or residuals[worst] <= self._left:
             return y
         if m == LIMIT:
             raise SolveError(
                 f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                f"{LIMIT} steps: residual {left[worst]:.3g}, wanted {self._left:g}"
+                f"{LIMIT} steps: residual {residuals[worst]:.3g}, expected {self._left:g}"
             )
         return None
 
@@ -132,7 +128,7 @@ class KrylovSpace:
         return y, self._residuals(g, y)
 
     def _residuals(self, g: NDArray, y: NDArray) -> NDArray[np.float64]:
-        """Of coefficients (states, m), relative, (states,)."""
+        """Relative residuals of (I - g T) R = R₀ for coefficients y (states, m): (states,)."""
         m = y.shape[1]
         return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1))
 
@@ -144,7 +140,8 @@ class Part:
     Attributes:
         weights: of the fields, (states, fields).
         forces: of each field, consistent nodal forces of σ_XY and σ_YY at the contact nodes, read off the
-            assembled equations, (fields, 2, nodes); of σ_YY alone, (fields, 1, nodes), where none were.
+            assembled equations, (fields, 2, nodes); of σ_YY alone, (fields, 1, nodes), where no equations
+            were assembled.
     """
 
     weights: NDArray[np.float64]
@@ -167,7 +164,7 @@ class Part:
 
 @dataclass(frozen=True)
 class ContactStates(Part):
-    """Several friction states.
+    """States of a punch with several frictions.
 
     Attributes:
         g: σ_XY/σ_YY under the punch, (states,).
@@ -180,13 +177,13 @@ class ContactStates(Part):
 
     @cached_property
     def tangential(self) -> NDArray[np.float64]:
-        """Nodal forces of σ_XY, (states, nodes): what the equations say, or g times the normal ones."""
-        known = self.forces.shape[1] == 2
-        return self.weights @ self.forces[:, 0] if known else self.g[:, None] * self.normal
+        """Nodal forces of σ_XY, (states, nodes): from the equations, or g times the normal ones."""
+        has_both = self.forces.shape[1] == 2
+        return self.weights @ self.forces[:, 0] if has_both else self.g[:, None] * self.normal
 
 
 class Punch:
-    """All friction states of a punch at one speed, which are sums of its parts.
+    """All states of a punch with friction at one speed, which are sums of its parts.
 
     Attributes:
         space: the finite element space.
@@ -198,20 +195,20 @@ class Punch:
 
     @property
     def fields(self) -> Sequence[PETSc.Vec]:
-        """Displacements of the parts, those of one after those of the other."""
+        """Displacements of the parts, part after part."""
         raise NotImplementedError
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
-        """Of states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape where it is held.
+        """Parts of the states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape held at v = P.
 
         Args:
             g: values of σ_XY/σ_YY, (states,).
-            shapes: that are wanted, all of them if not given.
+            shapes: number of shapes, all of them if not given.
         """
         raise NotImplementedError
 
     def release(self) -> None:
-        """Free factor and fields; states that were asked for before can be asked for again."""
+        """Free factor and fields; states at frictions that were solved before remain available."""
         raise NotImplementedError
 
     def destroy(self) -> None:
@@ -223,8 +220,8 @@ class Punch:
 
         Args:
             g: values of σ_XY/σ_YY.
-            flat: of a flat punch, whatever the profile is.
-            share: by what the profile's heights are multiplied, of each state: less over a larger load.
+            flat: states of a flat punch, whatever the profile is.
+            share: factor of the profile's heights in each state: smaller for a larger load.
         """
         g = np.atleast_1d(np.asarray(g, dtype=float))
         heights = np.asarray(share, dtype=float) * np.ones(len(g))
@@ -241,8 +238,8 @@ def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactS
 
     Args:
         g: values of σ_XY/σ_YY, (states,).
-        parts: of :meth:`Punch.parts`.
-        amplitudes: of each, (states, parts); the first is the indentation v₀.
+        parts: see :meth:`Punch.parts`.
+        amplitudes: of each part, (states, parts); the first is the indentation v₀.
     """
     weights = [amplitudes[:, [i]] * part.weights for i, part in enumerate(parts)]
     forces = np.concatenate([part.forces for part in parts])
@@ -264,10 +261,10 @@ class SlidingPunch(Punch):
         response: of the half-plane, at a speed below its limit.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
-            first solution is refined in any case and tells what that does to the others.
+            first solution is refined in any case, which shows whether the others need it.
         heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
             that are combined, (shapes, nodes); None for a flat punch.
-        left: relative residual of the contact forces that friction may leave.
+        left: relative residual of the contact forces that may remain at each friction.
     """
 
     def __init__(
@@ -301,7 +298,7 @@ class SlidingPunch(Punch):
             self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
         self._nodal: tuple[NDArray, NDArray] | None = None
         self._take_boundary()
-        #: Of the flat punch, and of each shape.
+        #: Krylov spaces of the flat punch, and of each shape.
         self._spaces = self._krylov_spaces(shaped, negligible)
 
     @property
@@ -312,17 +309,17 @@ class SlidingPunch(Punch):
     def prepare(self, g: NDArray[np.float64]) -> None:
         """Complete the basis for these values of σ_XY/σ_YY, sorted.
 
-        What the basis leaves is a smooth function of them, so that some spread over all stand for them.
+        The residual of the basis is a smooth function of g, so some values spread over all suffice.
         """
-        some = np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))
-        self._contact_forces(self._spaces, g[some])
+        spread = np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))
+        self._contact_forces(self._spaces, g[spread])
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
-        wanted = self._spaces[: None if shapes is None else 1 + shapes]
-        return [self._of(space, g, y) for space, y in zip(wanted, self._contact_forces(wanted, g))]
+        spaces = self._spaces[: None if shapes is None else 1 + shapes]
+        return [self._of(space, g, y) for space, y in zip(spaces, self._contact_forces(spaces, g))]
 
     def _of(self, space: KrylovSpace, g: NDArray, y: NDArray) -> Part:
-        """What a Krylov space makes of friction, by the coefficients of the contact forces."""
+        """Part of a Krylov space at frictions g, by coefficients y (states, m) of its contact forces."""
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
@@ -343,22 +340,22 @@ class SlidingPunch(Punch):
         loads, contact = self._boundary.loads, self.space.contact
         if loads:
             fields = self._displacements(loads)
-            # Moments after the resultants are felt too little to need that.
+            # Moments after the resultants have too little effect to need that.
             self._refine(fields[:2], loads[:2], [0.0, 0.0])
-            self._boundary.found(fields)
+            self._boundary.set_fields(fields)
             X = self.space.chart.surface_position(contact.s)
             self._boundary.take(X, [self._reactions(field) for field in fields])
 
     def _krylov_spaces(self, forces: list[PETSc.Vec], negligible: float) -> list[KrylovSpace]:
-        """Those of punches without friction: of the flat one at v = -1, and of shapes.
+        """Krylov spaces of the flat punch at v = -1 and of each shape, begun without friction.
 
         Args:
-            forces: of what is held; they are no longer needed afterwards.
+            forces: nodal forces of the held displacements; they are freed.
             negligible: see the class.
         """
         fields = self._displacements(forces)
         rough = [self._reactions(field) for field in fields]
-        # Under the flat punch all of the contact moves alike, and no other load acts.
+        # Under the flat punch all of the contact moves by the same distance, and no other load acts.
         self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
         spaces = []
         for field, before, b in zip(fields, rough, forces):
@@ -374,18 +371,18 @@ class SlidingPunch(Punch):
     ) -> list[NDArray[np.float64]]:
         """Coefficients y of R = V y for every g, (states, m), in each Krylov space.
 
-        The spaces grow as they need, those that do together: one pass over the factor serves them.
+        Spaces grow as they need, together where several do: one pass over the factor serves them.
         """
         if not np.any(g):
             return [np.zeros((len(g), 0)) for _ in spaces]
-        found: list[NDArray | None] = [None for _ in spaces]
+        coefficients: list[NDArray | None] = [None for _ in spaces]
         while True:
             for i, space in enumerate(spaces):
-                if found[i] is None:
-                    found[i] = space.converged(g)
-            short = [space for space, y in zip(spaces, found) if y is None]
+                if coefficients[i] is None:
+                    coefficients[i] = space.converged(g)
+            short = [space for space, y in zip(spaces, coefficients) if y is None]
             if not short:
-                return [y for y in found if y is not None]
+                return [y for y in coefficients if y is not None]
             self._extend(short)
 
     def _extend(self, spaces: Sequence[KrylovSpace]) -> None:
@@ -406,23 +403,23 @@ class SlidingPunch(Punch):
         """Displacements (rows, n) and forces (2, n, n) that a tangential load at each node causes."""
         if self._nodal is None:
             n = len(self.space.contact.s)
-            found, forces = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
+            fields, forces = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
             of_nodes = np.moveaxis(np.array(forces), 0, 2)
-            self._nodal = np.array([field.array_r for field in found]).T, of_nodes
-            for field in found:
+            self._nodal = np.array([field.array_r for field in fields]).T, of_nodes
+            for field in fields:
                 field.destroy()
         return self._nodal
 
     def _answers(
         self, loads: Sequence[PETSc.Vec], refines: Sequence[bool]
     ) -> tuple[list[PETSc.Vec], list[NDArray[np.float64]]]:
-        """Displacements that loads cause, refined where that is wanted, and forces; frees the loads."""
-        found = self._displacements(loads)
-        refined = [i for i, wanted in enumerate(refines) if wanted]
-        self._refine([found[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
+        """Displacements under loads, refined where ``refines`` says so, and forces; frees the loads."""
+        fields = self._displacements(loads)
+        refined = [i for i, refine in enumerate(refines) if refine]
+        self._refine([fields[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
         for b in loads:
             b.destroy()
-        return found, [self._boundary.follow(field, self._reactions(field)) for field in found]
+        return fields, [self._boundary.follow(field, self._reactions(field)) for field in fields]
 
     def _tangential(self, forces: Sequence[NDArray]) -> list[PETSc.Vec]:
         """Loads of tangential forces at the contact nodes, (n,) each."""
@@ -435,7 +432,7 @@ class SlidingPunch(Punch):
         return loads
 
     def _displacements(self, forces: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
-        """The displacements for nodal forces, with what the held displacements cause."""
+        """Displacements under nodal forces, the effect of the held displacements included."""
         fields, held = self.factor.solve_all(forces), self.space.held_dofs
         for u, b in zip(fields, forces):
             u.setValues(held, b.getValues(held))  # an iterative solver only comes near them
@@ -445,28 +442,28 @@ class SlidingPunch(Punch):
     def _refine(
         self, fields: Sequence[PETSc.Vec], loads: Sequence[PETSc.Vec | None], v: Sequence[float]
     ) -> None:
-        """Solve once more for what displacements leave of their forces.
+        """Solve once more for the residual forces of displacements.
 
         The contact moves far before the body deforms, the farther the nearer the Rayleigh speed, and what
-        forces that motion seems to need is rounding. The residual is taken without it: what is left of
-        the displacement is zero under a flat punch, and the far boundary moves instead.
+        forces that motion seems to need is rounding. The residual is taken without it: the rest of the
+        displacement is zero under a flat punch, and the far boundary moves instead.
 
         Args:
             fields: the displacements, in place.
             loads: nodal forces, those of a profile's held displacements among them.
-            v: normal displacement of the contact where all of it moves alike.
+            v: normal displacement of the contact where all of it moves by the same distance.
         """
-        left = [self._residual(*of_one) for of_one in zip(fields, loads, v)]
-        wrong = [(u, residual) for u, residual in zip(fields, left) if residual.norm() > 0.0]
+        residuals = [self._residual(*of_one) for of_one in zip(fields, loads, v)]
+        wrong = [(u, residual) for u, residual in zip(fields, residuals) if residual.norm() > 0.0]
         if wrong:
             for (u, _), correction in zip(wrong, self.factor.solve_all([b for _, b in wrong])):
                 u.axpy(1.0, correction)
                 correction.destroy()
-        for residual in left:
+        for residual in residuals:
             residual.destroy()
 
     def _residual(self, u: PETSc.Vec, load: PETSc.Vec | None, v: float) -> PETSc.Vec:
-        """What a displacement leaves of its forces, see :meth:`_refine`."""
+        """Residual forces of a displacement u under a load, see :meth:`_refine`."""
         held = self.space.held_dofs
         t = (self._contact_motion(u)[0], v)
         w = self._without(u, t)
@@ -481,7 +478,7 @@ class SlidingPunch(Punch):
         return residual
 
     def _contact_motion(self, u: PETSc.Vec) -> tuple[float, float]:
-        """Mean displacement of the contact nodes."""
+        """Mean displacement along X and Y of the contact nodes, over N/(2μ)."""
         nodes, comm = self.space.contact, self.space.comm
         total = np.array([u.getValues(nodes.dofs(i)).sum() for i in (0, 1)])
         comm.Allreduce(MPI.IN_PLACE, total)
@@ -496,16 +493,16 @@ class SlidingPunch(Punch):
     def _reactions(self, u: PETSc.Vec) -> NDArray[np.float64]:
         """Consistent forces in X and Y at the contact nodes, (2, n), the same on every rank."""
         nodes, comm = self.space.contact, self.space.comm
-        found = np.zeros((2, len(nodes.s)))
+        forces = np.zeros((2, len(nodes.s)))
         w = self._without(u, self._contact_motion(u))
         for i, rows in enumerate(self._rows):
             force = rows.createVecLeft()
             rows.mult(w, force)
-            found[i, nodes.owned] = force.array_r
+            forces[i, nodes.owned] = force.array_r
             force.destroy()
         w.destroy()
-        comm.Allreduce(MPI.IN_PLACE, found)
-        return found
+        comm.Allreduce(MPI.IN_PLACE, forces)
+        return forces
 
 
 @dataclass(frozen=True)
@@ -521,17 +518,17 @@ class Frictions:
     weights: NDArray[np.float64]
 
     def shares(self, g: NDArray) -> NDArray[np.float64]:
-        """What of the values there makes that at others, (len(g), frictions)."""
+        """Weights that interpolate values at the frictions to others, (len(g), frictions)."""
         return barycentric(self.g, self.weights, g)
 
 
 @dataclass(frozen=True)
 class Singular:
-    """What edges do to numbers of each friction: these are a smooth factor times it.
+    """Singular factors of the edges at each friction: numbers are a smooth factor times these.
 
     Attributes:
-        forces: to nodal forces, (frictions, nodes).
-        slopes: to slopes at the places on the surface, (frictions, places).
+        forces: factors of nodal forces, (frictions, nodes).
+        slopes: factors of slopes at places on the surface, (frictions, places).
     """
 
     forces: NDArray[np.float64]
@@ -544,10 +541,10 @@ class Sampled:
 
     Attributes:
         forces: in Y at the contact nodes, (..., parts, frictions, nodes); those in X are g times these.
-        slopes: of both displacements along X at places on the surface, none if nobody asks for them,
+        slopes: of both displacements along X at places on the surface, none where they are not needed,
             (..., 2, parts, frictions, places).
-        rounding: what the last digits can do to slopes of u, (..., parts, frictions, places).
-        fields: displacements, this rank's unknowns, none if nobody asks for them,
+        rounding: error of slopes of u by rounding, (..., parts, frictions, places).
+        fields: displacements, this rank's unknowns, none where they are not needed,
             (..., parts, frictions, unknowns).
     """
 
@@ -557,17 +554,17 @@ class Sampled:
     fields: NDArray[np.float64]
 
     def smooth(self, singular: Singular) -> "Sampled":
-        """The same without what edges do."""
+        """Smooth numbers: these over the singular factors of the edges."""
         slopes, forces = self.slopes / singular.slopes, self.forces / singular.forces
         return Sampled(forces, slopes, self.rounding / singular.slopes, self.fields)
 
     def singular(self, singular: Singular) -> "Sampled":
-        """Smooth numbers with what edges do."""
+        """Smooth numbers times the singular factors of the edges."""
         slopes, forces = self.slopes * singular.slopes, self.forces * singular.forces
         return Sampled(forces, slopes, self.rounding * singular.slopes, self.fields)
 
     def numbers(self) -> Iterator[NDArray[np.float64]]:
-        """All but the rounding, part by part, (..., n): what a fit is made of."""
+        """All numbers that a fit needs, part by part, (..., n); the rounding is not among them."""
         for part in range(self.forces.shape[-3]):
             for values in (self.forces[..., part, :, :], self.slopes[..., part, :, :]):
                 yield values.reshape(*values.shape[:-3], -1)
@@ -576,10 +573,12 @@ class Sampled:
 
 
 def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
-    """The sum of some speeds' numbers with these shares, (len(several),)."""
+    """Sum of the numbers of several speeds with weights ``shares``, (len(several),)."""
 
     def total(name: str, of: NDArray) -> NDArray:
-        return np.asarray(sum(share * getattr(one, name) for share, one in zip(of, several) if share))
+        return np.asarray(
+            sum(share * getattr(sample, name) for share, sample in zip(of, several) if share)
+        )
 
     rounding = total("rounding", np.abs(shares))
     return Sampled(total("forces", shares), total("slopes", shares), rounding, total("fields", shares))
@@ -591,7 +590,7 @@ def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool =
     Args:
         punch: the punch, solved for these frictions.
         at: the frictions.
-        slopes: of its fields, a :class:`.surface.SurfaceSlopes`; None where nobody asks for them.
+        slopes: of its fields, a :class:`.fields.SurfaceSlopes`; None where they are not needed.
         with_fields: keep the displacements.
     """
     parts, first, count = punch.parts(at.g), 0, len(at.g)
@@ -618,35 +617,35 @@ def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool =
 
 
 class FittedPunch(Punch):
-    """All friction states of the punch at a speed where its parts are known from others.
+    """All states of the punch with friction at a speed to which its parts were interpolated.
 
     Args:
         space: the finite element space.
         response: of the half-plane.
         at: frictions at which the parts are known.
-        known: the parts.
+        samples: the parts there.
     """
 
-    def __init__(self, space: Space, response: Response, at: Frictions, known: Sampled) -> None:
+    def __init__(self, space: Space, response: Response, at: Frictions, samples: Sampled) -> None:
         self.space, self.response = space, response
-        self._at, self._known = at, known
-        self._fields = _Fields(np.concatenate(list(known.fields)), space)
+        self._at, self._samples = at, samples
+        self._fields = _Fields(np.concatenate(list(samples.fields)), space)
 
     @property
     def fields(self) -> Sequence[PETSc.Vec]:
-        """Displacements of every part at every friction; made where somebody asks for one."""
+        """Displacements of every part at every friction; made when the first is accessed."""
         return self._fields
 
     @property
     def slopes(self) -> "FittedSlopes":
         """Slopes of the fields at the places on the surface."""
-        return FittedSlopes(self._known.slopes, self._known.rounding)
+        return FittedSlopes(self._samples.slopes, self._samples.rounding)
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         shares = self._at.shares(g)
-        known = self._known.forces[: None if shapes is None else 1 + shapes]
+        forces = self._samples.forces[: None if shapes is None else 1 + shapes]
         # No equations are assembled here from which tangential forces could be read.
-        return [Part(shares, normal[:, None]) for normal in known]
+        return [Part(shares, normal[:, None]) for normal in forces]
 
     def release(self) -> None:
         """Free the fields."""
@@ -672,12 +671,12 @@ class FittedSlopes:
         return u_X, v_X
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        """What the last digits of the fields can do to μ u,X of combinations, (states, n)."""
+        """Error by rounding of μ u,X of combinations with weights (states, fields): (states, n)."""
         return np.abs(weights) @ self._rounding[: weights.shape[1]]
 
 
 class _Fields(Sequence[PETSc.Vec]):
-    """Vectors of some numbers, (fields, unknowns), made when the first is asked for."""
+    """Vectors with given entries, (fields, unknowns), made when the first is accessed."""
 
     def __init__(self, numbers: NDArray, space: Space) -> None:
         self._numbers, self._space = numbers, space

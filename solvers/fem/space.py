@@ -1,10 +1,7 @@
-"""The finite element space on a mesh of the half-plane, and where its surface unknowns are.
+"""The finite element space on a mesh of the half-plane, shared out over ranks.
 
-Meshes shared out over ranks.
-
-A parallel matrix with room for what cells will add to it.
-
-Nodes and facets of parts of the surface, and the nodal forces of tractions on them.
+A :class:`Space` assembles the condensed matrix, in a parallel matrix with room for what cells will add to
+it. It numbers nodes and facets on parts of the surface, and makes the nodal forces of tractions on them.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -50,8 +47,8 @@ def distribute(mesh: Quadrilaterals | None, comm: MPI.Comm) -> tuple[Any, Any]:
     """Share a mesh out over the ranks of ``comm``.
 
     Args:
-        mesh: what this rank has of it, None for nothing. Vertices are numbered over all ranks; ``points``
-            are those of the next numbers after the ranks before.
+        mesh: this rank's part of it, None for nothing. Vertices are numbered over all ranks; ``points``
+            follow those of the ranks before.
         comm: communicator.
 
     Returns:
@@ -74,27 +71,27 @@ def empty_matrix(numbers: NDArray[np.int32], first: int, last: int, comm: MPI.Co
 
     Args:
         numbers: global numbers of the nodes of this rank's cells, (cells, nodes of a cell).
-        first, last: the nodes that this rank owns, without the last.
+        first, last: range of the nodes that this rank owns, the last excluded.
         comm: communicator.
     """
     owned, width = last - first, 2 * numbers.shape[1]
-    here = (first <= numbers) & (numbers < last)
+    on_rank = (first <= numbers) & (numbers < last)
 
     def brought(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """Entries that these cells bring to each row of the nodes owned here, at most."""
-        nodes = numbers[cells][here[cells]] - first
+        """Most entries that cells bring to each row of the nodes that this rank owns, (nodes,)."""
+        nodes = numbers[cells][on_rank[cells]] - first
         return width * np.bincount(nodes, minlength=owned)
 
     # Cells of other ranks bring entries to nodes on the border; without room for those PETSc would move
     # the whole matrix at each.
     border = PETSc.Vec().createMPI((owned, None), comm=comm)
-    abroad = numbers[~here]
+    abroad = numbers[~on_rank]
     border.setValues(abroad, np.full(len(abroad), float(width)), addv=PETSc.InsertMode.ADD_VALUES)
     border.assemble()
     from_others = border.array_r.astype(np.int64)
     border.destroy()
     within = np.maximum(brought(np.ones(len(numbers), dtype=bool)) + from_others, 2)  # a diagonal
-    across = brought(np.any(~here, axis=1)) + from_others
+    across = brought(np.any(~on_rank, axis=1)) + from_others
     room = np.minimum(within, 2 * owned), np.minimum(across, 2 * comm.allreduce(owned))
 
     A = PETSc.Mat().create(comm)
@@ -106,8 +103,8 @@ def empty_matrix(numbers: NDArray[np.int32], first: int, last: int, comm: MPI.Co
     return A
 
 
-#: σ over N/(2a) at the distances from the left and the right punch edge over a; both are given,
-#: because next to an edge X/a itself no longer tells the distance.
+#: σ over N/(2a) by the distances from the left and the right punch edge over a; both are needed,
+#: because next to an edge the distance has lost its digits in X/a.
 Traction = Callable[[NDArray, NDArray], NDArray]
 
 #: Facets at an edge are integrated in τ with distance ~ τ^8: traction grows like a root there.
@@ -180,17 +177,17 @@ def consistent_forces(
     """
     knots = chart.surface_coordinate(np.asarray(knots))
     forces = np.zeros_like(s)
-    left, right = ends
+    first, last = ends
     for i, nodes in enumerate(s):
         length = nodes[-1] - nodes[0]
         within = (knots[(nodes[0] < knots) & (knots < nodes[-1])] - nodes[0]) / length
         for a, b in pairwise([0.0, *within, 1.0]):
-            from_a, from_b, w = _rule(nodes[0] == left and a == 0.0, nodes[-1] == right and b == 1.0)
+            from_a, from_b, w = _rule(nodes[0] == first and a == 0.0, nodes[-1] == last and b == 1.0)
             # How far from the facet's two ends, over its length; each is exact at its own end.
             start, end = a + (b - a) * from_a, (1.0 - b) + (b - a) * from_b
             basis, _ = lagrange((nodes - nodes[0]) / length, start)
             d_left, d_right, stretch = chart.under_punch(
-                nodes[0] - left + length * start, right - nodes[-1] + length * end
+                nodes[0] - first + length * start, last - nodes[-1] + length * end
             )
             forces[i] += (w * (b - a) * length * stretch * σ_YY(d_left, d_right)) @ basis
     return forces
@@ -214,10 +211,10 @@ class Space:
         tags: number of the tag of each of the parts "contact", "free surface" and "far".
         chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
-        form: name of the weak form that a solid asks for.
+        form: name of the solid's weak form.
         terms: moments of the forces at the contact that the far boundary follows; 0 where it is held.
         clock: takes the time of what is done with the space.
-        say: is told on rank 0 what the user should know of the compiler.
+        say: called on rank 0 with messages of the compiler to the user.
 
     Raises:
         MeshError: a part of the boundary has no facet.
@@ -284,7 +281,7 @@ class Space:
         return np.arange(first, first + 2 * len(nodes), dtype=np.int32)
 
     def contracted(self, response: Response) -> Contracted:
-        """The chart at a speed."""
+        """The chart as the plane is contracted at a response's speed."""
         return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
 
     def rigid_motions(self, response: Response) -> NDArray[np.float64]:
@@ -326,8 +323,8 @@ class Space:
             first, last = self._range
             A = empty_matrix(blocks, first // 2, last // 2, self.comm)
             models, members = standing_for(self.vertices, self.chart, response, self.form.constants)
-            for some in self.pieces(len(models)):
-                for S, cells in zip(self.condensed(response, models[some]), members[some]):
+            for batch in self.pieces(len(models)):
+                for S, cells in zip(self.condensed(response, models[batch]), members[batch]):
                     for rows in blocks[cells]:
                         A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
@@ -336,17 +333,17 @@ class Space:
     def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:
         """Values of fields at nodes, (*numbers.shape, 2, fields), by their first unknowns' numbers.
 
-        Collective; every rank names the nodes it wants.
+        Collective; every rank passes the numbers that it needs.
         """
         index = (numbers.ravel()[:, None] + np.arange(2, dtype=np.int32)).ravel()
-        here = PETSc.Vec().createSeq(len(index))
+        values = PETSc.Vec().createSeq(len(index))
         where = PETSc.IS().createGeneral(index, comm=PETSc.COMM_SELF)
-        scatter = PETSc.Scatter().create(fields[0], where, here, None)
+        scatter = PETSc.Scatter().create(fields[0], where, values, None)
         u = np.empty((*numbers.shape, 2, len(fields)))
         for i, field in enumerate(fields):
-            scatter.scatter(field, here)
-            u[..., i] = here.array_r.reshape(u.shape[:-1])
-        for held in (scatter, where, here):
+            scatter.scatter(field, values)
+            u[..., i] = values.array_r.reshape(u.shape[:-1])
+        for held in (scatter, where, values):
             held.destroy()
         return u
 
@@ -398,7 +395,7 @@ class Space:
 
     @cached_property
     def kernel(self) -> CellMatrices:
-        """Matrices of cells, and which of their nodes stay."""
+        """Condensed matrices of cells, and the nodes that condensation leaves."""
         inner = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0))
         # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
         return CellMatrices(self.reference_nodes, inner, (self.degree - 1) * self.mixed)
@@ -410,7 +407,7 @@ class Space:
 
     @cached_property
     def outer_numbers(self) -> NDArray[np.int32]:
-        """Global numbers of what stays of each cell this rank owns: its boundary nodes, its pressure.
+        """Global numbers of what condensation leaves of each cell of this rank: boundary nodes, pressure.
 
         The two pressures of a cell are numbered like the two unknowns of a node, by the first.
         """
@@ -435,7 +432,7 @@ class Space:
             self._kept = None
 
     def pieces(self, count: int) -> Iterator[slice]:
-        """Parts of so many cells, each to be treated at once."""
+        """Slices of ``count`` cells, each to be treated at once."""
         step = self.kernel.at_once
         return (slice(start, start + step) for start in range(0, count, step))
 
@@ -476,12 +473,12 @@ class Space:
         return NodalForces(self.numbers[facets.nodes.ravel()], facets.s.ravel(), forces.ravel())
 
     def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
-        """The matrix of a response with what is held: "far" the far boundary, "contact" v under a punch.
+        """The matrix with displacements held: "far" on the far boundary, "contact" for v under a punch.
 
         Args:
-            A: the matrix without; it becomes the one with.
+            A: the matrix with nothing held; it is changed in place.
             response: of the half-plane.
-            parts: what is held.
+            parts: names of the held parts.
         """
         dofs = {"far": self.far_dofs, "contact": self.contact.dofs(1)}
         A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
@@ -492,7 +489,10 @@ class Space:
         return self._owned_blocks(part)
 
     def densities(self, response: Response, corners: NDArray) -> NDArray[np.float64]:
-        """The form of all cells; of each where they differ; or at the points of quadrature of each."""
+        """The form at unit gradients: one for all cells, for each cell, or for each point of quadrature.
+
+        Arrays (4, 4) or (5, 5), (cells, 4, 4), (cells, 4, 4, points, points).
+        """
         if not isinstance(response, ByCells):
             return self.form.density(response)
         solid = response.solids(corners[..., 1].mean(axis=1))
@@ -502,10 +502,10 @@ class Space:
         heights = self.kernel.heights(corners)
         H = np.empty((len(corners), *by_solid[0].shape[1:], *heights.shape[1:]))
         for i in np.unique(solid).tolist():
-            here = solid == i
-            share = response.share(i, heights[here])
+            cells = solid == i
+            share = response.share(i, heights[cells])
             basis = interpolation(share, len(by_solid[i]))
-            H[here] = np.einsum("myxn,nij->mijyx", basis, by_solid[i], optimize=True)
+            H[cells] = np.einsum("myxn,nij->mijyx", basis, by_solid[i], optimize=True)
         return H
 
     def _owned_blocks(self, part: str) -> NDArray[np.int32]:
@@ -514,7 +514,7 @@ class Space:
 
     @cached_property
     def _inner(self) -> NDArray[np.bool_]:
-        """Which of this rank's nodes, ghosts included, lie inside a cell."""
+        """True for those of this rank's nodes, ghosts included, that lie inside a cell, (nodes,)."""
         local = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0), dtype=np.int32)
         result = np.zeros(len(self.coordinates), dtype=bool)
         result[versions.cell_nodes(self.V)[:, local]] = True

@@ -1,15 +1,12 @@
-"""Half-plane under given surface tractions: the cheaper mode, in which the pressure is put in.
+"""Half-plane under a prescribed pressure: the cheaper mode, in which the pressure is known beforehand.
 
-Half-plane under the two linear loads of an interval: with these every piece of a pressure is made.
+:class:`LoadedHalfPlane` has the fields of tractions at one speed. :class:`LinearLoads` has those of the
+two linear loads of an interval, from which the field of any pressure that is linear between knots is
+summed (:class:`Pieces`). The half-plane has no length of its own, so the interval is [-1, 1] and one mesh
+serves pieces of every width. No kink of the pressure lies inside a cell, however narrow the piece is.
 
-The half-plane has no length of its own, so the interval is [-1, 1] and one mesh serves pieces of every
-width. Displacements are known relative to each cell's own place, to the last digits of how the cell
-deforms: next to an end of the interval a cell is a billionth of the distance that all of it moves.
-
-Fields of a pressure that is linear between knots: the sum of those of its pieces.
-
-Every piece is an interval with two linear loads on the mesh of all, so no kink of the pressure lies
-inside a cell, however narrow the piece is.
+Displacements are known relative to each cell's own place, to the last digits of how the cell deforms:
+next to an end of the interval a cell is a billionth of the distance that all of it moves.
 """
 
 import numpy as np
@@ -30,7 +27,7 @@ class LoadedHalfPlane:
     Args:
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
-        corrected: are corrections wanted?
+        corrected: also compute corrections of the fields.
     """
 
     def __init__(self, space: Space, response: Response, corrected: bool = False) -> None:
@@ -43,11 +40,11 @@ class LoadedHalfPlane:
         self.fields: list[PETSc.Vec] = []
         #: ∫ σ_YY d(X/a) over N/(2a) of each load.
         self.resultants: list[float] = []
-        #: What each field lacks where cells are small: its last digit is one of the motion of all.
+        #: Correction of each field, whose last digit is one of the motion of the whole half-plane.
         self.corrections: list[PETSc.Vec] = []
         self._corrected = corrected
         if self._far.loads:
-            self._far.found(self.factor.solve_all(self._far.loads))
+            self._far.set_fields(self.factor.solve_all(self._far.loads))
 
     def load(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> None:
         """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant.
@@ -73,14 +70,14 @@ class LoadedHalfPlane:
         self.resultants.append(resultant)
 
     def _correction(self, field: PETSc.Vec, load: PETSc.Vec) -> PETSc.Vec:
-        """The field of what the forces of the cells' deformation leave of the load."""
+        """Field of the load less the forces of the cells' deformation."""
         residual = forces(self.space, self.response, field)
         residual.aypx(-1.0, load)
         residual.setValues(self.space.far_dofs, np.zeros(len(self.space.far_dofs)))
         residual.assemble()
-        found = self.factor.solve(residual)
+        correction = self.factor.solve(residual)
         residual.destroy()
-        return found
+        return correction
 
     def destroy(self) -> None:
         """Free factor and fields."""
@@ -93,7 +90,7 @@ FIELDS = 4
 
 
 class LinearLoads:
-    """Displacement gradients of the ``FIELDS``; collective.
+    """Displacement gradients under linear loads of an interval, ``FIELDS`` in all. Collective.
 
     Args:
         space: the finite element space.
@@ -101,7 +98,7 @@ class LinearLoads:
 
     Attributes:
         resultants: ∫ σ_YY dX of the discrete loads of the first and of the second kind, 1 each.
-        factor: of the linear system, freed, with numbers of its work.
+        factor: of the linear system, freed; its counts of solves and residuals remain.
     """
 
     def __init__(self, space: Space, response: Response) -> None:
@@ -128,12 +125,12 @@ class LinearLoads:
 #: Pieces that meet have at most this ratio of widths, so that both meshes resolve what cancels there.
 _RATIO = 8.0
 
-#: Pairs of a piece and a point that are looked at together; keeps memory within some ten megabytes.
+#: Pairs of a piece and a point that are evaluated at once; keeps memory within some ten megabytes.
 _AT_ONCE = 50_000
 
 
 class Pieces:
-    """A pressure cut into pieces.
+    """Prescribed pressure, linear between knots, cut into pieces.
 
     Args:
         knots: positions X over a that grow, (n,).
@@ -141,7 +138,7 @@ class Pieces:
     """
 
     def __init__(self, knots: NDArray, values: NDArray) -> None:
-        #: Knots of the pieces: those given, and more where a narrow piece meets a wide one.
+        #: Ends of the pieces: the knots, and more where a narrow piece meets a wide one.
         self.knots = _graded(knots)
         self.values = np.interp(self.knots, knots, values)
 
@@ -160,16 +157,16 @@ class Pieces:
         half, jumps = self._half, np.zeros(len(self.knots), dtype=bool)
         jumps[[0, -1]] = self.values[[0, -1]] != 0.0
         near = NEAR * np.minimum(np.append(half, np.inf), np.append(np.inf, half))
-        found = rays(points, self.knots, near, jumps)
-        result = np.zeros((len(found.origins), 2, 2, 2))
+        from_points = rays(points, self.knots, near, jumps)
+        result = np.zeros((len(from_points.origins), 2, 2, 2))
         loaded = np.flatnonzero(self._ends.any(axis=1))
-        together = max(1, _AT_ONCE // max(len(found.origins), 1))
+        together = max(1, _AT_ONCE // max(len(from_points.origins), 1))
         for start in range(0, len(loaded), together):
-            some = loaded[start : start + together]
-            seen = self._seen_from(some, found.origins, found.offsets)
-            G = loads.gradients(seen.reshape(-1, 2)).reshape(*seen.shape[:2], 2, 2, 2, FIELDS // 2)
-            result += np.einsum("pe,pnijed->nijd", self._ends[some], G)
-        return found.continued(result)
+            pieces = loaded[start : start + together]
+            places = self._places(pieces, from_points.origins, from_points.offsets)
+            G = loads.gradients(places.reshape(-1, 2)).reshape(*places.shape[:2], 2, 2, 2, FIELDS // 2)
+            result += np.einsum("pe,pnijed->nijd", self._ends[pieces], G)
+        return from_points.continued(result)
 
     @property
     def _half(self) -> NDArray[np.float64]:
@@ -180,27 +177,27 @@ class Pieces:
         """σ_YY at both ends of each piece, (pieces, 2)."""
         return np.column_stack([self.values[:-1], self.values[1:]])
 
-    def _seen_from(self, pieces: NDArray, origins: NDArray, offsets: NDArray) -> NDArray[np.float64]:
-        """Places in the pieces' own coordinates, (pieces, n, 2); next to an end it is told from there."""
+    def _places(self, pieces: NDArray, origins: NDArray, offsets: NDArray) -> NDArray[np.float64]:
+        """Places in the pieces' own coordinates, measured from the nearer end, (pieces, n, 2)."""
         half = self._half[pieces][:, None]
-        left, right = (
+        from_left, from_right = (
             ((origins - self.knots[pieces + i][:, None]) + offsets[:, 0]) / half for i in (0, 1)
         )
-        w = np.where(np.abs(left) < np.abs(right), left - 1.0, right + 1.0)
+        w = np.where(np.abs(from_left) < np.abs(from_right), from_left - 1.0, from_right + 1.0)
         return np.stack([w, offsets[:, 1] / half], axis=-1)
 
 
 def _graded(knots: NDArray) -> NDArray[np.float64]:
     """Knots among which no interval is more than ``_RATIO`` times as wide as its neighbour."""
-    found = [float(knot) for knot in knots]
+    ends = [float(knot) for knot in knots]
     for direction in (1, -1):  # narrow ones to the left of wide ones, then to the right
-        found = sorted(found) if direction == 1 else sorted(found, reverse=True)
-        graded = found[:2]
-        for knot in found[2:]:
+        ends = sorted(ends) if direction == 1 else sorted(ends, reverse=True)
+        graded = ends[:2]
+        for knot in ends[2:]:
             width = abs(graded[-1] - graded[-2])
             while abs(knot - graded[-1]) > _RATIO * width:
                 width *= _RATIO / 2.0
                 graded.append(graded[-1] + direction * width)
             graded.append(knot)
-        found = graded
-    return np.array(sorted(found))
+        ends = graded
+    return np.array(sorted(ends))

@@ -1,11 +1,11 @@
-"""dolfinx as its versions offer it: nothing else in the program knows that there is more than one.
+"""dolfinx as its versions offer it, and the cache of compiled forms.
 
-How what dolfinx compiles of a form, its elements, is compiled and kept.
+Nothing else in the program depends on the version of dolfinx.
 
-FFCx compiles into a folder of this run's own. When all is well the folder gets a digest and, by being
-renamed, the place where every run looks for the form. So nobody meets what a killed run left, nobody has
-to wait for what is there, and what was damaged since is known before it is loaded: that could end the
-program or change its numbers.
+FFCx compiles what dolfinx needs of a form, its elements, into a folder of this run's own. When all is
+well the folder gets a digest and, by being renamed, the place where every run looks for the form. So
+nobody meets what a killed run left, nobody has to wait for what is there, and what was damaged since is
+noticed before it is loaded: that could end the program or change its numbers.
 """
 
 import fcntl
@@ -44,7 +44,7 @@ except ImportError:  # elements were UFL's own
 
 _CELL = "quadrilateral"
 
-#: What FFCx made of an element, that dolfinx would look for again with each space.
+#: Compiled code of elements, which dolfinx would look for again with each space.
 _compiled: dict[Any, Any] = {}
 
 
@@ -126,7 +126,7 @@ def vector(form: Any) -> Any:
 
 
 def is_compiled(element: Any) -> bool:
-    """Has this process loaded what was compiled of an element?"""
+    """Return True if this process has loaded the compiled code of an element."""
     return element in _compiled
 
 
@@ -141,9 +141,11 @@ def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
         _compiled[element] = dolfinx.jit.ffcx_jit(mesh.comm, element, jit_params=options)
     (shape, layout), module, _ = _compiled[element]
     address = module.ffi.addressof
-    known, dofs = (int(module.ffi.cast("uintptr_t", address(part))) for part in (shape, layout))
-    own = dolfinx.cpp.fem.FiniteElement(known)
-    dofmap = dolfinx.cpp.fem.create_dofmap(mesh.comm, dofs, mesh.topology, own)
+    shape_address, layout_address = (
+        int(module.ffi.cast("uintptr_t", address(part))) for part in (shape, layout)
+    )
+    own = dolfinx.cpp.fem.FiniteElement(shape_address)
+    dofmap = dolfinx.cpp.fem.create_dofmap(mesh.comm, layout_address, mesh.topology, own)
     made = dolfinx.cpp.fem.FunctionSpace(getattr(mesh, "_mesh", mesh), own, dofmap)
     return fem.FunctionSpace(mesh, element, made)
 
@@ -170,9 +172,9 @@ def _table(adjacency: Any, width: int) -> NDArray[np.int32]:
     return np.reshape(getattr(adjacency, "array", adjacency), (-1, width))
 
 
-#: Seconds until it is said that another run is waited for, and until it no longer is.
+#: Seconds until the user is told that this run waits for another, and until it no longer waits.
 _SAID, _PATIENCE = 10.0, 60.0
-#: Seconds after which what is no finished form is a ruin.
+#: Seconds after which an unfinished folder counts as abandoned.
 _DAY = 86400.0
 #: The file with the digest of all others in its folder.
 _DIGEST = "digest"
@@ -187,7 +189,7 @@ def compiling(
     Args:
         comm: the ranks; collective.
         what: everything that the compiled code depends on but compiler and processor.
-        say: is told on rank 0 what the user should know.
+        say: called on rank 0 with messages to the user.
 
     Raises:
         CompilerError: the form could not be compiled; the message says why.
@@ -204,7 +206,7 @@ def compiling(
 
 @contextmanager
 def _folder(what: str, say: Callable[[str], None]) -> Iterator[str]:
-    """Where a form is kept, or else where it is to be compiled; then it is kept."""
+    """Folder of a compiled form, or one to compile it into, which is then kept in the cache."""
     kept = _cache() / _key(what)
     if not _is_whole(kept):
         with _turn(kept, say):
@@ -224,14 +226,14 @@ def _folder(what: str, say: Callable[[str], None]) -> Iterator[str]:
 
 
 def _key(what: str) -> str:
-    """Of a form: a hash of everything that its code depends on."""
+    """Hash of everything that a form's code depends on, 24 digits."""
     python = [sysconfig.get_config_var(name) for name in ("SOABI", "CFLAGS")]
-    told = repr([what, ffcx.__version__, dolfinx.__version__, *python])
-    return hashlib.sha256(told.encode()).hexdigest()[:24]
+    description = repr([what, ffcx.__version__, dolfinx.__version__, *python])
+    return hashlib.sha256(description.encode()).hexdigest()[:24]
 
 
 def _is_whole(kept: Path) -> bool:
-    """Is a form there, as it was compiled?"""
+    """Return True if the folder of a form is there, unchanged since it was compiled."""
     try:
         return files.read(kept / _DIGEST, 100) == _digest(kept, kept.name)
     except OSError:
@@ -239,7 +241,7 @@ def _is_whole(kept: Path) -> bool:
 
 
 def _digest(folder: Path, name: str) -> bytes:
-    """Of all that is in a folder, and of the name that it has or will have."""
+    """Digest of all files in a folder, and of the name that the folder has or will have."""
     digest = hashlib.sha256(name.encode())
     for path in sorted(folder.iterdir()):
         if path.name != _DIGEST:
@@ -249,7 +251,7 @@ def _digest(folder: Path, name: str) -> bytes:
 
 
 def _keep(own: Path, kept: Path) -> None:
-    """Give a compiled form the place where it is looked for; a file system that refuses is no fault."""
+    """Move a compiled form to its place in the cache; a file system that refuses is no fault."""
     with suppress(OSError):
         for path in own.glob("*.[co]"):
             path.write_bytes(b"")  # FFCx asks whether there is a source, nobody reads it
@@ -264,7 +266,7 @@ def _keep(own: Path, kept: Path) -> None:
 
 @contextmanager
 def _turn(kept: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """For a block that compiles. Other runs that want the form wait, not for long: it only saves work."""
+    """Lock for a block that compiles. Other runs that need the form wait, for a limited time only."""
     with _writing(kept):
         kept.parent.mkdir(parents=True, exist_ok=True)
         handle = files.open_file(kept.with_suffix(".lock"), os.O_RDWR | os.O_CREAT)
@@ -286,7 +288,7 @@ def _turn(kept: Path, say: Callable[[str], None]) -> Iterator[None]:
 
 
 def _taken(lock: IO[str]) -> bool:
-    """Is the lock this process's? It then says so; where there are no locks everybody has them."""
+    """Return True if this process has the lock, and write so in it; always where there are no locks."""
     with suppress(OSError):
         try:
             fcntl.lockf(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -318,7 +320,7 @@ def _remove(path: Path) -> None:
 
 @contextmanager
 def _writing(path: Path) -> Iterator[None]:
-    """For a block that writes in the cache: says what to do where that is refused."""
+    """Turn errors of a block that writes in the cache into a message with the remedy."""
     try:
         yield
     except OSError as error:
@@ -336,5 +338,5 @@ def _why(error: Exception) -> str:
 
 
 def _cache() -> Path:
-    """Where compiled forms are kept."""
+    """Folder of compiled forms."""
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"

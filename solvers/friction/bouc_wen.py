@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..parameters import check, parameter
 from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
 
-#: y = -ln(1 - w) from which on the slip is known by its asymptote, and of full slip.
+#: y = -ln(1 - w) from which on the slip is its asymptote, and y of full slip.
 _FAR, _FULL = 14.0, 700.0
 #: Steps of Newton's method that are always enough.
 _STEPS = 60
@@ -72,13 +72,13 @@ class BoucWen(FrictionLaw):
         loading = np.maximum(x - to_zero, 0.0)
         start = 0.0 if w0 < 0.0 else _slip_to(min(w0, 1.0), self.n)
         up = _loaded_after(start + loading, self.n)
-        # What it begins with is there to the last digit.
+        # At no slip the result is the start to the last digit.
         up = np.where(loading == 0.0, max(w0, 0.0), up + (max(w0, 0.0) - from_zero))
         down = _unloaded_at(np.clip(to_zero - x, 0.0, None), -w0, k, self.n) if w0 < 0.0 else 0.0
         return s * np.where(x < to_zero, -down, np.minimum(up, 1.0))[:, None]
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """From unloading to loading."""
+        """Zero at the switch from unloading to loading, (1,)."""
         return s * z
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
@@ -113,13 +113,13 @@ def _moment(w: NDArray, k: float, n: float) -> NDArray[np.float64]:
 
 
 def _short(w: NDArray, n: float) -> NDArray[np.float64]:
-    """∫ (1 - w)/(1 - wⁿ) dw from 0 to w, what the work of loading is short of that at full slip."""
+    """∫ (1 - w)/(1 - wⁿ) dw from 0 to w: work of full slip less that of loading, over μ_C x_y."""
     near = np.minimum(w, -np.expm1(-_FAR))
     return _slip(near, 1.0, n) - _moment(near, 1.0, n) + (w - near) / n
 
 
 def _slip_of(y: NDArray, n: float) -> NDArray[np.float64]:
-    """The same for k = 1, by y = -ln(1 - w), which grows with the slip without end."""
+    """∫ dw/(1 - wⁿ) from 0 to w, by y = -ln(1 - w), which grows with the slip without end."""
     near = np.minimum(y, _FAR)
     ε, ε_near = np.exp(-y), np.exp(-near)
     # Beyond, 1/(1 - wⁿ) is 1/(nε) (1 + (n-1)ε/2) to the last digits, with ε = 1 - w.
@@ -133,7 +133,7 @@ def _slip_to(w: float, n: float) -> NDArray[np.float64]:
 
 
 def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
-    """w after a slip from 0, by Newton's method in y, in which slip is nearly a straight line."""
+    """State w after slips x from 0, by Newton's method in y, of which slip is nearly linear."""
     y = np.array(x, dtype=float)  # n = 1; for larger n, y is larger
     for _ in range(_STEPS):
         w = -np.expm1(-y)
@@ -148,7 +148,7 @@ def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
 
 
 def _unloaded_at(x: NDArray, most: float, k: float, n: float) -> NDArray[np.float64]:
-    """|w| from which unloading to zero takes a slip x, at most that which it began with."""
+    """Size |w| from which unloading to zero takes a slip x, at most ``most``, |w| at the start."""
     u = np.minimum(x, most)
     for _ in range(_STEPS):
         step = (x - _slip(u, k, n)) * (1.0 - k * u**n)

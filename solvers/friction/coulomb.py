@@ -36,7 +36,7 @@ class Coulomb(FrictionLaw):
         return {"mu_c": seen.level}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
-        """Nothing changes."""
+        """Rate of the state: 0."""
         return np.zeros(np.shape(z))
 
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:

@@ -58,7 +58,7 @@ class Dahl(FrictionLaw):
         full slip, y = 0, is reached after a finite distance.
         """
         y0, decay = self._decay(z, s, slip)
-        # y = y₀ exp(decay); what is added to f keeps its digits where it is small.
+        # y = y₀ exp(decay); a small change of f keeps its digits.
         return (z[..., 0] - s * self.μ_C * y0 * np.expm1(decay))[..., None]
 
     def distance(self, share: float) -> float:
@@ -85,7 +85,7 @@ class Dahl(FrictionLaw):
         return self.λ * self.δ * y0 ** (self.δ - 1.0) / self.μ_C
 
     def _decay(self, z: NDArray, s: int, slip: NDArray) -> tuple[NDArray, NDArray]:
-        """y₀, and ln(y/y₀) after the slip."""
+        """Distance y₀ from full slip at the start, and ln(y/y₀) after the slip."""
         x = self.λ * np.asarray(slip, dtype=float) / self.μ_C
         y0 = 1.0 - s * np.asarray(z, dtype=float)[..., 0] / self.μ_C
         p, size = 1.0 - self.δ, np.where(y0 == 0.0, 1.0, np.abs(y0))

@@ -50,11 +50,11 @@ class ElastoPlastic(Bristles):
         return s * self.σ0 * (1.0 - np.sin(0.5 * np.pi * self._between(ζ)) ** 2 * ζ)
 
     def _between(self, w: NDArray) -> NDArray[np.float64]:
-        """0 up to breakaway, 1 from steady sliding on."""
+        """Position of w between breakaway and steady sliding, 0 to 1; constant beyond."""
         return np.minimum(np.maximum((w - self.r) / (1.0 - self.r), 0.0), 1.0)
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Breakaway."""
+        """Zero at breakaway, (1,)."""
         return s * z / self.g(V) - self.r
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
@@ -96,7 +96,7 @@ class ElastoPlastic(Bristles):
 
 
 class _Yielding:
-    """From breakaway to steady sliding, by y = -ln(1 - w), which grows with the slip without end.
+    """Sliding from breakaway to steady sliding, by y = -ln(1 - w), which grows with slip without end.
 
     With ε = 1 - w = e^-y and θ = π ε/(2(1 - r)), α is cos²θ, so that dx/dy = 1/(sin²θ/ε + cos²θ): smooth,
     and 1 in the end.
@@ -113,11 +113,11 @@ class _Yielding:
         self._x, self._short = np.hstack([np.zeros((2, 1)), np.cumsum(pieces, axis=1)])
 
     def after(self, x: NDArray, w: float) -> NDArray[np.float64]:
-        """y after slips x from w, r <= w < 1; x < 0 counts as none."""
-        wanted = self._at(np.array([-np.log1p(-w)]))[0] + np.maximum(x, 0.0)
-        y = np.interp(wanted, self._x, self._y) + np.maximum(wanted - self._x[-1], 0.0)
+        """Coordinate y after slips x from w, r <= w < 1; x < 0 counts as none."""
+        target = self._at(np.array([-np.log1p(-w)]))[0] + np.maximum(x, 0.0)
+        y = np.interp(target, self._x, self._y) + np.maximum(target - self._x[-1], 0.0)
         for _ in range(_STEPS):
-            step = (wanted - self._at(y)[0]) / self._slopes(y)
+            step = (target - self._at(y)[0]) / self._slopes(y)
             y = np.maximum(y + step, self._first)
             if np.all(np.abs(step) <= 1e-15 * (1.0 + y)):
                 break
@@ -134,11 +134,11 @@ class _Yielding:
         near = np.minimum(y, self._y[-1])
         x, short = self._pieces(self._y[panel], near)
         beyond = y - near
-        left = np.exp(-near) * -np.expm1(-beyond)
-        return np.array([self._x[panel] + x + beyond, self._short[panel] + short + left])
+        short_beyond = np.exp(-near) * -np.expm1(-beyond)
+        return np.array([self._x[panel] + x + beyond, self._short[panel] + short + short_beyond])
 
     def _pieces(self, start: NDArray, end: NDArray) -> NDArray[np.float64]:
-        """The same from one y to another in the same panel, (2, n)."""
+        """Slip, and ∫ (1 - w) dx, from one y to another in the same panel, (2, n)."""
         t, weights = leggauss(_POINTS)
         half = 0.5 * (end - start)[:, None]
         y = start[:, None] + half * (1.0 + t)

@@ -13,13 +13,13 @@ from .law import FrictionLaw, Seen
 
 #: Starts of the search, the first from the guess, and how far the others lie from it, as a factor.
 _STARTS, _AWAY = 6, 3.0
-#: Sums of squares this near to one another, relative, are of the same law: the search has ended.
+#: Relative difference of sums of squares below which two starts led to one law: the search ends.
 _AGAIN = 1e-6
-#: Residual where a law refuses its parameters.
-_REFUSED = 1e3
-#: Speeds this near to one another, relative, are one.
+#: Residual where a law rejects its parameters.
+_REJECTED = 1e3
+#: Relative difference of speeds below which they count as one.
 _SAME = 1e-6
-#: Distance from bounds that an open range has, of the range or as such.
+#: Distance from the bounds of an open range that a fit keeps.
 _INSIDE = 1e-6
 
 
@@ -31,8 +31,8 @@ class Move:
         s: direction, ±1.
         V: speed [m/s].
         rest: time at rest before it [s].
-        slip: since it began, (n,) [m].
-        samples: their numbers, (n,).
+        slip: slip since the move began, (n,) [m].
+        samples: numbers of the samples, (n,).
     """
 
     s: int
@@ -44,14 +44,14 @@ class Move:
 
 @dataclass(frozen=True)
 class Found:
-    """A law that fits, and how well.
+    """Fitted law, with the covariance of its parameters.
 
     Attributes:
-        law: it.
+        law: the law.
         values: its parameters by key.
-        names: of the numbers that were fitted, as ``"mu_c"`` and ``"elements[2, 1]"``, (m,).
-        best: these, (m,).
-        covariance: of these, (m, m); NaN where the data do not determine them.
+        names: names of the fitted numbers, as ``"mu_c"`` and ``"elements[2, 1]"``, (m,).
+        best: fitted numbers, (m,).
+        covariance: covariance of the fitted numbers, (m, m); NaN where the data do not determine them.
         f: friction of the law at the samples, NaN before the first motion, (samples,).
     """
 
@@ -64,37 +64,37 @@ class Found:
 
     @property
     def deviations(self) -> NDArray[np.float64]:
-        """Standard deviations, (m,)."""
+        """Standard deviations of the fitted numbers, (m,)."""
         return np.sqrt(np.diag(self.covariance))
 
 
 def moves(t: NDArray, X: NDArray, by_speed: bool) -> list[Move]:
-    """A measured motion, from rest at the first sample.
+    """Moves of a measured motion, from rest at the first sample.
 
     Args:
         t, X: time [s] and position [m] of the samples.
-        by_speed: does the law depend on the speed?
+        by_speed: True if the law depends on the speed: a change of speed begins a new move.
     """
     steps, seconds = np.diff(X), np.diff(t)
-    found: list[tuple[int, float, float, list[float], list[int]]] = []
+    pieces: list[tuple[int, float, float, list[float], list[int]]] = []
     rest = 0.0
     for n, (step, time) in enumerate(zip(steps.tolist(), seconds.tolist()), 1):
         if step == 0.0:
             rest += time
             continue
         s, V = (1 if step > 0.0 else -1), abs(step) / time
-        last = found[-1] if found and rest == 0.0 else None
+        last = pieces[-1] if pieces and rest == 0.0 else None
         if last and last[0] == s and (not by_speed or abs(V / last[1] - 1.0) < _SAME):
             last[3].append(last[3][-1] + abs(step))
             last[4].append(n)
         else:
-            found.append((s, V, rest, [abs(step)], [n]))
+            pieces.append((s, V, rest, [abs(step)], [n]))
             rest = 0.0
-    return [Move(s, V, at, np.array(slip), np.array(rows)) for s, V, at, slip, rows in found]
+    return [Move(s, V, at, np.array(slip), np.array(rows)) for s, V, at, slip, rows in pieces]
 
 
 def friction(law: FrictionLaw, motion: Sequence[Move], samples: int) -> NDArray[np.float64]:
-    """f of a law at the samples of a motion, NaN before the first move, (samples,)."""
+    """Friction coefficient of a law at the samples of a motion, NaN before the first move, (samples,)."""
     f, z = np.full(samples, np.nan), law.rest()
     for move in motion:
         z = law.pause(z, move.rest)
@@ -105,7 +105,7 @@ def friction(law: FrictionLaw, motion: Sequence[Move], samples: int) -> NDArray[
 
 
 def seen(motion: Sequence[Move], f: NDArray, rows: int) -> Seen:
-    """What measured friction looks like."""
+    """Summary of measured friction f, (samples,), for a guess of parameters with tables of ``rows``."""
     sliding = np.abs(np.concatenate([f[move.samples] for move in motion]))
     first = motion[0]
     longest = max(move.slip[-1] for move in motion)
@@ -128,15 +128,15 @@ def fit(
     start: dict[str, Any],
     rows: int = 3,
 ) -> Found:
-    """The parameters with which a law is nearest to measured friction.
+    """Law nearest to measured friction, by least squares over its parameters.
 
     Args:
         kind: class of the law.
-        motion: that was measured.
+        motion: measured motion.
         f: friction coefficient at the samples, (samples,).
-        fixed: parameters by key that are known.
-        start: others with which the search begins.
-        rows: of tables that are fitted.
+        fixed: values by key of parameters that are not fitted.
+        start: values by key of other parameters with which the search begins.
+        rows: number of rows of tables that are fitted.
 
     Raises:
         ValueError: a parameter has no start, there are fewer samples than numbers, or no start leads
@@ -153,12 +153,12 @@ def fit(
         try:
             with np.errstate(all="ignore"):
                 difference = friction(search.law(θ), motion, len(f))[used] - f[used]
-        except ValueError:  # refused by the law
+        except ValueError:  # rejected by the law
             difference = np.full(len(used), np.inf)
-        return np.where(np.isfinite(difference), difference, _REFUSED)
+        return np.where(np.isfinite(difference), difference, _REJECTED)
 
     best = _least(residuals, search)
-    if best is None or best.cost >= 0.4 * _REFUSED**2 * len(used):
+    if best is None or best.cost >= 0.4 * _REJECTED**2 * len(used):
         raise ValueError("no start of the search leads to a law; fix or start other parameters")
     law, values = search.law(best.x), search.values(best.x)
     stretch = search.stretch(best.x)
@@ -169,27 +169,27 @@ def fit(
 
 
 def _least(residuals: Callable[[NDArray], NDArray], search: "_Search") -> Any:
-    """The best of SciPy's results from several starts, None where there is nothing to be found."""
+    """Best of SciPy's results from several starts; None where no number is fitted."""
     from scipy.optimize import least_squares  # slow to import
 
     rng, best = np.random.default_rng(0), None
     for n in range(_STARTS if search.names else 0):
         θ = search.begin + (n > 0) * search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
         θ = np.clip(θ, search.low, search.high)
-        found = least_squares(
+        result = least_squares(
             residuals, θ, bounds=(search.low, search.high), x_scale="jac", xtol=1e-12, ftol=1e-12,
             gtol=1e-12, max_nfev=200,
         )  # fmt: skip
-        again = best is not None and abs(found.cost - best.cost) <= _AGAIN * best.cost
-        if best is None or found.cost < best.cost:
-            best = found
+        again = best is not None and abs(result.cost - best.cost) <= _AGAIN * best.cost
+        if best is None or result.cost < best.cost:
+            best = result
         if again:
             break
     return best
 
 
 def _inverse(J: NDArray) -> NDArray[np.float64]:
-    """Of JᵀJ; NaN for what J does not determine."""
+    """Inverse of JᵀJ, (m, m); NaN in rows and columns that J does not determine."""
     size = np.linalg.norm(J, axis=0)
     blind = size == 0.0
     scaled = J / np.where(blind, 1.0, size)
@@ -202,26 +202,26 @@ def _inverse(J: NDArray) -> NDArray[np.float64]:
 
 
 class _Search:
-    """The numbers of a law that are looked for, positive ones by their logarithm θ = ln p.
+    """Fitted numbers of a law as unknowns θ: θ = ln p of a positive number p, else θ = p.
 
     Attributes:
-        names: of the numbers, (m,).
+        names: names of the numbers, (m,).
         begin, low, high: start and bounds of θ, (m,).
-        reach: how far other starts lie from the first, (m,).
+        reach: largest distance of other starts from the first, (m,).
     """
 
     def __init__(
         self, kind: type[FrictionLaw], look: Seen, fixed: dict[str, Any], start: dict[str, Any]
     ) -> None:
         self._kind = kind
-        known, defaults, guess = parameters(kind), fields(kind), kind.guess(look)
-        unknown = [key for key in (*fixed, *start) if key not in known]
-        if unknown:
-            raise ValueError(f"found the parameter {unknown[0]!r}, expected {', '.join(known)}")
+        described, defaults, guess = parameters(kind), fields(kind), kind.guess(look)
+        unexpected = [key for key in (*fixed, *start) if key not in described]
+        if unexpected:
+            raise ValueError(f"found the parameter {unexpected[0]!r}, expected {', '.join(described)}")
         self._values: dict[str, Any] = {}
         self._places: list[tuple[str, int, int]] = []
         ranges: list[Range] = []
-        for key, parameter in known.items():
+        for key, parameter in described.items():
             default = None if parameter.columns else defaults[key].default
             value = {key: default, **guess, **start, **fixed}[key]
             if parameter.optional and value is None:
@@ -231,10 +231,10 @@ class _Search:
             self._values[key] = value
             if key in fixed or parameter.options or (key in kind.conventions and key not in start):
                 continue
-            some = _places(key, parameter, value)
-            self._places += some
+            places = _places(key, parameter, value)
+            self._places += places
             positive = Range(above=0.0) if len(parameter.measured) > 1 else Range()
-            ranges += [parameter.range if parameter.single else positive] * len(some)
+            ranges += [parameter.range if parameter.single else positive] * len(places)
         self.names = tuple(_name(*place) for place in self._places)
         self._logs = np.array([r.above == 0.0 and r.below is None for r in ranges], dtype=bool)
         p = self._numbers()
@@ -247,7 +247,7 @@ class _Search:
         whole = np.isfinite(self.high - self.low)
         width = np.where(whole, np.where(whole, self.high, 0.0) - np.where(whole, self.low, 0.0), 1.0)
         far = np.where(whole, 0.5 * width, np.maximum(np.abs(p), look.level / max(look.speed, 1e-12)))
-        dimensionless = np.array([known[place[0]].unit == "" for place in self._places], dtype=bool)
+        dimensionless = np.array([described[place[0]].unit == "" for place in self._places], dtype=bool)
         far = np.where(dimensionless & ~whole, np.maximum(np.abs(p), 1.0), far)
         self.reach = np.where(self._logs, np.log(_AWAY), far)
 
@@ -258,33 +258,34 @@ class _Search:
         ], dtype=float)  # fmt: skip
 
     def numbers(self, θ: NDArray) -> NDArray[np.float64]:
-        """The numbers p themselves."""
+        """Fitted numbers p at θ, (m,)."""
         return np.where(self._logs, np.exp(np.where(self._logs, θ, 0.0)), θ)
 
     def stretch(self, θ: NDArray) -> NDArray[np.float64]:
-        """dp/dθ."""
+        """Derivatives dp/dθ, (m,)."""
         return np.where(self._logs, self.numbers(θ), 1.0)
 
     def values(self, θ: NDArray) -> dict[str, Any]:
-        """All parameters by key."""
-        found = {
+        """All parameters by key at θ."""
+        values = {
             key: [list(row) for row in value] if isinstance(value, tuple) else value
             for key, value in self._values.items()
         }
         for (key, row, column), number in zip(self._places, self.numbers(θ).tolist()):
             if row < 0:
-                found[key] = number
+                values[key] = number
             else:
-                found[key][row][column] = number
+                values[key][row][column] = number
         return {
             key: tuple(map(tuple, value)) if isinstance(value, list) else value
-            for key, value in found.items()
+            for key, value in values.items()
         }
 
     def law(self, θ: NDArray) -> FrictionLaw:
-        """
+        """Law at θ.
+
         Raises:
-            ValueError: the law refuses its parameters.
+            ValueError: the law rejects its parameters.
         """
         return made(self._kind, self.values(θ))
 
@@ -303,7 +304,7 @@ def _name(key: str, row: int, column: int) -> str:
 
 
 def _ends(bounds: Range) -> tuple[float, float]:
-    """Of a range, open ones a little inside."""
+    """Lowest and highest number of a range; a little inside of open bounds."""
     low, high = -np.inf, np.inf
     if bounds.at_least is not None:
         low = bounds.at_least

@@ -60,31 +60,31 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return np.zeros(2 * len(self.elements))
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
-        """At rest all elements stick."""
+        """State after a rest, in which all elements stick."""
         if seconds <= 0.0:
             return z
         return np.concatenate([z[: len(self.elements)], np.zeros(len(self.elements))])
 
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """df_i/dd [1/m], and no change of which slip."""
+        """Rates df_i/dd [1/m], and 0 of the directions of slip."""
         f, slipping = np.split(z, 2)
         with np.errstate(divide="ignore"):
             attracted = self.C * (self.α - s * f / self.g(V)) / V
         return np.append(s * np.where(s * slipping > 0.0, attracted, self.k), 0.0 * f)
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """df_i/dt [1/s], and no change of which slip."""
+        """Rates df_i/dt [1/s], and 0 of the directions of slip."""
         f, slipping = np.split(z, 2)
         attracted = self.C * (self.α - s * f / self.g(V))
         return np.append(s * np.where(s * slipping > 0.0, attracted, V * self.k), 0.0 * f)
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Each element that sticks comes to its limit."""
+        """Zero where an element that sticks comes to its limit, (elements,)."""
         f, slipping = np.split(z, 2)
         return np.where(s * slipping > 0.0, -1.0, s * f - self.α * self.g(V))
 
     def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """What has come to its limit slips."""
+        """State in which each element that has come to its limit slips."""
         f, slipping = np.split(z, 2)
         slips = (s * slipping > 0.0) | (s * f >= self.α * self.g(V) * (1.0 - 1e-9))
         return np.append(f, s * slips)
@@ -93,7 +93,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return z[..., : len(self.elements)].sum(axis=-1)
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """A straight line up to α g where an element sticks; where it slips, |f_i| - α g decays."""
+        """States by a straight line up to α g while an element sticks; |f_i| - α g decays in slip."""
         w, reached, stuck, decay = self._pieces(z, s, V, np.asarray(slip, dtype=float)[:, None])
         limit = self.α * self.g(V)
         f = np.where(reached, limit + (w - limit) * np.exp(-decay), w + self.k * stuck)
@@ -117,8 +117,12 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     def _pieces(
         self, z: NDArray, s: int, V: float, d: NDArray
     ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """s f_i at the start, which slip from the start on, slip in stick of the others [m], and the
-        exponent of the decay of those."""
+        """Pieces of the motion of each element.
+
+        Returns:
+            s f_i at the start; True where an element slips from the start on; slip while it sticks [m];
+            and the exponent of its decay while it slips.
+        """
         n, limit = len(self.elements), self.α * self.g(V)
         w = s * z[:n]
         # A speed at which less is borne than an element bears makes it slip at once.

@@ -1,4 +1,4 @@
-"""How a law's state advances along a stroke."""
+"""Integrators: the state of a friction law along a stroke, and its work."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from .law import FrictionLaw
 #: Limit of h |∂rate/∂z| on the negative real axis for the classical Runge-Kutta scheme.
 RK4_STABILITY_LIMIT = 2.785293563405282
 
-#: Steps of the study's scheme a stroke.
+#: Steps of the study's scheme in a stroke.
 STEPS = 20
 
 #: Relative and absolute tolerance of the integration of laws that are not exact.
@@ -20,10 +20,10 @@ TOLERANCES = 1e-12, 1e-14
 
 #: Points of Gauss's rule in a piece of a stroke, and such pieces, for work without a formula.
 _POINTS, _PIECES = 10, 12
-#: Halvings of a piece at most, and accuracy over the whole work from which on it is not halved.
+#: Halvings of a piece at most, and accuracy over the whole work at which it is not halved further.
 _HALVINGS, _OF_WORK = 20, 1e-13
 
-#: A switch nearer to zero than this is one that was just met.
+#: Value of a switch nearer to zero than which it has just been passed.
 _SWITCHED = 1e-10
 
 #: (law, state at the start, direction, speed [m/s], length [m], slip since the start [m]) -> states.
@@ -34,7 +34,7 @@ Integrator = Callable[
 
 @dataclass(frozen=True)
 class RungeKuttaSteps:
-    """The steps of one stroke: slip ``d`` [m], states ``z`` (steps, n) and slopes ``k`` (steps, 4, n)."""
+    """Steps of one stroke: slip ``d`` [m], states ``z`` (steps, n) and slopes ``k`` (steps, 4, n)."""
 
     d: NDArray[np.float64]
     z: NDArray[np.float64]
@@ -46,8 +46,8 @@ def runge_kutta(
 ) -> RungeKuttaSteps:
     """Integrate one stroke with the classical Runge-Kutta scheme, as the study does (Eqs 46-50).
 
-    Eq 49 prints its second intermediate value wrongly; Table 1 follows the usual scheme, and so does
-    this function.
+    Eq 49 prints its second intermediate value wrongly; Table 1 follows the usual scheme, as this
+    function does.
 
     Args:
         law: the law.
@@ -61,15 +61,15 @@ def runge_kutta(
         ``steps + 1`` rows; the last row's slopes belong to the step that would follow.
 
     Raises:
-        ValueError: the step is beyond the scheme's stability limit, that limit is not known of the law,
-            or below one step was asked for.
+        ValueError: the step is beyond the scheme's stability limit, the law has no known limit, or
+            there is less than one step.
     """
     if steps < 1:
         raise ValueError(f"steps = {steps!r}: expected at least 1")
     h, stiffness = length / steps, law.stiffness(z, s, V)
     if stiffness is None:
         raise ValueError(
-            f'of {type(law).__name__} no limit of stable steps is known; use integrator = "exact"'
+            f'no limit of stable steps is known for {type(law).__name__}; use integrator = "exact"'
         )
     if h * stiffness > RK4_STABILITY_LIMIT:
         raise ValueError(
@@ -90,7 +90,7 @@ def runge_kutta(
 def exactly(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
 ) -> NDArray[np.float64]:
-    """The law's exact solution; where there is none, its rate integrated to the last digits."""
+    """States by the law's exact solution, else by its rate integrated to the last digits, (slips, n)."""
     states = law.exact(z, s, V, slip)
     return adaptively(law, z, s, V, length, slip) if states is None else states
 
@@ -98,10 +98,10 @@ def exactly(
 def adaptively(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
 ) -> NDArray[np.float64]:
-    """The law's rate, integrated by an adaptive scheme of order 8 (SciPy's DOP853).
+    """States by the law's rate, integrated by an adaptive scheme of order 8 (SciPy's DOP853).
 
-    It begins anew where the law switches, and stops where a state is wanted: between its own steps it is
-    of lower order. A stroke with a handful of states takes some milliseconds, with a hundred some 50.
+    It begins anew where the law switches, and stops at every slip of ``slip``: between its own steps it
+    is of lower order. A stroke with a handful of states takes some milliseconds, with a hundred some 50.
 
     Raises:
         ValueError: the integration failed.
@@ -119,53 +119,53 @@ def adaptively(
 def closely(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
 ) -> NDArray[np.float64]:
-    """The law's exact solution; where there is none, its rate integrated in the scheme's own steps.
+    """States by the law's exact solution, else by its rate integrated in the scheme's own steps.
 
-    Between them states are interpolated, to about 1e-9: for many places at once, as those of a curve.
+    Between these steps states are interpolated, to about 1e-9: for many places at once, as of a curve.
     """
-    if (states := law.exact(z, s, V, slip)) is not None:
-        return states
+    if (exact := law.exact(z, s, V, slip)) is not None:
+        return exact
     at, back = np.unique(np.clip(np.append(slip, length), 0.0, length), return_inverse=True)
-    found, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
-    found[:] = z
+    states, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
+    states[:] = z
     while d < length:
         ahead = np.flatnonzero(at > d)
         piece, switches = _solved(law, z, s, V, (d, length), switched, at[ahead])
         # SciPy's y has no shape where a switch comes before the first place.
         passed = np.reshape(piece.y, (len(z), -1)).T
-        found[ahead[: len(passed)]] = passed
+        states[ahead[: len(passed)]] = passed
         if piece.status == 0:
             break
         d, z = _last_switch(piece)
         switched.update(switches)
-    return found[back[:-1]]
+    return states[back[:-1]]
 
 
 def _smooth_piece(
     law: FrictionLaw, z: NDArray, s: int, V: float, ends: tuple[float, float], switched: set[int]
 ) -> tuple[float, NDArray[np.float64]]:
-    """Slip and state at the end, or where the law switches first, which ``switched`` then has, too.
+    """Slip and state at the end or at the law's first switch, which is added to ``switched``.
 
     Raises:
         ValueError: the integration failed.
     """
-    found, switches = _solved(law, z, s, V, ends, switched)
-    if found.status == 0:
-        return ends[1], found.y[:, -1]
+    piece, switches = _solved(law, z, s, V, ends, switched)
+    if piece.status == 0:
+        return ends[1], piece.y[:, -1]
     # Located on the interpolant; from the last step before it, integration itself goes there.
-    at, _ = _last_switch(found)
-    before = found.t[found.t < at][-1] if (found.t < at).any() else ends[0]
-    start = found.y[:, np.flatnonzero(found.t == before)[0]]
+    at, _ = _last_switch(piece)
+    before = piece.t[piece.t < at][-1] if (piece.t < at).any() else ends[0]
+    start = piece.y[:, np.flatnonzero(piece.t == before)[0]]
     switched.update(switches)
     if at == before:
         return at, start
     return at, _solved(law, start, s, V, (before, at), None)[0].y[:, -1]
 
 
-def _last_switch(found: Any) -> tuple[float, NDArray[np.float64]]:
-    """Slip and state at which SciPy has stopped."""
-    n = max((n for n, t in enumerate(found.t_events) if len(t)), key=lambda n: found.t_events[n][0])
-    return float(found.t_events[n][0]), found.y_events[n][0]
+def _last_switch(piece: Any) -> tuple[float, NDArray[np.float64]]:
+    """Slip and state at the switch at which SciPy has stopped."""
+    n = max((n for n, t in enumerate(piece.t_events) if len(t)), key=lambda n: piece.t_events[n][0])
+    return float(piece.t_events[n][0]), piece.y_events[n][0]
 
 
 def _solved(
@@ -177,13 +177,14 @@ def _solved(
     switched: set[int] | None,
     at: NDArray | None = None,
 ) -> tuple[Any, set[int]]:
-    """SciPy's result between two slips, up to the next switch, and which switches these are.
+    """SciPy's result between two slips, up to the next switch, and the numbers of the switches there.
 
     Args:
         law, z, s, V: as of :func:`adaptively`.
         ends: slips [m].
-        switched: which have switched in this stroke, each does once; None: none of them stops it.
-        at: slips at which states are wanted; None: its own steps.
+        switched: numbers of the switches already passed in this stroke, each is passed once; None: no
+            switch stops the integration.
+        at: slips of the states; None: the scheme's own steps.
 
     Raises:
         ValueError: the integration failed.
@@ -194,13 +195,13 @@ def _solved(
     if switched is not None:
         ahead = np.flatnonzero(law.switches(z, s, V) < -_SWITCHED).tolist()
         ahead = [n for n in ahead if n not in switched]
-    found = solve_ivp(
+    result = solve_ivp(
         lambda _, state: law.rate(state, s, V), ends, z, method="DOP853", t_eval=at,
         events=[_event(law, s, V, n) for n in ahead] or None, rtol=TOLERANCES[0], atol=TOLERANCES[1],
     )  # fmt: skip
-    if not found.success:
-        raise ValueError(f"{type(law).__name__} could not be integrated: {found.message}")
-    return found, {n for n, t in zip(ahead, found.t_events or ()) if len(t)}
+    if not result.success:
+        raise ValueError(f"{type(law).__name__} could not be integrated: {result.message}")
+    return result, {n for n, t in zip(ahead, result.t_events or ()) if len(t)}
 
 
 def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
@@ -214,12 +215,13 @@ def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArr
 def work(
     law: FrictionLaw, z: NDArray, s: int, V: float, slip: float, advance: "Integrator"
 ) -> NDArray[np.float64]:
-    """∫ s f d(slip) [m] from a state over so much slip: by the law's formula, else by quadrature.
+    """Work ∫ s f d(slip) [m] from a state over a slip [m]: by the law's formula, else by quadrature.
 
-    Gauss's rule on pieces that shrink towards the start and are halved where that changes their part.
+    The quadrature is Gauss's rule on pieces that shrink towards the start, and are halved where that
+    changes their part.
     """
-    if (known := law.work(z, s, V, np.array([slip]))) is not None:
-        return known[..., 0]
+    if (exact := law.work(z, s, V, np.array([slip]))) is not None:
+        return exact[..., 0]
     if slip == 0.0:
         return np.zeros(())
     x, w = np.polynomial.legendre.leggauss(_POINTS)
@@ -251,7 +253,7 @@ def work(
 def by_runge_kutta(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
 ) -> NDArray[np.float64]:
-    """The study's scheme.
+    """States by the study's Runge-Kutta scheme, (slips, n).
 
     A position between two steps is reached by a shorter last step, so no interpolation error enters.
     """

@@ -1,7 +1,4 @@
-"""What a friction law is.
-
-Constants that several friction laws have, each as the field of a dataclass.
-"""
+"""Protocol and registry of friction laws, with the field of Coulomb's coefficient that most have."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
@@ -16,14 +13,14 @@ from ..parameters import parameter, parameters
 
 @dataclass(frozen=True)
 class Seen:
-    """What measured friction looks like, for a guess of parameters.
+    """Summary of measured friction, for a guess of parameters.
 
     Attributes:
         level, least: large and small |f| in sliding.
         slope: |df/dX| where motion begins [1/m].
         length: slip between reversals [m].
-        speed: [m/s].
-        rows: wanted in tables.
+        speed: mean speed [m/s].
+        rows: number of rows of tables to be fitted.
     """
 
     level: float
@@ -42,12 +39,12 @@ class FrictionLaw(Protocol):
     from this class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
 
     Attributes:
-        about: what the law is called, with its source.
+        about: name of the law, with its source.
         depends_on_speed: False where f is the same at every speed; it is then computed once.
-        broadcasts: can one law stand for many? Their parameters are then (m, 1), their states
+        broadcasts: True if one law can stand for many. Their parameters are then (m, 1), their states
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
-            slips as NumPy's rules of broadcasting say.
-        conventions: keys of parameters that are chosen, and no fit finds.
+            slips by NumPy's rules of broadcasting.
+        conventions: keys of parameters that are chosen, not fitted.
     """
 
     about: ClassVar[str]
@@ -57,7 +54,7 @@ class FrictionLaw(Protocol):
 
     @classmethod
     def guess(cls, seen: Seen) -> dict[str, Any]:
-        """Parameters by key with which a fit may begin; defaults serve for those that are not there."""
+        """Parameters by key with which a fit may begin; others begin with their defaults."""
         return {}
 
     def rest(self) -> NDArray[np.float64]:
@@ -69,30 +66,30 @@ class FrictionLaw(Protocol):
         raise NotImplementedError
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """f at states z (..., n), dimensionless, positive in forward motion: (...)."""
+        """Friction coefficient f at states z (..., n), positive in forward motion: (...)."""
         raise NotImplementedError
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64] | None:
-        """States after so much slip [m] from z, (len(slip), n); None where only the rate is known."""
+        """States after slips [m] from z, (len(slip), n); None where only the rate is known."""
         return None
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64] | None:
-        """∫ s f d(slip) [m] over so much slip from z, (len(slip),); None where no formula gives it."""
+        """Work ∫ s f d(slip) [m] over slips from z, (len(slip),); None where there is no formula."""
         return None
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
-        """s df/dd [1/m] at states z (..., n), the tangent stiffness over N; None: by differences."""
+        """Tangent stiffness over N, s df/dd [1/m], at states z (..., n); None: by differences."""
         return None
 
     def stiffness(self, z: NDArray, s: int, V: float) -> float | None:
         """Largest |∂(dz/d(slip))/∂z| [1/m] of a stroke that starts at z; None where it is not known.
 
-        Runge-Kutta's steps are stable where it is known to be small.
+        Runge-Kutta's steps are stable where their length times it is small.
         """
         return None
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Numbers that grow through zero, each once a stroke, where the rate is not smooth, (any,)."""
+        """Numbers that grow through zero where the rate is not smooth, each once a stroke, (any,)."""
         return np.zeros(0)
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
@@ -109,24 +106,24 @@ class FrictionLaw(Protocol):
 
 
 class Laws(Registry[type[FrictionLaw]]):
-    """Friction laws; parameters of one name are one column of archives, whatever the law."""
+    """Registry of friction laws; parameters of one name are one column of archives, whatever the law."""
 
     def register(self, name: str, model: type[FrictionLaw]) -> type[FrictionLaw]:
-        """Add a law of one's own, and return it.
+        """Add a law, and return it.
 
         Raises:
-            TypeError: it is no class with the members of :class:`FrictionLaw`.
+            TypeError: the model is no class with the members of :class:`FrictionLaw`.
             ValueError: the name is taken, or another law has that parameter in another unit.
         """
         self.check(name, model)
         for other, law in self.items():
-            known = parameters(law)
+            described = parameters(law)
             for key, own in parameters(model).items():
-                if other != name and key in known and known[key].unit != own.unit:
+                if other != name and key in described and described[key].unit != own.unit:
                     raise ValueError(
                         f"the parameter {key!r} of the friction law {other!r} has the unit "
-                        f"{known[key].unit or '1'!r}, {name!r} wants {own.unit or '1'!r}: name it "
-                        "apart"
+                        f"{described[key].unit or '1'!r}, {name!r} has it in {own.unit or '1'!r}: "
+                        "give it another key"
                     )
         return super().register(name, model)
 
@@ -136,5 +133,5 @@ LAWS = Laws("friction law", kind=FrictionLaw)
 
 
 def coulomb_coefficient() -> Any:
-    """μ_C, dimensionless."""
+    """Field of Coulomb's coefficient μ_C, dimensionless."""
     return parameter("mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0))

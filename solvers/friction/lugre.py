@@ -13,7 +13,7 @@ from .stribeck import StribeckCurve
 
 @dataclass(frozen=True, kw_only=True)
 class Bristles(StribeckCurve):
-    """What laws have whose bristles deflect by z, per normal force::
+    """Base of laws with bristles that deflect by z, per normal force::
 
         f = σ₀ z + σ₁ ż + σ₂ v
 

@@ -11,7 +11,7 @@ from .law import LAWS, FrictionLaw, Seen
 
 
 def elements() -> tuple[tuple[float, float], ...]:
-    """The field of springs and limits."""
+    """Field of springs and their limits."""
     return rows(
         "elements", "springs and their limits", ("1/m", ""), measured=(0, 1),
         note="a row of k/N and μ for each; the slope of f over slip at its start is the sum of all k/N",
@@ -26,7 +26,8 @@ def spread(seen: Seen) -> tuple[tuple[float, float], ...]:
 
 
 def check_elements(rows: tuple[tuple[float, float], ...]) -> None:
-    """
+    """Check the rows of springs and limits.
+
     Raises:
         ValueError: a stiffness or a limit is not above zero.
     """
@@ -79,7 +80,7 @@ class MaxwellSlip(FrictionLaw):
         return np.where(s * z < self.μ, s * self.k, 0.0)
 
     def settle(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
-        """What has come to its limit is there."""
+        """State in which each element near its limit is exactly at it."""
         return np.where(s * z >= self.μ * (1.0 - 1e-9), s * self.μ, z)
 
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
@@ -89,7 +90,7 @@ class MaxwellSlip(FrictionLaw):
         return s * np.minimum(s * z + self.k * np.asarray(slip)[:, None], self.μ)
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """Each element's f is a straight line up to its limit, then constant."""
+        """Work by elements whose f is a straight line up to its limit, then constant."""
         d = np.asarray(slip, dtype=float)[:, None]
         stuck = np.minimum(d, (self.μ - s * z) / self.k)
         return (s * z * stuck + 0.5 * self.k * stuck**2 + self.μ * (d - stuck)).sum(axis=1)
@@ -98,7 +99,7 @@ class MaxwellSlip(FrictionLaw):
         return s * self.rate(z, s).sum(axis=-1)
 
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Each element reaches its limit."""
+        """Zero where an element reaches its limit, (elements,)."""
         return s * z - self.μ
 
 

@@ -1,6 +1,7 @@
-"""Motions: strokes along one axis, X = 0 to L, and the direction, speed and rest that each has.
+"""Motions: strokes along one axis, X = 0 to L, and the friction along them.
 
-Friction along strokes: states, and what a stroke costs and begins with.
+A stroke has a direction, a speed and a rest before it. Friction along it is the law's states and friction
+coefficient at given positions, its work, its largest value and its slope at the start.
 """
 
 from collections.abc import Sequence
@@ -21,10 +22,10 @@ DIRECTION = {"forward": 1, "backward": -1}
 
 @dataclass(frozen=True)
 class Partial:
-    """A stroke from where the one before it ended, the first from X = 0.
+    """A stroke from the end of the stroke before it, the first from X = 0.
 
     Attributes:
-        to: where it ends, over L.
+        to: position of its end, over L.
         speed: its own [m/s], None: that of the state.
         rest: time at rest before it [s], None: as between all strokes.
     """
@@ -36,12 +37,12 @@ class Partial:
 
 @dataclass(frozen=True)
 class Leg:
-    """A stroke with all that is known of it.
+    """A stroke with its name, direction, ends, speed and rest.
 
     Attributes:
         name: FM1, BM1, FM2, ….
         s: direction, ±1.
-        start, end: where it begins and ends, over L.
+        start, end: positions of its ends, over L.
         speed: its own [m/s], None: that of the state.
         rest: time at rest before it [s].
     """
@@ -55,7 +56,7 @@ class Leg:
 
     @property
     def length(self) -> float:
-        """Of the stroke, over L."""
+        """Length of the stroke, over L."""
         return abs(self.end - self.start)
 
 
@@ -70,17 +71,17 @@ def names(directions: Sequence[int]) -> list[str]:
 
 
 def legs(strokes: Sequence[str | Partial], rest: float = 0.0) -> tuple[Leg, ...]:
-    """Strokes one after the other.
+    """Legs of strokes one after the other.
 
     Args:
-        strokes: ``"forward"`` goes from X = 0 to L and ``"backward"`` from L to 0, wherever the one
-            before ended; others go on from there.
+        strokes: ``"forward"`` goes from X = 0 to L and ``"backward"`` from L to 0, wherever the stroke
+            before ended; partial strokes go on from its end.
         rest: time at rest between them [s].
 
     Raises:
         ValueError: a stroke has no length.
     """
-    found: list[Leg] = []
+    result: list[Leg] = []
     at = 0.0
     for n, stroke in enumerate(strokes):
         if isinstance(stroke, str):
@@ -88,16 +89,16 @@ def legs(strokes: Sequence[str | Partial], rest: float = 0.0) -> tuple[Leg, ...]
         if stroke.to == at:
             raise ValueError(f"stroke {n + 1} goes to {at:g} L, where it begins: expected another end")
         before = (rest if n else 0.0) if stroke.rest is None else stroke.rest
-        found.append(Leg("", 1 if stroke.to > at else -1, at, stroke.to, stroke.speed, before))
+        result.append(Leg("", 1 if stroke.to > at else -1, at, stroke.to, stroke.speed, before))
         at = stroke.to
-    return _named(found)
+    return _named(result)
 
 
 def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Leg, ...]:
-    """The strokes of a motion that is given point by point; where it stays is a rest.
+    """Legs of a motion that is given point by point; two equal positions in turn are a rest.
 
     Args:
-        path: time [s] and position [m] of each point; between them it moves at one speed.
+        path: time [s] and position [m] of each point; between points the speed is constant.
         length: L [m].
 
     Raises:
@@ -110,7 +111,7 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
         raise ValueError(
             f"found the position {outside[0]:g} m, expected 0 to pre_sliding = {length:g} m in all rows"
         )
-    found: list[Leg] = []
+    result: list[Leg] = []
     speeds: dict[str, float] = {}
     rest = 0.0
     for (t, X), (t_next, X_next) in pairwise(path):
@@ -118,24 +119,25 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
             rest += t_next - t
             continue
         speed = abs(X_next - X) / (t_next - t)
-        # What rounding alone tells apart is one speed, at which a contact is solved once.
+        # Speeds that differ by rounding are one speed, at which a contact is solved once.
         speed = speeds.setdefault(f"{speed:.{_DIGITS}e}", speed)
-        found.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
+        result.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
         rest = 0.0
-    if not found:
+    if not result:
         raise ValueError("found one position in all rows, expected a motion")
-    return _named(found)
+    return _named(result)
 
 
-def _named(found: Sequence[Leg]) -> tuple[Leg, ...]:
-    called = names([leg.s for leg in found])
+def _named(unnamed: Sequence[Leg]) -> tuple[Leg, ...]:
+    stroke_names = names([leg.s for leg in unnamed])
     return tuple(
-        Leg(name, leg.s, leg.start, leg.end, leg.speed, leg.rest) for name, leg in zip(called, found)
+        Leg(name, leg.s, leg.start, leg.end, leg.speed, leg.rest)
+        for name, leg in zip(stroke_names, unnamed)
     )
 
 
 def last_cycle(all_legs: Sequence[Leg]) -> int | None:
-    """The first of the last strokes that together come back to where they began; None where none do."""
+    """Number of the first stroke of the last closed cycle of strokes; None where none is closed."""
     for first in range(len(all_legs) - 2, -1, -1):
         if all_legs[first].end != all_legs[first + 1].start:
             return None
@@ -146,7 +148,7 @@ def last_cycle(all_legs: Sequence[Leg]) -> int | None:
 
 #: Share of a stroke over which a slope is a difference, where no formula gives it.
 _NEAR = 1e-6
-#: Times that the largest friction of a stroke is looked for between its neighbours, and places there.
+#: Refinements about the largest friction of a stroke, between its neighbours, and places of each.
 _CLOSER, _PLACES = 2, 101
 
 
@@ -171,12 +173,12 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Work:
-    """What a stroke takes, per normal force: of one law (), of many (laws,).
+    """Work, largest friction and first slope of a stroke, per normal force: () for one law, (laws,).
 
     Attributes:
         dissipated: ∫ s f dX [m].
-        breakaway: largest s f.
-        slope: s df/dX where it begins [1/m].
+        breakaway: largest s f, dimensionless.
+        slope: s df/dX at the start [1/m].
     """
 
     dissipated: NDArray[np.float64]
@@ -203,10 +205,10 @@ def friction_along(
         integrator: ``"exact"`` or ``"rk4"``.
 
     Returns:
-        One :class:`Stroke` a stroke.
+        A :class:`Stroke` for each of ``strokes``.
 
     Raises:
-        ValueError: the integrator cannot do it, or a stroke has no length.
+        ValueError: the integrator is unstable or not for this law, or a stroke has no length.
     """
     all_legs = legs(strokes)
     places = [positions(leg, X_over_L) for leg in all_legs]
@@ -214,7 +216,7 @@ def friction_along(
 
 
 def positions(leg: Leg, X_over_L: ArrayLike) -> NDArray[np.float64]:
-    """Those of some positions over L that a stroke passes, in the order of travel."""
+    """Positions over L among ``X_over_L`` that a stroke passes, in the order of travel, (n,)."""
     X = np.unique(np.asarray(X_over_L, dtype=float))
     low, high = sorted((leg.start, leg.end))
     X = X[(low <= X) & (high >= X)]
@@ -233,22 +235,22 @@ def follow(
     """Friction at given places of every stroke, starting from rest.
 
     Args:
-        law: the law; with ``many`` one whose parameters are (laws, 1).
+        law: the law; with ``many`` its parameters are (laws, 1).
         all_legs: the strokes.
         length: L [m].
         places: over L, on each stroke, in the order of travel.
         V: speed of strokes that have none of their own [m/s].
         advance: how states advance.
-        many: does the law stand for many?
+        many: True if the law stands for many.
 
     Raises:
-        ValueError: the integrator cannot do it, or friction is beyond what doubles can hold.
+        ValueError: the integrator is unstable or not for this law, or friction is not finite.
     """
     result, z = [], _at_rest(law, many)
     for leg, X in zip(all_legs, places):
         speed = V if leg.speed is None else leg.speed
         slip, whole = length * np.abs(X - leg.start), length * leg.length
-        with np.errstate(all="ignore"):  # what comes of it is looked at
+        with np.errstate(all="ignore"):  # f is checked below
             states = advance(law, law.pause(z, leg.rest), leg.s, speed, whole, np.append(slip, whole))
             passed = states[..., :-1, :]
             f = law.friction(passed, leg.s, speed)
@@ -271,7 +273,7 @@ def works(
     advance: Integrator,
     many: bool = False,
 ) -> list[Work]:
-    """What every stroke takes, starting from rest; arguments as of :func:`follow`."""
+    """Work of every stroke, starting from rest; arguments as of :func:`follow`."""
     result, z = [], _at_rest(law, many)
     for leg in all_legs:
         speed = V if leg.speed is None else leg.speed
@@ -296,16 +298,16 @@ def _at_rest(law: FrictionLaw, many: bool) -> NDArray[np.float64]:
 
 
 def _last(states: NDArray, z: NDArray) -> NDArray[np.float64]:
-    """The last of some states, in the form of ``z``."""
+    """Last of the states of a stroke, in the form of ``z``."""
     return states[-1] if z.ndim == 1 else states[..., -1:, :]
 
 
 def _largest(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, advance: Integrator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The largest s f of a stroke, and states that end with that at its end.
+    """Largest s f of a stroke, and its states, the last one at its end.
 
-    Many laws at once all build up or fall all along.
+    The largest value is refined for one law alone: friction of many laws at once is monotonic.
     """
     slip = np.linspace(0.0, length, _PLACES)
     states = advance(law, z, s, V, length, slip)

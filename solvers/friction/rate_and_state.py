@@ -60,7 +60,7 @@ class RateAndState(FrictionLaw):
         return np.asarray(self.ϑ0, dtype=float)[..., None]
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """s a asinh(e^u), by logarithms: a may be small against f₀."""
+        """Friction coefficient s a asinh(e^u), by logarithms: a may be small against f₀."""
         with np.errstate(divide="ignore"):
             u = np.log(V / (2.0 * self.V0)) + (self.f0 + self.b * np.log(z[..., 0])) / self.a
         return s * self.a * np.logaddexp(u, 0.5 * np.logaddexp(2.0 * u, 0.0))
@@ -72,21 +72,21 @@ class RateAndState(FrictionLaw):
         return np.where(self.evolution == "ageing", aged, -z / self.D_c * np.log(z / steady))
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """dϑ/dt [1/s]; it ages at rest, too."""
+        """dϑ/dt [1/s]; the state ages at rest, too."""
         if self.evolution == "ageing":
             return (self.V0 - V * z) / self.D_c
         turns = V * z / self.V0
         return -self.V0 / self.D_c * turns * np.log(turns) if V > 0.0 else 0.0 * z
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """Ageing: ϑ - V₀/V decays as exp(-d/D_c); slip: ln(ϑ V/V₀) does."""
+        """States by the exact solution: exp(-d/D_c) is the decay of ϑ - V₀/V, or ln(ϑ V/V₀) by slip."""
         steady, ϑ, x = self._steady(V), z[..., 0], np.asarray(slip, dtype=float) / self.D_c
         aged = ϑ + (ϑ - steady) * np.expm1(-x)
         slipped = steady * np.exp(np.log(ϑ / steady) * np.exp(-x))
         return np.where(self.evolution == "ageing", aged, slipped)[..., None]
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
-        """At rest θ grows with time by the ageing law, and stays by the slip law."""
+        """State after a rest: θ grows with time by the ageing law, and stays by the slip law."""
         grown = np.where(self.evolution == "ageing", self.V0 / self.D_c * seconds, 0.0)
         return z + grown[..., None]
 

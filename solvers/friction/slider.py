@@ -12,28 +12,28 @@ from numpy.typing import NDArray
 from .law import FrictionLaw
 
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
-#: scales of the motion; the first is for laws that remember nothing, whose motions are not stiff.
+#: scales of the motion; the first is for laws without memory, whose motions are not stiff.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
 _IMPLICIT = ("BDF", 1e-10, 1e-12), ("Radau", 1e-10, 1e-12)
-#: Stops, starts and switches of a law after which nothing more is to be expected of a motion.
+#: Stops, starts and switches of a law after which a motion is given up.
 PIECES = 20_000
-#: How far beyond the speed of the drive an oscillation has to go, over that speed.
-_SEEN = 1e-6
-#: Below this share of the drive's speed the mass is at rest: what laws of the logarithm of the speed bear
-#: is asked for there.
+#: Least excess of an oscillation over the speed of the drive, over that speed.
+_LEAST_EXCESS = 1e-6
+#: Share of the drive's speed below which the mass is at rest; friction at rest is evaluated at this
+#: speed, for laws of the logarithm of the speed.
 _AT_REST = 1e-9
 #: An instant at rest [s].
 _INSTANT = 1e-300
-#: Periods of the mass on its spring after which the integration begins anew, and is asked how far it is.
+#: Periods of the mass on its spring after which the integration begins anew, and progress is reported.
 _PERIODS = 10
-#: Cycles after which a motion that has come back each time goes on so, and how well, over the sizes of
-#: the motion: no more is left of the tolerance in a cycle.
+#: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
+#: motion: the tolerance leaves about as much in a cycle.
 _CYCLES, _SAME = 8, 1e-8
 
 
 @dataclass(frozen=True)
 class Slider:
-    """m dv/dt = k e + d (V - v) - N f,   de/dt = V - v: from rest, the spring relaxed.
+    """A mass on a driven spring: m dv/dt = k e + d (V - v) - N f, de/dt = V - v, from rest, e = 0.
 
     Attributes:
         mass: m per depth [kg/m].
@@ -68,16 +68,16 @@ class _Piece:
 
 @dataclass(frozen=True)
 class Ride:
-    """How a slider moved, at the steps of the integration, (n,).
+    """Motion of a slider, at the steps of the integration, (n,).
 
-    The integration ends where a cycle has come back to itself; :meth:`at` goes on with it.
+    The integration ends where the motion is periodic; :meth:`at` repeats its last cycle.
 
     Attributes:
         t: time [s].
         x, v: its position [m] and velocity [m/s].
         f: friction coefficient, that of the spring's pull where it sticks.
-        crossings: times at which it became faster than the drive [s], (m,).
-        x_crossings: its positions then [m], (m,).
+        crossings: times at which the slider became faster than the drive [s], (m,).
+        x_crossings: positions at these times [m], (m,).
     """
 
     t: NDArray[np.float64]
@@ -87,13 +87,13 @@ class Ride:
     crossings: NDArray[np.float64]
     x_crossings: NDArray[np.float64]
     _pieces: tuple[_Piece, ...]
-    _told: Callable[[float, int, NDArray], tuple[float, float, float]]
+    _state_at: Callable[[float, int, NDArray], tuple[float, float, float]]
     _repeats: bool
 
     def at(self, times: NDArray) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and friction coefficient at times [s], (3, times).
 
-        They are those of the scheme's own polynomials between its steps, as accurate as these.
+        Between its steps the scheme's own polynomials are evaluated, as accurate as the steps.
         """
         t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
         if self._repeats:
@@ -102,19 +102,19 @@ class Ride:
             t = t - cycles * period
         starts = np.array([piece.start for piece in self._pieces])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
-        found = np.empty((3, len(t)))
+        values = np.empty((3, len(t)))
         for n in np.unique(which):
-            piece, some = self._pieces[n], np.flatnonzero(which == n)
-            since = np.clip(t[some], piece.start, piece.end) - piece.start
-            for i, y in zip(some, piece.y(since).T):
-                found[:, i] = self._told(float(t[i]), piece.s, y)
+            piece, rows = self._pieces[n], np.flatnonzero(which == n)
+            since = np.clip(t[rows], piece.start, piece.end) - piece.start
+            for i, y in zip(rows, piece.y(since).T):
+                values[:, i] = self._state_at(float(t[i]), piece.s, y)
         if self._repeats:
-            found[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
-        return found
+            values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
+        return values
 
     @property
     def cycle(self) -> slice | None:
-        """Steps of the last cycle of stick-slip; None where there is no whole one."""
+        """Steps of the last cycle of stick-slip; None where there is no whole cycle."""
         if len(self.crossings) < 2:
             return None
         first, last = np.searchsorted(self.t, self.crossings[-2:])
@@ -123,11 +123,11 @@ class Ride:
 
 @dataclass(frozen=True)
 class Cycle:
-    """The last cycle of stick-slip; NaN where there is none.
+    """Last cycle of stick-slip; NaN where there is none.
 
     Attributes:
-        period: [s].
-        slip: of the mass in a cycle [m].
+        period: duration of the cycle [s].
+        slip: slip of the mass in the cycle [m].
         peak, least: largest and smallest velocity [m/s].
     """
 
@@ -138,25 +138,25 @@ class Cycle:
 
 
 def cycle(ride: Ride, drive_speed: float) -> Cycle:
-    """The last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
+    """Last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
     steps = ride.cycle
-    if steps is None or ride.v[steps].max() < (1.0 + _SEEN) * drive_speed:
+    if steps is None or ride.v[steps].max() < (1.0 + _LEAST_EXCESS) * drive_speed:
         return Cycle(*[np.nan] * 4)
     (period,), (slip,), v = np.diff(ride.crossings[-2:]), np.diff(ride.x_crossings[-2:]), ride.v[steps]
     return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
 
 
-#: What becomes of a slider.
+#: Outcomes of a slider's motion.
 STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
     "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
     "no whole cycle yet",
 )  # fmt: skip
-#: Share of the drive's speed within which one is another: of steady sliding, and of a stop in a cycle.
+#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a stop.
 _STEADY, _STOPPED = 1e-3, 1e-6
 
 
 def outcome(ride: Ride, drive_speed: float) -> str:
-    """What has become of a slider at the end of a motion, in words, by the drive's speed [m/s]."""
+    """Outcome of a slider's motion in words, by the drive's speed [m/s]."""
     last = cycle(ride, drive_speed)
     if np.isfinite(last.period):
         return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
@@ -176,10 +176,10 @@ def pull(
         slider: mass, spring and drive.
         law: its friction.
         load: normal force per depth [N/m].
-        done: is told now and then how much of the duration is done.
+        done: called now and then with the share of the duration that is done.
 
     Raises:
-        ValueError: the integration failed, or came to no end.
+        ValueError: the integration failed, or the motion has too many pieces.
     """
     motion = _Motion(slider, law, load)
     for _ in range(PIECES):
@@ -215,18 +215,19 @@ class _Motion:
         at, e_at = np.reshape(self._crossings, (-1, 2)).T
         drive = self.slider.drive_speed
         return Ride(
-            t, drive * t - e, v, f, at, drive * at - e_at, tuple(self._pieces), self._told, self.repeats
-        )
+            t, drive * t - e, v, f, at, drive * at - e_at,
+            tuple(self._pieces), self._state_at, self.repeats,
+        )  # fmt: skip
 
     @property
     def _length(self) -> float:
-        """Of the spring, about [m]."""
+        """Size of the spring's extension [m]."""
         slider = self.slider
         return max(self.load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
 
     @property
     def repeats(self) -> bool:
-        """Has a cycle come back to itself often enough?"""
+        """True if the last cycles are equal to rounding of the integration."""
         if len(self._came_back) <= _CYCLES:
             return False
         been, times = (
@@ -236,27 +237,27 @@ class _Motion:
         sizes = np.abs(been).max(axis=0)
         sizes[0] = max(sizes[0], self._length)
         periods = np.diff(times)
-        alike = np.ptp(been, axis=0) <= _SAME * sizes
-        return bool(alike.all() and np.ptp(periods) <= _SAME * periods.max())
+        unchanged = np.ptp(been, axis=0) <= _SAME * sizes
+        return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
 
-    def _told(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
-        """Position, velocity and friction coefficient."""
+    def _state_at(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
+        """Position [m], velocity [m/s] and friction coefficient at t [s] from y in direction s."""
         f = self._friction(y, s) if s else self.pull(y[0], 0.0) / self.load
         return self.slider.drive_speed * t - y[0], y[1], f
 
     def pull(self, e: float, v: float) -> float:
-        """Of spring and dashpot [N/m]."""
+        """Force of spring and dashpot [N/m] at the extension e [m] and the velocity v [m/s]."""
         return self.slider.stiffness * e + self.slider.damping * (self.slider.drive_speed - v)
 
     def go_on(self) -> None:
-        """To the next stop, start or switch."""
+        """Advance to the next stop, start or switch."""
         if self.v == 0.0:
             self._start()
         if self.t < self.slider.duration:
             self._slide()
 
     def _start(self) -> None:
-        """From rest: in the direction in which it is pulled over what friction bears, after a while."""
+        """Start from rest, after a while, in the direction in which the pull exceeds friction."""
         force, self.z = self.pull(self.e, 0.0), self.law.pause(self.z, _INSTANT)
         bears = {s: self.load * self._at_once(s) for s in (1, -1)}
         self.s = -1
@@ -287,21 +288,21 @@ class _Motion:
         self.z = self.law.pause(self.z, seconds)
 
     def _slide(self) -> None:
-        """In one direction, as long as the law does not switch."""
-        s, found = self.s, self._integrated()
-        self._keep(found)
-        self.t, (self.e, self.v, *z) = self.t + found.t[-1], found.y[:, -1]
+        """Slide in one direction, as long as the law does not switch."""
+        s, piece = self.s, self._integrated()
+        self._keep(piece)
+        self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
         self.z = np.array(z)
-        if len(found.t_events[0]):
+        if len(piece.t_events[0]):
             self.v = 0.0
-        elif found.status == 1:
+        elif piece.status == 1:
             self.z = self.law.settle(self.z, s, abs(self.v))
 
     def _integrated(self) -> Any:
-        """By the first scheme that can.
+        """SciPy's result by the first scheme that succeeds, up to the next stop or switch.
 
         Raises:
-            ValueError: none can.
+            ValueError: no scheme succeeds.
         """
         s, drive = self.s, self.slider.drive_speed
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
@@ -311,27 +312,27 @@ class _Motion:
             _event(lambda _, y: self._acceleration(y), 0.0, False),
             *(_event(lambda _, y, n=n: self._switch(y, int(n)), 1.0, True) for n in ahead),
         ]
-        last, said = min(self.slider.duration - self.t, self._longest), ""
+        last, reason = min(self.slider.duration - self.t, self._longest), ""
         scales = np.array([self._length, drive, *np.ones_like(self.z)])
         remembers = self.law.flow(self.z, s, drive).any()
         for scheme, relative, absolute in _IMPLICIT if remembers else (_EXPLICIT, *_IMPLICIT):
             solved = partial(self._solved, scheme, events, relative, absolute * scales)
             try:
-                found = solved(last)
-                # Between two steps it may have stopped and been drawn on: a minimum tells.
-                slow = s * np.reshape(found.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
+                result = solved(last)
+                # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
+                slow = s * np.reshape(result.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
                 if slow.any():
-                    found = solved(float(found.t_events[2][np.argmax(slow)]))
+                    result = solved(float(result.t_events[2][np.argmax(slow)]))
             except ValueError as error:  # an event could not be located
-                said = str(error)
+                reason = str(error)
                 continue
-            if found.success:
-                return found
-            said = found.message
-        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {said}")
+            if result.success:
+                return result
+            reason = result.message
+        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
     def _solved(self, scheme: str, events: Any, relative: float, absolute: NDArray, last: float) -> Any:
-        """SciPy's result until a time from now."""
+        """SciPy's result over the next ``last`` seconds."""
         from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
 
         with warnings.catch_warnings():
@@ -341,14 +342,14 @@ class _Motion:
                 events=events, rtol=relative, atol=absolute, dense_output=True,
             )  # fmt: skip
 
-    def _keep(self, found: Any) -> None:
-        """The steps of a piece, and the fastest and slowest moments among them."""
-        self._pieces.append(_Piece(self.t, self.t + found.t[-1], self.s, found.sol))
-        self._crossings += [(self.t + t, y[0]) for t, y in zip(found.t_events[1], found.y_events[1])]
-        self._came_back += [np.delete(y, 1) for y in found.y_events[1]]
-        t = np.append(found.t, found.t_events[2])
-        extremes = np.reshape(found.y_events[2], (-1, len(found.y)))
-        y = np.concatenate([found.y.T, extremes])
+    def _keep(self, piece: Any) -> None:
+        """Keep the steps of a piece, and its fastest and slowest moments."""
+        self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, piece.sol))
+        self._crossings += [(self.t + t, y[0]) for t, y in zip(piece.t_events[1], piece.y_events[1])]
+        self._came_back += [np.delete(y, 1) for y in piece.y_events[1]]
+        t = np.append(piece.t, piece.t_events[2])
+        extremes = np.reshape(piece.y_events[2], (-1, len(piece.y)))
+        y = np.concatenate([piece.y.T, extremes])
         for n in np.argsort(t, kind="stable"):
             self._rows.append((self.t + t[n], y[n, 0], y[n, 1], self._friction(y[n], self.s)))
 

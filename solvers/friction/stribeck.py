@@ -12,7 +12,7 @@ from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
 
 @dataclass(frozen=True, kw_only=True)
 class StribeckCurve(FrictionLaw):
-    """What laws have that follow Stribeck's curve in steady sliding::
+    """Base of laws that follow Stribeck's curve in steady sliding::
 
     g(V) = μ_C + (μ_S - μ_C) exp(-(V/v_S)^j)
     """
@@ -62,7 +62,7 @@ class Stribeck(StribeckCurve):
     )  # fmt: skip
 
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Nothing changes."""
+        """Rate of the state: 0."""
         return np.zeros(np.shape(z))
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:

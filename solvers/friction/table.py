@@ -54,11 +54,11 @@ class Table(FrictionLaw):
         return np.zeros(2)
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
-        """The slip grows as it is [1/m], once the direction is that of the stroke."""
+        """Rates [1/m]: the scaled slip grows evenly, the direction stays."""
         return np.array([1.0 / self._scale, 0.0])
 
     def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """A reversal begins the other branch."""
+        """State of the other branch at its start after a reversal."""
         return np.array([self._start(z, s) / self._scale, float(s)])
 
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
@@ -74,7 +74,7 @@ class Table(FrictionLaw):
         return s * (self._area(first + np.asarray(slip), s) - self._area(np.array(first), s))
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Of the piece that follows; at the start of a stroke z is that of the one before."""
+        """Slope of the next piece of the table; at the start of a stroke z is of the stroke before."""
         d, f = self._branch(s)
         slopes = np.append(np.diff(f) / np.diff(d), 0.0)
         at = np.where(s * z[..., 1] > 0.0, z[..., 0] * self._scale, 0.0)

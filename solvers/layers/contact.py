@@ -4,20 +4,16 @@
 
 σ = σ_YY, n̂ = n + g n₁₂ of the surface's solid, K of :mod:`galinx.solvers.layers.kernel`. The dominant
 part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
-their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels take their place.
+their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels replace them.
 
-A contact pressure that was found, by what is read off it: values, transforms, integrals.
+:class:`Pressure` is the interface of contact pressures, solved for or prescribed: values, transforms,
+integrals. A prescribed pressure is linear between knots (:class:`Given`). It is integrated by Gauss's
+rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
+towards it. The part of the half-plane of the surface's solid is known exactly.
 
-Punches on layers with any number of frictions at one speed.
-
-The kernels know no friction, and what is read off a pressure, its weight aside, is an analytic function
-of g = σ_XY/σ_YY: beyond a few frictions the equation is solved at Chebyshev's points in g, and what is
-between them is interpolated.
-
-A pressure that is put in on layers, linear between knots, as what is read off a found one.
-
-Gauss's rule on pieces between knots, cut as short as the kernel asks for; where the kernel has a
-logarithm, graded towards it. What the half-plane of the surface's solid does is known exactly.
+Any number of frictions at one speed share the kernels, which do not depend on friction
+(:class:`Speed`). A pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond a few
+frictions the equation is solved at Chebyshev's points in g, and interpolated between them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -42,12 +38,12 @@ _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
 
 
 class Pressure(Protocol):
-    """σ_YY over N/(2a) = (1 - r)^α (1 + r)^β p(r).
+    """Contact pressure σ_YY over N/(2a) = (1 - r)^α (1 + r)^β p(r), |r| < 1.
 
     Attributes:
         α, β: exponents.
-        near: |r| up to which p is known.
-        tips: places under the punch at which it is infinite.
+        near: |r| up to which p can be evaluated.
+        tips: places under the punch at which the pressure is infinite.
     """
 
     @property
@@ -60,20 +56,20 @@ class Pressure(Protocol):
     def tips(self) -> tuple[float, ...]: ...
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        """p at |r| <= near."""
+        """p at |r| <= near, (len(r),)."""
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        """(1/π) ∫ σ/(t - r) dt, where |r| <= near less p(r) times that of the weight."""
+        """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """t and weights times σ_YY for integrals with what varies over ``finest``."""
+        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
 
 
 def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Gauss's rule for the weight (1 - t)^α (1 + t)^β."""
+    """Points and weights of Gauss's rule for the weight (1 - t)^α (1 + t)^β, (points,) each."""
     with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
         t, w = roots_jacobi(points, α, β)
     return t, w
@@ -81,7 +77,7 @@ def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A pressure by Jacobi polynomials."""
+    """Pressure as a sum of Jacobi polynomials under their weight, see :class:`Pressure`."""
 
     expansion: Expansion
 
@@ -109,9 +105,9 @@ class Polynomial:
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         t, w, p = self._rule
-        known = np.abs(r) <= near
+        close = np.abs(r) <= near
         taken = np.zeros_like(r)
-        taken[known] = self.series(r[known])
+        taken[close] = self.series(r[close])
         difference = t - r[:, None]
         on = np.abs(difference) < 1e-13
         return np.asarray(((p - taken[:, None]) / np.where(on, np.inf, difference)) @ w / np.pi)
@@ -125,10 +121,10 @@ class Polynomial:
         return fine.t, fine.weights * self.series(fine.t)
 
 
-#: Points of a panel, and of the coarser rule that measures the error of that.
+#: Points of a panel, and of the coarser rule that measures the error of the finer one.
 FINE, COARSE = 20, 14
-#: Longest panel over what kernels vary over; by what factor, and how often, lengths of panels fall
-#: towards a logarithm.
+#: Longest panel over the length of a kernel's variation; factor and number of steps by which panels
+#: shorten towards a logarithm.
 _SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
 #: Panels at most.
 _MOST = 200_000
@@ -136,13 +132,13 @@ _MOST = 200_000
 
 @dataclass(frozen=True)
 class Given:
-    """A pressure; see :class:`galinx.solvers.layers.contact.Pressure`, of which it has the integrals.
+    """Prescribed pressure with the integrals of :class:`Pressure`.
 
     Attributes:
         pressure: σ_YY over N/(2a).
-        nodes: points of a panel.
-        length: over a, over which the kernel on the surface varies.
-        rough: has that a logarithm at 0?
+        nodes: number of points of a panel.
+        length: length over a over which the kernel on the surface varies.
+        rough: True where the kernel has a logarithm at 0.
     """
 
     pressure: LinearPressure
@@ -151,26 +147,26 @@ class Given:
     rough: bool
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """t and weights times σ_YY for integrals with what varies over ``finest``, (n,) each."""
+        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
         return self._weighted(self._cut(self.pressure.knots, finest))
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
         whole = self.points(self.length)
-        found = []
+        integrals = []
         for place in r.tolist():
             t, σ = self._weighted(self._towards(place)) if self.rough else whole
-            found.append(σ @ kernel(place - t))
-        return np.array(found)
+            integrals.append(σ @ kernel(place - t))
+        return np.array(integrals)
 
     def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
-        """Ends of panels between others, none longer than what varies over ``finest`` allows."""
+        """Ends of panels between ``ends``, none too long for functions that vary over ``finest``."""
         longest = max(_SHARE * finest, 2.0 / _MOST)
-        found = [ends[:1]]
+        panels = [ends[:1]]
         for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
             count = max(int(np.ceil((high - low) / longest)), 1)
-            found.append(low + (high - low) * np.arange(1, count + 1) / count)
-        return np.concatenate(found)
+            panels.append(low + (high - low) * np.arange(1, count + 1) / count)
+        return np.concatenate(panels)
 
     def _towards(self, place: float) -> NDArray[np.float64]:
         """Ends of panels that get shorter towards a place."""
@@ -187,12 +183,12 @@ class Given:
         return t, (half[:, None] * w).ravel() * self.pressure(t)
 
 
-#: Polynomials at first, by how much more next time, and at most.
+#: Number of polynomials at first, its growth from step to step, and its maximum.
 FIRST, _MORE, MOST = 24, 1.5, 1400
 #: Where pressures of two numbers of polynomials are compared.
 _ENDS = np.array([-1.0, 1.0])
 _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
-#: Distance from a tip of the punch within which they are not.
+#: Distance from a tip of the punch within which pressures are not compared.
 NEAR_TIP = 0.02
 #: Least distance from -1 of the pressure's exponents: points of quadrature fall on the edges beyond it.
 _STRONGEST = 1e-4
@@ -204,36 +200,36 @@ Resolution: TypeAlias = int | float
 
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
-#: Longest panel at first where the kernel is rough, over the contact's half-width, by how much shorter
-#: next time, and how often.
+#: Longest panel at first where the kernel is rough, over the contact's half-width, its factor from step
+#: to step, and the number of steps.
 _COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Pressures that are added up.
+    """Pressures whose sums are other pressures.
 
     Attributes:
-        coefficients: of each, (unknowns, parts).
-        made: a pressure of coefficients, (unknowns,).
+        coefficients: of each pressure, (unknowns, parts).
+        made: makes a pressure of coefficients, (unknowns,).
     """
 
     coefficients: NDArray[np.float64]
     made: Callable[[NDArray], Pressure]
 
     def pressure(self, amplitudes: NDArray) -> Pressure:
-        """Their sum with amplitudes, (parts,)."""
+        """Sum of the parts with amplitudes, (parts,)."""
         return self.made(self.coefficients @ amplitudes)
 
     @property
     def ends(self) -> NDArray[np.float64]:
-        """Each without its weight at both ends, (2, parts)."""
+        """Values of p at the left and the right end, (2, parts)."""
         return np.stack([self.made(c).series(_ENDS) for c in self.coefficients.T], axis=-1)
 
 
 @dataclass(frozen=True)
 class Equation:
-    """The equation at one speed and friction.
+    """Singular integral equation at one speed and friction.
 
     Attributes:
         response: of the surface's solid.
@@ -251,30 +247,30 @@ class Equation:
 
     @property
     def n(self) -> float:
-        """n̂."""
+        """n̂ = n + g n₁₂, dimensionless."""
         return float(self.response.n + self.g * self.response.n12)
 
     @cached_property
     def α(self) -> float:
-        """Exponent at X = a: that of the surface's solid."""
+        """Exponent at X = a, that of the surface's solid, dimensionless."""
         return float(-0.5 - np.arctan2(self.g * self.response.q, self.n) / np.pi)
 
     @property
     def β(self) -> float:
-        """Exponent at X = -a."""
+        """Exponent at X = -a, dimensionless."""
         return -1.0 - self.α
 
     def solved(self, terms: int) -> Expansion:
-        """The pressure with so many polynomials."""
+        """Pressure as a sum of ``terms`` polynomials, with resultant -2."""
         (c,) = self._coefficients(terms, [self.slope], [-2.0]).T
         return Expansion(self.α, self.β, c)
 
     def pressure(self, resolution: Resolution) -> Pressure:
-        """The pressure."""
+        """Pressure with resultant -2 at a resolution."""
         return self.parts(resolution, [self.slope], [-2.0]).pressure(np.ones(1))
 
     def parts(self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]) -> Parts:
-        """Pressures under several slopes with several resultants, of which others are sums."""
+        """Pressures under several slopes with resultants ``loads``, whose sums are other pressures."""
         if isinstance(resolution, float):
             panels, values = panelled(self, resolution, slopes, loads)
             return Parts(values, lambda p: PanelledPressure(panels, p))
@@ -284,7 +280,7 @@ class Equation:
     def _coefficients(
         self, terms: int, slopes: Sequence[Slope], loads: Sequence[float]
     ) -> NDArray[np.float64]:
-        """Of so many polynomials, (terms, slopes)."""
+        """Coefficients of ``terms`` polynomials for each slope and load, (terms, slopes)."""
         t, w = gauss(terms, self.α, self.β)
         r, _ = gauss(terms - 1, -self.α, -self.β)
         P = jacobi(terms, self.α, self.β, t)
@@ -299,12 +295,12 @@ class Equation:
 
 @dataclass(frozen=True)
 class Found:
-    """A pressure, and by how much it changed with the number of polynomials.
+    """A pressure and its change with the number of unknowns.
 
     Attributes:
         pressure: the pressure.
-        before: with fewer unknowns.
-        change: of it and its intensities, relative.
+        before: the pressure with fewer unknowns.
+        change: relative change of the pressure and its intensities.
     """
 
     pressure: Pressure
@@ -313,29 +309,29 @@ class Found:
 
 
 def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
-    """The pressure to a tolerance.
+    """Pressure of an equation to a relative tolerance, with ``first`` polynomials at first.
 
     Raises:
-        SolveError: it was not reached; the message says what is left.
+        SolveError: the tolerance was not reached; the message says by how much.
     """
     check_exponents(equation)
     before: Pressure | None = None
-    left = np.inf
-    for resolution in ever_finer(equation.kernel.rough, first):
+    moved = np.inf
+    for resolution in resolutions(equation.kernel.rough, first):
         now = equation.pressure(resolution)
         if before is not None:
-            left = change(before, now)
-            if met(left, tolerance):
-                return Found(now, before, left)
+            moved = change(before, now)
+            if is_converged(moved, tolerance):
+                return Found(now, before, moved)
         before = now
-    raise not_met(left, tolerance)
+    raise not_converged(moved, tolerance)
 
 
 def check_exponents(equation: Equation) -> None:
-    """Can the pressure be followed to its edges?
+    """Check that the pressure can be resolved up to its edges.
 
     Raises:
-        SolveError: it cannot.
+        SolveError: an exponent is too close to -1.
     """
     least = 1.0 + min(equation.α, equation.β)
     if not least >= _STRONGEST:
@@ -345,21 +341,21 @@ def check_exponents(equation: Equation) -> None:
         )
 
 
-def met(left: float, tolerance: float) -> bool:
-    """Is a change with the resolution small enough?"""
-    return left <= tolerance / 4.0 or left <= _ROUNDING
+def is_converged(moved: float, tolerance: float) -> bool:
+    """Return True if a relative change with the resolution is small enough."""
+    return moved <= tolerance / 4.0 or moved <= _ROUNDING
 
 
-def not_met(left: float, tolerance: float) -> SolveError:
-    """What is said where it never is."""
+def not_converged(moved: float, tolerance: float) -> SolveError:
+    """Error of a pressure that still changes with the most unknowns."""
     return SolveError(
-        f"with the most unknowns the pressure still changes by {left:.2g}, expected {tolerance:g}: "
+        f"with the most unknowns the pressure still changes by {moved:.2g}, expected {tolerance:g}: "
         "the uppermost layer is very thin over the contact's width; take a larger tolerance"
     )
 
 
-def ever_finer(rough: bool, first: int) -> Iterator[Resolution]:
-    """Resolutions, of kernels that are rough or not."""
+def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
+    """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
     if rough:
         for time in range(_TIMES):
             yield _COARSE * _SHORTER**time
@@ -372,21 +368,21 @@ def ever_finer(rough: bool, first: int) -> Iterator[Resolution]:
 
 
 def change(before: Pressure, now: Pressure) -> float:
-    """Of intensities and pressure without its weight, over the larger one; not next to its tips."""
+    """Largest change of intensities and p, relative to the largest |p|; not next to tips."""
     at = np.concatenate([_ENDS, _LOOKED_AT])
     for tip in now.tips:
         at = at[np.abs(at - tip) > NEAR_TIP]
-    one, other = before.series(at), now.series(at)
-    return float(np.abs(one - other).max() / np.abs(other).max())
+    earlier, later = before.series(at), now.series(at)
+    return float(np.abs(earlier - later).max() / np.abs(later).max())
 
 
-#: Chebyshev's points in g at first and at most; the last coefficients tell what is left.
+#: Chebyshev's points in g at first and at most; the last coefficients estimate the error.
 _FEW, _MANY, _LAST = 9, 65, 2
 
 
 @dataclass(frozen=True)
 class Speed:
-    """What all frictions at a speed share.
+    """Contacts with any friction at one speed, which share kernels.
 
     Attributes:
         response: of the surface's solid.
@@ -405,10 +401,10 @@ class Speed:
         return Kernel(self.stack, self.tolerance / 1e3)
 
     def solved(self, g: NDArray) -> tuple["Frictions", NDArray[np.float64]]:
-        """Pressures at frictions from which those at all of ``g`` follow, and the error that leaves.
+        """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
 
         Args:
-            g: wanted, sorted, (states,).
+            g: σ_XY/σ_YY, sorted, (states,).
         """
         if len(g) <= _FEW:
             return self._together(g, self._each(g)), np.zeros(1)
@@ -416,10 +412,10 @@ class Speed:
         middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
         while True:
             nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
-            here = self._together(nodes, self._each(nodes))
-            left = here.unresolved
-            if left <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
-                return here, np.array([left])
+            frictions = self._together(nodes, self._each(nodes))
+            error = frictions.unresolved
+            if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
+                return frictions, np.array([error])
             count = 2 * count - 1
 
     def _together(self, g: NDArray, each: list[Any]) -> "Frictions":
@@ -435,17 +431,17 @@ class Speed:
 
     @property
     def rounding(self) -> float:
-        """What the kernel's own error does to the pressure, relative."""
+        """Relative error of the pressure by that of the kernel."""
         return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
 
 
 @dataclass(frozen=True)
 class Frictions:
-    """Pressures at some frictions, from which those at others are interpolated.
+    """Pressures at several frictions, from which those at others are interpolated.
 
     Attributes:
         g: σ_XY/σ_YY, (nodes,).
-        each: the pressures.
+        each: pressures with their changes, one for each g.
     """
 
     g: NDArray[np.float64]
@@ -453,20 +449,20 @@ class Frictions:
 
     @property
     def near(self) -> float:
-        """|r| up to which all pressures are known without their weights."""
-        return min(one.near for found in self.each for one in (found.pressure, found.before))
+        """|r| up to which p of all pressures can be evaluated."""
+        return min(p.near for solution in self.each for p in (solution.pressure, solution.before))
 
     def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
-        """What is read off every pressure, (nodes, ...)."""
-        return np.array([what(one.pressure) for one in self.each])
+        """Values of a function of every pressure, (nodes, ...)."""
+        return np.array([what(solution.pressure) for solution in self.each])
 
     def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
-        """The same, and with fewer unknowns, (2, nodes, ...)."""
-        return np.array([self.read(what), [what(one.before) for one in self.each]])
+        """Values of a function of every pressure, and of that with fewer unknowns, (2, nodes, ...)."""
+        return np.array([self.read(what), [what(solution.before) for solution in self.each]])
 
     @cached_property
     def unresolved(self) -> float:
-        """Of the pressures as a function of g, by their last Chebyshev coefficients, relative."""
+        """Relative error of pressures interpolated in g, from their last Chebyshev coefficients."""
         values = self.smooth
         x = np.cos(np.pi * np.arange(len(self.g)) / (len(self.g) - 1))
         c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
@@ -474,12 +470,12 @@ class Frictions:
 
     @property
     def smooth(self) -> NDArray[np.float64]:
-        """What is looked at of every pressure, (nodes, n)."""
+        """Samples of every pressure that are smooth in g, (nodes, n)."""
         r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
         return self.read(lambda pressure: pressure.series(r))
 
     def at(self, g: NDArray) -> NDArray[np.float64]:
-        """What turns values of every pressure into those at other frictions, (states, nodes)."""
+        """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
         difference = g[:, None] - self.g
         same = difference == 0.0
         if same.any(axis=1).all():
@@ -492,5 +488,5 @@ class Frictions:
 
     @property
     def change(self) -> float:
-        """Largest change with the number of polynomials."""
-        return max(one.change for one in self.each)
+        """Largest relative change of a pressure with the number of unknowns."""
+        return max(solution.change for solution in self.each)

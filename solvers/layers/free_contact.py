@@ -1,30 +1,26 @@
-"""Contacts over layers whose ends are found, by the singular integral equation.
+"""Contacts with free ends over layers, by the singular integral equation.
 
-Where both ends are free, two conditions on the slope alone tell the middle and the load that makes a
-contact of the half-width h. Where an edge of a tilted punch lifts
-off, the contact starts at the other one, and no intensity is left at its end for one sum of two
-pressures, that of a flat punch and that under the slope 1. The load grows with h, which is found for the
-one wanted.
-
-Where a contact with two free ends over layers ends, for any convex profile.
-
-With T the operator of the equation in :mod:`galinx.solvers.layers.contact`, its adjoint is, but for the
-sign, that of the same contact seen from the other side: -q for q, and -K(-x) for K(x). Let ρ₁ be the
-pressure of a flat punch there, and ρ₂ that under the slope 1 without a resultant. A pressure σ that
-vanishes at both ends under the slope f, T σ = f, then has ∫ ρ f = -∫ (-T* ρ) σ, so that
+**Two free ends, any convex profile.** With T the operator of the equation in
+:mod:`galinx.solvers.layers.contact`, its adjoint is, but for the sign, that of the same contact seen from
+the other side: -q for q, and -K(-x) for K(x). Let ρ₁ be the pressure of a flat punch there, and ρ₂ that
+under the slope 1 without a resultant. A pressure σ that vanishes at both ends under the slope f, T σ = f,
+then has ∫ ρ f = -∫ (-T* ρ) σ, so that
 
     ∫ ρ₁ P'(m + h s) ds = 0,        N/μ = h ∫ ρ₂ P'(m + h s) ds.
 
-Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the profile is; without layers ρ₁ is
-1/w and ρ₂ is s/w but for factors, and these are the conditions of :mod:`galinx.solvers.sie.free_contact`.
+These two conditions on the slope alone give the middle m, and the load that makes a contact of the
+half-width h (:class:`Conditions`). Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
+profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors, and these are the conditions of
+:mod:`galinx.solvers.sie.free_contact`. The load grows with h, which is iterated until the contact carries
+the load of the punch.
 
-Contacts over layers that were found: with so many unknowns, settled, and of some frictions.
+**A tilted punch one edge of which lifts off.** The contact starts at the other edge, and the intensity at
+its free end vanishes for one sum of two pressures, that of a flat punch and that under the slope 1.
 
-Pressures over layers under punches whose slope, or its derivative, jumps.
-
-What a kink does to the pressure is of the surface's solid alone: with f the slope less the mean by which
-the pressure σ₀ of :mod:`galinx.solvers.sie.panels` vanishes at both ends, what layers add is a pressure
-under that mean and what σ₀ bends them by, -∫ K(r - t) σ₀(t) dt, which no kink makes rough.
+**Slopes that jump, or whose derivative jumps** (:class:`Kinked`). What a kink does to the pressure is of
+the surface's solid alone: with f the slope less the mean by which the pressure σ₀ of
+:mod:`galinx.solvers.sie.panels` vanishes at both ends, what layers add is a pressure under that mean and
+under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, which no kink makes rough.
 """
 
 from collections.abc import Callable
@@ -53,20 +49,19 @@ from .contact import (
     Speed,
     change,
     check_exponents,
-    ever_finer,
-    met,
-    not_met,
+    is_converged,
+    not_converged,
+    resolutions,
 )
 from .kernel import REACH, Kernel, Scaled
 from .layered import Layered
 from .panelled import PanelledPressure, Panels
 
-#: Steps in which a half-width is found, the largest of its logarithm, and what is rounding of it.
+#: Most steps to a half-width, the largest step of its logarithm, and rounding of that.
 _STEPS, _LARGEST, _ROUNDING = 80, 1.5, 1e-13
-#: By how much the load's logarithm grows with that of the half-width: before it is known, and how little
-#: and how much a secant may say.
+#: Growth of the load's logarithm with that of the half-width: at first, and its bounds in a secant.
 _GROWTH, _GROWTHS = 2.0, (0.3, 40.0)
-#: Doublings of the middle over the half-width within which it is looked for, and what is rounding of it.
+#: Doublings of the middle over the half-width within which it is sought, and its rounding.
 _FARTHER, _OF_MIDDLE = 12, 1e-15
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
@@ -74,11 +69,11 @@ _PANEL, _LONGEST = 16.0, 0.7
 
 @dataclass(frozen=True)
 class Punch:
-    """A punch with both ends of its contact free, and its load; lengths over one that all share.
+    """A punch with both ends of its contact free, and its load; lengths over a unit shared by states.
 
     Attributes:
         profile: of the punch, in m.
-        unit: the length [m].
+        unit: the unit of length [m].
         compression: N/μ [m].
     """
 
@@ -90,8 +85,8 @@ class Punch:
         """μ v,X over N/(2h) at places over the half-width h from the middle m."""
 
         def slope(r: NDArray) -> NDArray[np.float64]:
-            found = np.asarray(self.profile.slope(self.unit * (m + h * r)), dtype=float)
-            return 2.0 * h * self.unit / self.compression * found
+            slopes = np.asarray(self.profile.slope(self.unit * (m + h * r)), dtype=float)
+            return 2.0 * h * self.unit / self.compression * slopes
 
         return slope
 
@@ -102,8 +97,8 @@ class Punch:
 
 
 @dataclass(frozen=True)
-class _Turned:
-    """A response, or kernels, as the adjoint has them."""
+class _Adjoint:
+    """Response, or kernels, of the adjoint equation."""
 
     of: Any
 
@@ -129,13 +124,13 @@ class _Turned:
 
 @dataclass(frozen=True)
 class Conditions:
-    """Both conditions of contacts of one half-width.
+    """Both conditions on contacts with free ends and one half-width.
 
     Attributes:
         punch: the punch.
         h: half-width.
         lifting, carrying: ρ₁ and ρ₂.
-        finest: longest panel that resolves them.
+        finest: longest panel that resolves these.
     """
 
     punch: Punch
@@ -145,16 +140,16 @@ class Conditions:
     finest: float
 
     def _over(self, ρ: Pressure, m: float) -> float:
-        """∫ ρ f ds with f the slope over N/(2h)."""
+        """∫ ρ f ds with f the slope over N/(2h), dimensionless."""
         panels = Panels(ρ.α, ρ.β, self.finest, self.punch.kinks(m, self.h))
         f = self.punch.slope(m, self.h)(panels.t)
         return float(panels.weights @ (ρ.series(panels.t) * f))
 
     def middle(self) -> float:
-        """m at which no end pulls.
+        """Middle m of the contact for which the pressure vanishes at both ends.
 
         Raises:
-            SolveError: there is none.
+            SolveError: there is no such middle.
         """
 
         def pulled(lean: float) -> float:
@@ -171,9 +166,9 @@ class Conditions:
         )
 
     def off(self, m: float) -> float:
-        """Logarithm of the load that such a contact takes over the wanted one.
+        """Logarithm of the load that a contact of this half-width carries, over the punch's load.
 
-        Minus infinity where a flat part takes none, infinity where it would take tension.
+        Minus infinity where a flat part carries none, infinity where it would carry tension.
         """
         share = self._over(self.carrying, m) / 2.0
         if share == 0.0:
@@ -182,16 +177,16 @@ class Conditions:
 
 
 def conditions(equation: Equation, resolution: Resolution, punch: Punch, h: float) -> Conditions:
-    """Those of contacts of the half-width h.
+    """Conditions on contacts of the half-width h.
 
     Args:
-        equation: of such a contact; its slope is not asked.
-        resolution: how finely it is solved.
+        equation: of such a contact; its slope is not used.
+        resolution: number of polynomials, or longest panel.
         punch: the punch.
         h: half-width.
     """
-    turned = Equation(_Turned(equation.response), _Turned(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
-    parts = turned.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
+    adjoint = Equation(_Adjoint(equation.response), _Adjoint(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
+    parts = adjoint.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
     lifting, carrying = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
     return Conditions(punch, h, lifting, carrying, finest(resolution))
 
@@ -199,18 +194,18 @@ def conditions(equation: Equation, resolution: Resolution, punch: Punch, h: floa
 def vanishing(
     equation: Equation, resolution: Resolution, resultant: float = -2.0
 ) -> tuple[Pressure, float]:
-    """The pressure of a contact whose ends are those that leave no intensity.
+    """Pressure of a contact between two free ends, at which it vanishes.
 
-    What the resolution leaves of one is taken away by a little of a flat punch and of the slope 1.
+    An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
 
     Args:
         equation: of the contact, with its slope.
-        resolution: how finely it is solved.
+        resolution: number of polynomials, or longest panel.
         resultant: ∫ σ_YY dr.
 
     Returns:
-        The pressure, and by how much its resultant over that of a punch, or its slope over that by which
-        such a resultant would be carried at one end alone, was changed for that.
+        The pressure, and the correction: the larger of the change of its resultant over that of a punch,
+        and the change of its slope over that by which one end alone would carry such a resultant.
     """
     slopes = (equation.slope, np.zeros_like, np.ones_like)
     parts = equation.parts(resolution, slopes, (resultant, -2.0, 0.0))
@@ -221,22 +216,22 @@ def vanishing(
 
 
 def finest(resolution: Resolution) -> float:
-    """Longest panel for what was solved so finely."""
+    """Longest panel that resolves a pressure of this resolution."""
     return min(resolution if isinstance(resolution, float) else _PANEL / resolution, _LONGEST)
 
 
 def balanced(at: Callable[[float], tuple[float, Any]], x: float) -> tuple[float, Any]:
-    """Where a growing function vanishes, by secants between what is too little and too much.
+    """Root of a growing function, by secants inside a bracket.
 
     Args:
-        at: of the logarithm of a half-width gives that of the load over the wanted one, and more.
-        x: to begin with.
+        at: of the logarithm of a half-width, gives that of the load over the punch's, and more.
+        x: first logarithm.
 
     Returns:
-        The logarithm of the half-width, and what else was given there.
+        The logarithm of the half-width at the root, and what else ``at`` gave there.
 
     Raises:
-        SolveError: it does not vanish.
+        SolveError: there is no root.
     """
     growth, before, low, high = _GROWTH, None, -np.inf, np.inf
     for _ in range(_STEPS):
@@ -258,7 +253,7 @@ def balanced(at: Callable[[float], tuple[float, Any]], x: float) -> tuple[float,
         x += step
     raise SolveError(
         f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
-        f"came to {np.exp(x):.6g} of that at rest, and is not settled; take a speed farther from the "
+        f"came to {np.exp(x):.6g} of that at rest, and still changes; take a speed farther from the "
         "limit"
     )
 
@@ -269,15 +264,15 @@ _TOGETHER = 200
 
 @dataclass(frozen=True)
 class Kinked:
-    """See :class:`galinx.solvers.layers.contact.Pressure`.
+    """Pressure between free ends under a slope with kinks, see :class:`.contact.Pressure`.
 
     Attributes:
-        alone: σ₀, that on the surface's solid alone.
-        more: what layers add to it.
+        alone: σ₀, the pressure on the surface's solid alone.
+        more: the pressure that layers add.
         places: of the kinks.
         finest: longest panel on which integrals of σ₀ with kernels are done.
-        rough: have kernels a logarithm at 0?
-        tips: those of the kinks at which the pressure is infinite.
+        rough: True where kernels have a logarithm at 0.
+        tips: kinks at which the pressure is infinite.
     """
 
     alone: FreeEnds
@@ -307,11 +302,11 @@ class Kinked:
         return without_weight(self.alone, self.α, self.β, self._off(r)) + self.more.series(r)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        found, under = self.more.rest(r, near), np.abs(r) < 1.0
+        values, under = self.more.rest(r, near), np.abs(r) < 1.0
         # cot(πα) = Q/n turns σ₀ under the punch into f/n.
-        found[under] += self.alone.slope(r[under]) / self.alone.n
-        found[~under] += self.alone.hilbert(r[~under])
-        return found
+        values[under] += self.alone.slope(r[under]) / self.alone.n
+        values[~under] += self.alone.hilbert(r[~under])
+        return values
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         return self.more.integral(kernel, r) + integral(self._alone, kernel, r, self.rough)
@@ -322,7 +317,7 @@ class Kinked:
         return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
 
     def _off(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions, none where the pressure is infinite."""
+        """Positions, moved off tips where the pressure is infinite, (len(r),)."""
         for tip in self.tips:
             side = np.where(r < tip, -1.0, 1.0)
             r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
@@ -332,9 +327,9 @@ class Kinked:
 def without_weight(alone: FreeEnds, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
     """σ₀ over the weight (1 - r)^α (1 + r)^β, which is 0 from both ends on."""
     r, inside = np.asarray(r, dtype=float), np.abs(r) < 1.0
-    found, at = np.zeros_like(r), r[inside]
-    found[inside] = alone.σ_YY(at) * (1.0 - at) ** -α * (1.0 + at) ** -β
-    return found
+    values, at = np.zeros_like(r), r[inside]
+    values[inside] = alone.σ_YY(at) * (1.0 - at) ** -α * (1.0 + at) ** -β
+    return values
 
 
 def on_panels(
@@ -352,18 +347,18 @@ def integral(
     if rough:
         return pressure.integral(kernel, r)
     t, σ = pressure.panels.t, pressure.panels.weights * pressure.p
-    some = [r[first : first + _TOGETHER] for first in range(0, len(r), _TOGETHER)]
-    return np.concatenate([np.einsum("rtf,t->rf", kernel(part[:, None] - t), σ) for part in some])
+    batches = [r[first : first + _TOGETHER] for first in range(0, len(r), _TOGETHER)]
+    return np.concatenate([np.einsum("rtf,t->rf", kernel(part[:, None] - t), σ) for part in batches])
 
 
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
 ) -> tuple[Kinked, float]:
-    """The pressure of a contact with kinks, and what :func:`vanishing` tells.
+    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
         equation: of the contact, with its slope.
-        resolution: how finely it is solved.
+        resolution: number of polynomials, or longest panel.
         punch: the punch.
         m, h: middle and half-width.
     """
@@ -381,31 +376,31 @@ def kinked(
     )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
-    known = on_panels(alone, equation.α, equation.β, longest, places)
+    on_surface = on_panels(alone, equation.α, equation.β, longest, places)
 
     def of_layers(r: NDArray) -> NDArray[np.float64]:
-        by_kernel = integral(known, equation.kernel, r, rough)
+        by_kernel = integral(on_surface, equation.kernel, r, rough)
         return mean - by_kernel[:, 3] - equation.g * by_kernel[:, 2]
 
     more = Equation(equation.response, equation.kernel, equation.g, of_layers, places)
     tips = places if jumps(profile) else ()
-    added, left = vanishing(more, resolution, -2.0 - carried)
-    return Kinked(alone, added, places, longest, rough, tips), left
+    added, taken = vanishing(more, resolution, -2.0 - carried)
+    return Kinked(alone, added, places, longest, rough, tips), taken
 
 
-#: Distances from a free end at which pressures are compared besides, places between, and how much more
-#: they have to agree there.
+#: Distances from a free end at which pressures are compared too, places between the ends, and the factor
+#: by which they have to agree better next to ends.
 _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 
 
 @dataclass(frozen=True)
 class Contact(Found):
-    """A pressure with the contact that it was found for; lengths are over one that all states share.
+    """A pressure with its contact; lengths are over a unit that all states share.
 
     Attributes:
         half_width: of the contact.
         centre: its middle, from the punch's axis.
-        free: were the left and the right end found?
+        free: True where the left and the right end are free, and were solved for.
     """
 
     half_width: float = 1.0
@@ -414,39 +409,39 @@ class Contact(Found):
 
 
 @dataclass(frozen=True)
-class Tried:
-    """A contact with so many unknowns.
+class ContactAtResolution:
+    """A contact at one resolution.
 
     Attributes:
         h, m: half-width and middle.
         pressure: the contact's.
-        left: share of it that was taken away so that no intensity is left at free ends.
-        free: were the left and the right end found?
+        correction: of the pressure, relative, by which no intensity remains at free ends.
+        free: True where the left and the right end are free.
     """
 
     h: float
     m: float
     pressure: Pressure
-    left: float = 0.0
+    correction: float = 0.0
     free: tuple[bool, bool] = (True, True)
 
-    def moved(self, before: "Tried") -> float:
-        """What changed since then: the lengths, and the pressure, next to free ends with a factor.
+    def moved(self, before: "ContactAtResolution") -> float:
+        """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
 
-        In-plane stresses follow it with one there.
+        In-plane stresses follow the pressure with such a factor there.
         """
         lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
         ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
         at = np.concatenate([*ends, _ACROSS])
-        one, other = (
+        earlier, later = (
             (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
         )
-        near = np.abs(one - other)[: -len(_ACROSS)].max(initial=0.0) / np.abs(other).max()
+        near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
         return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
 
     @cached_property
     def settled(self) -> Pressure:
-        """The pressure, made to vanish at free ends where panels leave digits."""
+        """The pressure, continued to zero at free ends where panels resolve it less well."""
         pressure, free = self.pressure, self.free
         if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
             return replace(pressure, more=pressure.more.vanishing(free))
@@ -455,42 +450,44 @@ class Tried:
 
 @dataclass(frozen=True)
 class Contacts(Frictions):
-    """Contacts with some frictions, from which those with others are interpolated."""
+    """Contacts with several frictions, from which those with others are interpolated."""
 
     each: list[Any]
 
     @cached_property
     def half_width(self) -> NDArray[np.float64]:
-        """Of every contact, (nodes,)."""
-        return np.array([one.half_width for one in self.each])
+        """Half-width of every contact, (nodes,)."""
+        return np.array([contact.half_width for contact in self.each])
 
     @cached_property
     def centre(self) -> NDArray[np.float64]:
         """Middle of every contact, (nodes,)."""
-        return np.array([one.centre for one in self.each])
+        return np.array([contact.centre for contact in self.each])
 
     @cached_property
     def free(self) -> NDArray[np.float64]:
-        """1 where the left and the right end were found, 0 at others, (nodes, 2)."""
-        return np.array([one.free for one in self.each], dtype=float)
+        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
+        return np.array([contact.free for contact in self.each], dtype=float)
 
     @cached_property
     def tips(self) -> NDArray[np.float64]:
         """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
-        each = [one.pressure.tips for one in self.each]
-        found = np.full((len(each), max(map(len, each))), np.inf)
-        for row, tips in zip(found, each):
+        each = [contact.pressure.tips for contact in self.each]
+        places = np.full((len(each), max(map(len, each))), np.inf)
+        for row, tips in zip(places, each):
             row[: len(tips)] = tips
-        return found
+        return places
 
     def of_each(self, what: Callable[[Pressure, float, float], NDArray]) -> NDArray[np.float64]:
-        """What is read off every pressure, its friction and half-width, and off that with fewer unknowns,
-        (2, nodes, ...)."""
+        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
+
+        Those of every contact come first, then those of the pressures with fewer unknowns.
+        """
         nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
         return np.array(
             [
-                [what(one.pressure, g, h) for one, g, h in nodes],
-                [what(one.before, g, h) for one, g, h in nodes],
+                [what(contact.pressure, g, h) for contact, g, h in nodes],
+                [what(contact.before, g, h) for contact, g, h in nodes],
             ]
         )
 
@@ -501,21 +498,21 @@ class Contacts(Frictions):
         return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
 
-#: Accuracy of a half-width that others are told over.
+#: Accuracy of a half-width at rest, over which others are given.
 _AT_REST = 1e-5
-#: And with which it is told whether an edge has lifted off.
+#: Accuracy with which an edge counts as lifted off.
 _OF_ENDS = 1e-6
-#: How much farther kernels are tabulated than the largest contact so far asks for.
+#: Reach of tabulated kernels over that which the largest contact so far needs.
 _KERNEL_MARGIN = 1.5
 
 
 @dataclass(frozen=True)
 class FoundSpeed(Speed):
-    """What all frictions at a speed share, of a punch whose contact ends where the pressure says.
+    """Contacts with free ends and any friction at one speed, which share kernels.
 
     Attributes:
-        punch: the punch; ``slope`` of :class:`Speed` is not asked.
-        every: is each friction solved, however many there are?
+        punch: the punch; ``slope`` of :class:`Speed` is not used.
+        every: solve each friction, however many there are.
     """
 
     punch: Any = None
@@ -527,7 +524,7 @@ class FoundSpeed(Speed):
 
     @property
     def kernel(self) -> Kernel:
-        """With lengths over the shared one."""
+        """The kernel with lengths over the shared unit."""
         return self._kernels[-1]
 
     def scaled(self, h: float) -> Scaled:
@@ -546,84 +543,84 @@ class FoundSpeed(Speed):
         return Contacts(g, each)
 
     def _each(self, g: NDArray) -> list[Found]:
-        found: list[Found] = []
+        answers: list[Found] = []
         h = 1.0
         for value in g.tolist():
-            one = self.contact(value, h)
-            h = one.half_width
-            found.append(one)
-        return found
+            contact = self.contact(value, h)
+            h = contact.half_width
+            answers.append(contact)
+        return answers
 
     def contact(self, g: float, h: float = 1.0) -> Contact:
         """The contact with a friction.
 
         Args:
             g: σ_XY/σ_YY.
-            h: half-width near by.
+            h: half-width to begin with.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
         """
         check_exponents(self._equation(g, 1.0))
-        before, left = None, np.inf
-        for resolution in ever_finer(self.kernel.rough, FIRST):
-            now = self._tried(g, h, resolution)
+        before, error = None, np.inf
+        for resolution in resolutions(self.kernel.rough, FIRST):
+            now = self._at_resolution(g, h, resolution)
             h = now.h
             if before is not None:
-                left = max(now.moved(before), now.left)
-                if met(left, self.tolerance):
+                error = max(now.moved(before), now.correction)
+                if is_converged(error, self.tolerance):
                     unit = self.punch.unit
                     check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))
-                    return Contact(now.settled, before.settled, left, h, now.m, now.free)
+                    return Contact(now.settled, before.settled, error, h, now.m, now.free)
             before = now
-        raise not_met(left, self.tolerance)
+        raise not_converged(error, self.tolerance)
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _tried(self, g: float, h: float, resolution: Resolution) -> Tried:
-        """With so many unknowns."""
+    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+        """Contact at a resolution, from the half-width h on."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
 
         h, m = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
-            return Tried(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return Tried(h, m, *vanishing(equation, resolution))
+            return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
+        return ContactAtResolution(h, m, *vanishing(equation, resolution))
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
-        """Half-width and middle between two free ends."""
+        """Half-width and middle of a contact with two free ends."""
 
         def at(x: float) -> tuple[float, float]:
             h = float(np.exp(x))
-            here = conditions(self._equation(g, h), resolution, self.punch, h)
-            m = here.middle()
-            return here.off(m), m
+            both = conditions(self._equation(g, h), resolution, self.punch, h)
+            m = both.middle()
+            return both.off(m), m
 
         x, m = balanced(at, float(np.log(h)))
         return float(np.exp(x)), m
 
     def half_width(self) -> float:
-        """Of the contact without friction; its pressure is not asked.
+        """Half-width of the contact without friction; its pressure is not computed.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
         """
-        h, left = 1.0, np.inf
-        for resolution in ever_finer(self.kernel.rough, FIRST):
+        h, error = 1.0, np.inf
+        for resolution in resolutions(self.kernel.rough, FIRST):
             before = h
             if isinstance(self.punch.profile, Flat):
                 h = self._tilted(0.0, h, resolution).h
             else:
                 h, _ = self._lengths(0.0, h, resolution)
-            left = abs(h / before - 1.0)
-            if met(left, self.tolerance):
+            error = abs(h / before - 1.0)
+            if is_converged(error, self.tolerance):
                 return h
-        raise not_met(left, self.tolerance)
+        raise not_converged(error, self.tolerance)
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> Tried:
-        """Of a tilted flat punch, the higher edge of which may have lifted off."""
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+        """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
         side = 1 if rise > 0.0 else 0
@@ -640,43 +637,45 @@ class FoundSpeed(Speed):
         off, (parts, _) = at(float(np.log(whole)))
         if off <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
-            return Tried(whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False))
+            return ContactAtResolution(
+                whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False)
+            )
         x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
         h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
         m = float(np.sign(rise)) * (h - whole)
-        return Tried(h, m, pressure, free=(side == 0, side == 1))
+        return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
 
 
 def local_exponents(
     response: Any, g: NDArray, profile: Any, unit: float, compression: NDArray
 ) -> Exponents | FlatPunch:
-    """What the local analysis says of the ends: those of the surface's solid, one more at free ends.
+    """Exponents at both ends by local analysis: those of the surface's solid, plus 1 at free ends.
 
     Args:
         response: of the layers at a speed.
         g: σ_XY/σ_YY, (states,).
         profile: of the punch.
-        unit: length to solve with where that is needed [m].
-        compression: N/μ of all or of each [m].
+        unit: unit of length, where the equation has to be solved [m].
+        compression: N/μ, one for all states or one for each [m].
     """
     if not (isinstance(profile, Flat) and profile.rise):
         return of_the_surface(response, g, profile, compression)
     flat, free = FlatPunch(response, g), np.zeros((len(g), 2))
     each = np.broadcast_to(compression, g.shape)
     for N in np.unique(each).tolist():
-        punch, some = Punch(profile, unit, N), each == N
+        punch, rows = Punch(profile, unit, N), each == N
         speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
         try:
-            free[some] = [speed.contact(value).free for value in g[some].tolist()]
+            free[rows] = [speed.contact(value).free for value in g[rows].tolist()]
         except SolveError:
-            continue  # told of by the method that solves
-    left, right = free.T
-    return Exponents(flat.α + right, flat.β + left)
+            continue  # reported by the method that solves
+    free_left, free_right = free.T
+    return Exponents(flat.α + free_right, flat.β + free_left)
 
 
 @lru_cache(maxsize=256)
 def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> float:
-    """Half-width [m] of a contact at rest without friction, to some digits: what others are told over.
+    """Half-width [m] of a contact at rest without friction, to five digits, over which others are given.
 
     Args:
         solid: the layers.

@@ -1,8 +1,7 @@
-"""Layers as finite elements see them: constants cell by cell, and how the far boundary moves.
+"""Layers in finite elements: constants cell by cell, and the motion of the far boundary.
 
-How layers on a substrate move far from a load: as under line loads, and what the layers do to that.
-
-With t the loads of a field e^(ikX), Z₋ of the substrate, and through layers that are thin beside 1/k
+Far from a load, layers on a substrate move as under line loads, and by what the layers add to that. With
+t the loads of a field e^(ikX), Z₋ of the substrate, and through layers that are thin beside 1/k
 
     t' = k² A u - ik B t,   u' = -ik Bᵀ u + T⁻¹ t,   A = Q - R T⁻¹ Rᵀ,   B = R T⁻¹   (Y upwards),
 
@@ -11,7 +10,7 @@ the substrate, whose surface lies at the depth D, carries t + k E t and moves th
     u = Z₋⁻¹ t/k + Z₋⁻¹ E t + O(k),   E = -∫ (A Z₋⁻¹ - i B) dY,
 
 a height inside the layers by ∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY t more. The first term is the line load's
-logarithm, the others fall like 1/X; what is left falls like its square.
+logarithm, the others fall like 1/X; the remainder falls like its square.
 """
 
 from collections.abc import Callable, Sequence
@@ -46,16 +45,18 @@ class FarField:
     through: Callable[[float], NDArray[np.float64]]
 
     def __call__(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Under ∫σ_YY = 1 and ∫σ_XY = 1, relative to where layers are no longer seen: (2, 2, n)."""
+        """Displacements under ∫σ_YY = 1 and ∫σ_XY = 1, relative to a distant datum: (2, 2, n)."""
         below, datum = np.minimum(Y + self.D, 0.0), DATUM * max(1.0, self.length)
-        (found,) = line_loads(self.substrate.response, X, below, datum=datum) / self.substrate.modulus
+        (displacement,) = (
+            line_loads(self.substrate.response, X, below, datum=datum) / self.substrate.modulus
+        )
         z = X[:, None, None] * np.eye(2) + below[:, None, None] * self.substrate.G.conj()
         heights, which = np.unique(np.maximum(Y, -self.D), return_inverse=True)
         more = np.array([self._moved(height) for height in heights.tolist()])[which]
         w = inverse(z) @ (self._below + more)
-        for load, t in zip(found, LOADS):
+        for load, t in zip(displacement, LOADS):
             load += (1j * w @ t).real.T / np.pi
-        return found
+        return displacement
 
     @cached_property
     def _compliance(self) -> NDArray[np.complex128]:
@@ -63,48 +64,49 @@ class FarField:
 
     @property
     def length(self) -> float:
-        """Over which the layers are seen, over a: of the terms beside the line load's."""
+        """Length over a on which the terms that layers add to the line load's vary."""
         moved, compliance, loaded = (
-            float(np.linalg.norm(one, 2)) for one in (self._moved(0.0), self._compliance, self._loaded)
+            float(np.linalg.norm(matrix, 2))
+            for matrix in (self._moved(0.0), self._compliance, self._loaded)
         )
         return max(self.D, moved / compliance, loaded)
 
     @cached_property
     def _loaded(self) -> NDArray[np.complex128]:
-        """E."""
+        """Matrix E of the load on the substrate, (2, 2)."""
         A, B, _ = self.through(0.0)
         return np.asarray(1j * B - A @ self._compliance)
 
     @cached_property
     def _below(self) -> NDArray[np.complex128]:
-        """Z₋⁻¹ E."""
+        """Matrix Z₋⁻¹ E of the motion of the substrate, (2, 2)."""
         return np.asarray(self._compliance @ self._loaded)
 
     def _moved(self, height: float) -> NDArray[np.complex128]:
-        """∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY from the substrate up to a height."""
+        """∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY from the substrate up to a height over a, (2, 2)."""
         _, B, T_inverse = self.through(height)
         return np.asarray(T_inverse - 1j * B.T @ self._compliance)
 
 
 #: Columns of tables of constants: stiffness row by row, the speed, and the density.
 _COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26", "c66", "c", "ρ"))}
-#: Points at which a graded solid is tabulated at first and at most, and what may be left between them.
+#: Points at which a graded solid is tabulated at first and at most, and its error between them.
 _FEW, _MANY, _LEFT = 9, 257, 1e-13
 
 #: Gauss's rule over a layer's thickness.
 _τ, _w = leggauss(24)
-#: Share of a depth by which it is no longer that of an interface.
+#: Relative distance of a depth from an interface beyond which it is not that of the interface.
 _BESIDE = 1e-12
 
 
 @dataclass(frozen=True)
 class LayersInCells(LayeredResponse):
-    """The same as finite elements see it, whose cells have constants of their own.
+    """Layers at a speed for finite elements, whose cells have constants of their own.
 
     See :class:`galinx.solvers.solids.solid.ByCells`.
 
     Attributes:
-        a: length that lengths are divided by [m].
+        a: unit of length [m].
     """
 
     a: float = 1.0
@@ -117,7 +119,7 @@ class LayersInCells(LayeredResponse):
 
     @cached_property
     def _tables(self) -> list[NDArray[np.float64]]:
-        """Of each solid the columns of ``_COLUMNS`` at points of its share of change, (8, n)."""
+        """Tables of each solid: ``_COLUMNS`` at Chebyshev's points of its share of change, (8, n)."""
         layers = [*self.solid.layers, Layer(1.0, self.solid.substrate)]
         return [self._table(layer) for layer in layers]
 
@@ -148,11 +150,11 @@ class LayersInCells(LayeredResponse):
         C = np.empty((len(Y), 3, 3))
         row, column = np.triu_indices(3)
         for i in np.unique(solid).tolist():
-            here = solid == i
-            values = interpolation(self.share(i, Y[here]), self._tables[i].shape[1]) @ self._tables[i].T
-            some = np.empty((len(values), 3, 3))
-            some[:, row, column] = some[:, column, row] = values[:, : len(row)]
-            C[here] = some
+            points = solid == i
+            values = interpolation(self.share(i, Y[points]), self._tables[i].shape[1]) @ self._tables[i].T
+            stiffnesses = np.empty((len(values), 3, 3))
+            stiffnesses[:, row, column] = stiffnesses[:, column, row] = values[:, : len(row)]
+            C[points] = stiffnesses
         strain = np.stack([G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]], axis=-1)
         return np.moveaxis(np.einsum("nij,...nj->...ni", C, strain, optimize=True), -1, 0)
 
@@ -161,12 +163,12 @@ class LayersInCells(LayeredResponse):
 
     @cached_property
     def far_field(self) -> FarField:
-        """Under line loads."""
+        """Displacements far from line loads at the origin."""
         return FarField(self.medium(self.solid.substrate), float(self._faces[-1]), self._through)
 
     def _through(self, height: float) -> NDArray[np.float64]:
         """∫ A, ∫ B and ∫ T⁻¹ of the far field up to a height over a, (3, 2, 2)."""
-        found = np.zeros((3, 2, 2))
+        integrals = np.zeros((3, 2, 2))
         for i in range(len(self.solid.layers)):
             bottom, top = -self._faces[i + 1], min(-self._faces[i], height)
             if top <= bottom:
@@ -182,15 +184,15 @@ class LayersInCells(LayeredResponse):
             T_inverse = np.linalg.inv(T)
             B = R @ T_inverse
             parts = np.array([Q - B @ R.swapaxes(1, 2), B, T_inverse])
-            found += (top - bottom) / 2.0 * np.einsum("q,nqij->nij", _w, parts)
-        return found
+            integrals += (top - bottom) / 2.0 * np.einsum("q,nqij->nij", _w, parts)
+        return integrals
 
 
 def _tabulated(of: Callable[[float], NDArray], uniform: bool) -> NDArray[np.float64]:
-    """What a solid's constants are at points of its share of change, (columns, points).
+    """Constants of a solid at Chebyshev's points of its share of change, (columns, points).
 
     Raises:
-        SolveError: they change too much.
+        SolveError: constants change too much.
     """
     count = 1 if uniform else _FEW
     while count <= _MANY:
@@ -205,7 +207,7 @@ def _tabulated(of: Callable[[float], NDArray], uniform: bool) -> NDArray[np.floa
 
 
 def stiffness(solid: Solid) -> NDArray[np.float64]:
-    """σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY [Pa], (3, 3)."""
+    """Stiffness of σ_XX, σ_YY, σ_XY against ε_XX, ε_YY, 2ε_XY [Pa], (3, 3)."""
     response = solid.response(0.0)
     strains = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 0.0]]])
     return np.asarray(solid.μ * response.stresses(strains))

@@ -1,24 +1,23 @@
-"""The kernel by which a layered half-plane differs from one of its surface's solid.
+"""Kernels of a layered half-plane: on its surface and at a depth, and the transforms behind them.
+
+The kernel by which a layered half-plane differs from one of its surface's solid (:class:`Kernel`) is
 
     K(x) = (1/π) Re ∫₀^∞ ΔŶ(k) e^(ikx) dk,
 
-four functions that no friction changes. ΔŶ falls exponentially under uniform layers. Where the solid at
-the surface is graded it falls like A/k: that part, with (1 - e^(-bk))/k for 1/k, is
+four functions that do not depend on friction. ΔŶ falls exponentially under uniform layers. Where the
+solid at the surface is graded it falls like A/k: that part, with (1 - e^(-bk))/k for 1/k, is
 
     (1/π) [Re A log(1 + b²/x²)/2 - Im A arctan(b/x)].
 
-Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of functions that are smooth piece by piece.
+Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of functions that are smooth piece by piece (:class:`Transform`)
+are taken on panels. There f is a sum of Legendre polynomials, whose integrals with e^(ikx) are spherical
+Bessel functions: the panels depend on f alone, and any x costs the same. Functions that are evaluated
+many times are tabulated by polynomials on panels, fine towards 0 (:class:`Table`).
 
-On panels f is a sum of Legendre polynomials, whose integrals with e^(ikx) are spherical Bessel functions:
-what decides about the panels is f alone, and any x costs the same.
-
-Functions on an interval by polynomials on panels, fine towards 0, to be looked up many times.
-
-Strain and tractions at a depth of a layered half-plane, by the pressure on top.
-
-For the field e^(ikX) the tractions t on top displace it by Z⁻¹ t/k; what is carried down to a depth has
-the stiffness Z of what is below there. These transforms fall like e^(-k d): kernels in X follow, as
-regular as the depth d allows.
+Strain and tractions at a depth follow from the pressure on top (:class:`Level`). For the field e^(ikX)
+the tractions t on top displace it by Z⁻¹ t/k; the field carried down to a depth has the stiffness Z of
+what is below there. These transforms fall like e^(-k d): kernels in X follow, as regular as the depth d
+allows.
 """
 
 from collections.abc import Callable
@@ -36,11 +35,11 @@ from ..errors import SolveError
 from .layered import Stack
 from .stiffness import Medium, Uniform, inverse
 
-#: Gauss points of a panel, their weights, from values to coefficients of Legendre polynomials.
+#: Gauss points of a panel, their weights, and the matrix from values to Legendre coefficients.
 _NODES = 16
 _τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
-#: Coefficients that tell how well a panel is resolved; most panels, and rounds of halving them; octaves
-#: that are taken at once.
+#: Number of last coefficients that estimate a panel's error; most panels, and rounds of halving them;
+#: octaves that are taken at once.
 _LAST, _MOST, _ROUNDS, _AT_ONCE = 3, 4000, 60, 9
 #: Positions whose integrals are taken at once, in numbers held.
 _TOGETHER = 400_000
@@ -48,12 +47,12 @@ _TOGETHER = 400_000
 
 @dataclass(frozen=True)
 class Transform:
-    """Such integrals of several functions.
+    """Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of several functions f.
 
     Attributes:
-        middle, half: of the panels, (panels,).
+        middle, half: middles and half-lengths of the panels, (panels,).
         coefficients: of Legendre polynomials, (panels, nodes, functions).
-        error: of the integrals, by what the last coefficients and the last panel are.
+        error: of the integrals, estimated by the last coefficients and the last panel.
         size: integral of the largest |f|.
     """
 
@@ -66,16 +65,16 @@ class Transform:
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The integrals at positions, (..., functions)."""
         flat = np.ravel(np.asarray(x, dtype=float))
-        found = np.empty((len(flat), self.coefficients.shape[-1]))
+        integrals = np.empty((len(flat), self.coefficients.shape[-1]))
         many = max(_TOGETHER // (len(self.half) * _NODES), 1)
         turned = self.coefficients * (2.0 * 1j ** np.arange(_NODES))[:, None]
         for first in range(0, len(flat), many):
-            some = flat[first : first + many]
-            bessel = spherical_bessel(_NODES, np.outer(some, self.half))
-            phase = self.half * np.exp(1j * np.outer(some, self.middle))
+            positions = flat[first : first + many]
+            bessel = spherical_bessel(_NODES, np.outer(positions, self.half))
+            phase = self.half * np.exp(1j * np.outer(positions, self.middle))
             weights = bessel * phase[..., None]
-            found[first : first + many] = np.tensordot(weights, turned, 2).real / np.pi
-        return found.reshape(*np.shape(x), -1)
+            integrals[first : first + many] = np.tensordot(weights, turned, 2).real / np.pi
+        return integrals.reshape(*np.shape(x), -1)
 
 
 def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
@@ -84,13 +83,13 @@ def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
     Upwards where |z| is larger than the order, downwards from where they vanish elsewhere.
     """
     size = np.abs(z)
-    found = np.empty((*z.shape, count))
+    bessel = np.empty((*z.shape, count))
     far = size > count
     safe = np.where(far, z, 1.0)
-    found[..., 0] = np.sin(safe) / safe
-    found[..., 1] = (found[..., 0] - np.cos(safe)) / safe
+    bessel[..., 0] = np.sin(safe) / safe
+    bessel[..., 1] = (bessel[..., 0] - np.cos(safe)) / safe
     for n in range(1, count - 1):
-        found[..., n + 1] = (2 * n + 1) / safe * found[..., n] - found[..., n - 1]
+        bessel[..., n + 1] = (2 * n + 1) / safe * bessel[..., n] - bessel[..., n - 1]
     near = z[~far]
     tiny = np.abs(near) < 1e-8
     safe = np.where(tiny, 1.0, near)
@@ -113,14 +112,14 @@ def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
     falling *= scale[:, None]
     falling[tiny] = np.eye(1, count)[0]
     falling[tiny, 1] = near[tiny] / 3.0
-    found[~far] = falling
-    return found
+    bessel[~far] = falling
+    return bessel
 
 
 def transform(
     f: Callable[[NDArray], NDArray], first: float, tolerance: float, scale: float = 0.0
 ) -> Transform:
-    """Panels on which f is resolved.
+    """Transform of f, on panels on which f is resolved.
 
     Args:
         f: of wavenumbers (n,), gives (n, functions).
@@ -141,7 +140,7 @@ def transform(
         c = _TO_LEGENDRE @ values.reshape(len(waiting), _NODES, -1)
         tails = 2.0 * halves * np.abs(c[:, -_LAST:]).max(axis=(1, 2))
         done += zip(middles.tolist(), halves.tolist(), c, tails.tolist())
-        wholes = [2.0 * half * np.abs(one).max() for _, half, one, _ in done]
+        wholes = [2.0 * half * np.abs(panel).max() for _, half, panel, _ in done]
         size = max(float(sum(wholes)), scale)
         rough = [tail > tolerance * size / 10.0 for *_, tail in done]
         last = edges[-1]
@@ -152,7 +151,7 @@ def transform(
             if again
             for side in ((middle - half, middle), (middle, middle + half))
         ]
-        done = [one for one, again in zip(done, rough) if not again]
+        done = [panel for panel, again in zip(done, rough) if not again]
         if not waiting and end > tolerance * size / 10.0:
             edges = last * 2.0 ** np.arange(_AT_ONCE)
             waiting = list(pairwise(edges))
@@ -165,21 +164,21 @@ def transform(
     raise SolveError("the stiffness of the surface is no smooth function of the wavenumber")
 
 
-#: Nodes of a panel, Chebyshev's, and from values there to coefficients.
+#: Chebyshev nodes of a panel, and the matrix from values there to coefficients.
 _x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(_x, _NODES - 1))
-#: Coefficients that tell how well a panel is resolved; most panels.
+#: Number of last coefficients that estimate a panel's error; most panels.
 _LAST_OF_PANEL, _MOST_PANELS = 3, 6000
 
 
 @dataclass(frozen=True)
 class Table:
-    """Functions by position.
+    """Functions tabulated by position.
 
     Attributes:
         ends: of the panels, rising, (panels + 1,).
         coefficients: of Chebyshev polynomials, (panels, nodes, functions).
-        error: absolute, by the last coefficients.
+        error: absolute, estimated by the last coefficients.
     """
 
     ends: NDArray[np.float64]
@@ -187,19 +186,19 @@ class Table:
     error: float
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
-        """Values, (..., functions)."""
+        """Values at positions, (..., functions)."""
         x = np.asarray(x, dtype=float)
         flat = x.ravel()
         panel = np.clip(np.searchsorted(self.ends, flat) - 1, 0, len(self.ends) - 2)
-        left, right = self.ends[panel], self.ends[panel + 1]
-        T = chebyshev.chebvander((2.0 * flat - left - right) / (right - left), _NODES - 1)
-        found = np.empty((len(flat), self.coefficients.shape[-1]))
+        start, end = self.ends[panel], self.ends[panel + 1]
+        T = chebyshev.chebvander((2.0 * flat - start - end) / (end - start), _NODES - 1)
+        values = np.empty((len(flat), self.coefficients.shape[-1]))
         # Panel by panel: to gather coefficients for every position would take longer than to use them.
         order = np.argsort(panel, kind="stable")
         met, first = np.unique(panel[order], return_index=True)
-        for i, some in zip(met.tolist(), np.split(order, first[1:])):
-            found[some] = T[some] @ self.coefficients[i]
-        return found.reshape(*x.shape, found.shape[-1])
+        for i, rows in zip(met.tolist(), np.split(order, first[1:])):
+            values[rows] = T[rows] @ self.coefficients[i]
+        return values.reshape(*x.shape, values.shape[-1])
 
 
 def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:
@@ -230,12 +229,12 @@ def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tole
         waiting = np.concatenate([np.hstack([rough[:, :1], middle]), np.hstack([middle, rough[:, 1:]])])
         if len(done) + len(waiting) > _MOST_PANELS:
             raise SolveError("the kernel of the layers varies too much to be tabulated")
-    done.sort(key=lambda one: one[0])
-    left, _, coefficients, tails = zip(*done)
-    return Table(np.append(left, reach), np.array(coefficients), max(tails))
+    done.sort(key=lambda panel: panel[0])
+    starts, _, coefficients, tails = zip(*done)
+    return Table(np.append(starts, reach), np.array(coefficients), max(tails))
 
 
-#: Positions over a that are asked for at most: differences of places on the surface.
+#: Largest position over a: differences of places on the surface.
 REACH = 6.5
 #: First panel of wavenumbers over the inverse of the total thickness.
 _FIRST = 0.2
@@ -244,13 +243,13 @@ ROUNDING = 2e-13
 
 
 def wavenumbers(stack: Stack) -> float:
-    """End of the first panel of wavenumbers."""
+    """End of the first panel of wavenumbers, times a."""
     return _FIRST / float(stack.depths[-1])
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """Kernels of a stack: u,X by σ_XY, u,X by σ_YY, v,X by σ_XY, v,X by σ_YY, times μ.
+    """Kernels of layers on a substrate: u,X by σ_XY, u,X by σ_YY, v,X by σ_XY, v,X by σ_YY, times μ.
 
     Attributes:
         stack: layers with their substrate at a speed.
@@ -264,7 +263,7 @@ class Kernel:
 
     @cached_property
     def order(self) -> NDArray[Any]:
-        """A: what k ΔŶ tends to for large k, (4,); 0 under a uniform layer."""
+        """Limit A of k ΔŶ for large k, (4,); 0 under a uniform layer."""
         if not self.stack.layers:
             return np.zeros(4, dtype=complex)
         Y = inverse(self.stack.top.down)
@@ -272,7 +271,7 @@ class Kernel:
 
     @property
     def rough(self) -> bool:
-        """Has it a logarithm and a jump at 0?"""
+        """True where the kernel has a logarithm and a jump at 0."""
         return bool(np.any(self.order))
 
     @cached_property
@@ -280,21 +279,21 @@ class Kernel:
         return float(self.stack.layers[0].H)
 
     def _regular(self, k: NDArray) -> NDArray[Any]:
-        found = self.stack.admittance(k).reshape(-1, 4)
+        regular = self.stack.admittance(k).reshape(-1, 4)
         if self.rough:
-            found = found + self.order * (np.expm1(-k * self._b) / k)[:, None]
-        return found
+            regular = regular + self.order * (np.expm1(-k * self._b) / k)[:, None]
+        return regular
 
     @cached_property
     def transform(self) -> Transform:
-        """The regular part's."""
-        wanted = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
+        """Transform of the kernel without the logarithm and the jump."""
+        accuracy = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
         scale = float(np.abs(inverse(self.stack.top.down)).max())
-        return transform(self._regular, wavenumbers(self.stack), wanted, scale)
+        return transform(self._regular, wavenumbers(self.stack), accuracy, scale)
 
     @cached_property
     def table(self) -> Table:
-        """The regular part's, by position."""
+        """The kernel without the logarithm and the jump, tabulated by position."""
         allowed = max(self.tolerance, ROUNDING) * self.transform.size / np.pi
         finest = min(float(self.stack.layers[0].H), 1.0) / 4.0
         if self.rough:
@@ -303,26 +302,26 @@ class Kernel:
 
     @property
     def error(self) -> float:
-        """Absolute, of the kernel."""
+        """Absolute error of the kernel."""
         return self.transform.error / np.pi + self.table.error
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels at positions over a, none of them 0 where it is rough, (..., 4)."""
-        found = self.table(x)
+        kernels = self.table(x)
         if self.rough:
             ratio = self._b / np.asarray(x, dtype=float)[..., None]
             log = 0.5 * np.log1p(ratio**2)
-            found = found + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
-        return found
+            kernels = kernels + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
+        return kernels
 
 
 @dataclass(frozen=True)
 class Scaled:
-    """The same with lengths over another one: contacts of all sizes see one kernel.
+    """A kernel with lengths over another unit than a, so that contacts of all sizes share one kernel.
 
     Attributes:
         kernel: with lengths over a.
-        size: the other length over a.
+        size: the other unit over a.
     """
 
     kernel: Kernel
@@ -330,15 +329,15 @@ class Scaled:
 
     @property
     def rough(self) -> bool:
-        """Has it a logarithm and a jump at 0?"""
+        """True where the kernel has a logarithm and a jump at 0."""
         return self.kernel.rough
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
-        """The kernels, (..., 4)."""
+        """The kernels at positions over the other unit, (..., 4)."""
         return self.size * self.kernel(self.size * np.asarray(x, dtype=float))
 
 
-#: A depth over that of an interface that is still it.
+#: Relative distance of a depth from an interface within which it is that of the interface.
 _AT = 1e-12
 #: Numbers of differences of positions that are looked up at once: some megabytes.
 _DIFFERENCES_AT_ONCE = 60_000
@@ -346,7 +345,7 @@ _DIFFERENCES_AT_ONCE = 60_000
 
 @dataclass(frozen=True)
 class Level:
-    """A depth.
+    """Strain and tractions at a depth of a layered half-plane.
 
     Attributes:
         stack: layers with their substrate.
@@ -362,7 +361,7 @@ class Level:
 
     @cached_property
     def _parts(self) -> tuple[Stack, int]:
-        """The stack with an interface at the depth, and how many layers lie above that."""
+        """Layers with an interface at the depth, and the number of layers above it."""
         layers, top = list(self.stack.layers), 0.0
         for i, layer in enumerate(layers):
             bottom = top + layer.H
@@ -383,7 +382,7 @@ class Level:
         return stack.layers[above - 1].bottom, under
 
     def _of(self, k: NDArray) -> NDArray:
-        """u,X, σ_YY and σ_XY there by σ_XY and σ_YY on top, (n, 6)."""
+        """Transforms of u,X, σ_YY and σ_XY at the depth under σ_XY and σ_YY on top, (n, 6)."""
         stack, above = self._parts
         under = stack.below(k)
         carried = inverse(stack.top.down + stack.layers[0].excess(k, under[0]))
@@ -395,22 +394,22 @@ class Level:
         )  # fmt: skip
 
     @property
-    def _wanted(self) -> float:
+    def _accuracy(self) -> float:
         return max(self.tolerance / 100.0, ROUNDING)
 
     @cached_property
     def _transform(self) -> Transform:
         first = min(wavenumbers(self.stack), 1.0 / self.depth)
-        return transform(self._of, first, self._wanted)
+        return transform(self._of, first, self._accuracy)
 
     @cached_property
     def _table(self) -> Table:
-        allowed = self._wanted * self._transform.size / np.pi
+        allowed = self._accuracy * self._transform.size / np.pi
         return tabulated(self._transform, self.depth / 4.0, self.reach, allowed)
 
     @property
     def error(self) -> float:
-        """Absolute, of u,X, σ_YY and σ_XY under a pressure whose resultant is that of a punch, 2."""
+        """Absolute error of u,X, σ_YY and σ_XY under a pressure with the resultant of a punch, 2."""
         return 2.0 * (self._transform.error / np.pi + self._table.error)
 
     def read(
@@ -419,14 +418,14 @@ class Level:
         """u,X times μ, σ_YY and σ_XY at positions, (3, n).
 
         Args:
-            t, σ: of the pressure's rule.
+            t, σ: points of the pressure's rule, and weights times σ_YY there.
             g: σ_XY/σ_YY on top.
             X: positions.
-            size: length over a that ``t`` and ``X`` are over, and stresses.
+            size: unit over a of ``t``, ``X`` and stresses.
         """
-        found, step = np.empty((len(X), 6)), max(_DIFFERENCES_AT_ONCE // len(t), 1)
+        fields, step = np.empty((len(X), 6)), max(_DIFFERENCES_AT_ONCE // len(t), 1)
         for start in range(0, len(X), step):
-            some = slice(start, start + step)
-            found[some] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[some, None] - t)))
-        by_shear, by_pressure = found[:, 0::2], found[:, 1::2]
+            rows = slice(start, start + step)
+            fields[rows] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[rows, None] - t)))
+        by_shear, by_pressure = fields[:, 0::2], fields[:, 1::2]
         return np.asarray((g * by_shear + by_pressure).T)

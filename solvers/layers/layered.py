@@ -1,11 +1,12 @@
-"""Layers on a substrate as one solid: what all solvers ask of a solid, and its layers besides.
+"""Layers on a substrate as one solid: all that solvers need of a solid, and its layers besides.
 
-The highest speed over layers, and how fast waves along them run.
+:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`Stack` the
+layers at that speed with lengths over a, with the stiffness of their surface.
 
-Below it the stiffness against every wave, on the surface and inside, is positive; it falls with speed, so
-that the speed at which the smallest of all vanishes is found by bracketing.
-
-Layers on a substrate at one speed: the stiffness of their surface, and what it says of the speed.
+Below the highest speed over layers the stiffness against every wave, on the surface and inside, is
+positive; it falls with speed, so that the speed at which the smallest of all vanishes is found by
+bracketing (:func:`highest`), and so is the speed of the slowest wave of each wavelength
+(:func:`dispersion`).
 """
 
 from collections.abc import Callable, Sequence
@@ -27,7 +28,7 @@ class Stack:
     """Layers from the top down at a speed, lengths over a, stiffnesses over that of the surface's solid.
 
     Attributes:
-        layers: see :class:`galinx.solvers.layers.stiffness.Uniform` and ``graded.Graded``.
+        layers: see :class:`galinx.solvers.layers.stiffness.Uniform` and ``Graded`` there.
         substrate: the half-plane below them.
     """
 
@@ -41,7 +42,7 @@ class Stack:
 
     @cached_property
     def depths(self) -> NDArray[np.float64]:
-        """Of the interfaces, (layers,)."""
+        """Depths of the interfaces over a, (layers,)."""
         return np.cumsum([layer.H for layer in self.layers])
 
     def below(self, k: NDArray) -> list[NDArray[Any]]:
@@ -51,11 +52,11 @@ class Stack:
             k: wavenumbers times a, (n,).
         """
         Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
-        found = [Z]
+        stiffnesses = [Z]
         for layer in self.layers[:0:-1]:
             Z = layer.top.down + layer.excess(k, Z)
-            found.append(Z)
-        return found[::-1]
+            stiffnesses.append(Z)
+        return stiffnesses[::-1]
 
     def excess(self, k: NDArray) -> NDArray[Any]:
         """Stiffness of the surface less that of a half-plane of the solid there, (n, 2, 2)."""
@@ -76,35 +77,35 @@ class Stack:
         Z = self.top.down
         return np.asarray(-1j * inverse(Z + δ) @ δ @ inverse(Z))
 
-    def stands(self, k: NDArray) -> NDArray[np.float64]:
+    def min_stiffness(self, k: NDArray) -> NDArray[np.float64]:
         """Smallest stiffness against a wave with each wavenumber, on the surface or inside, (n,).
 
-        It falls with speed; where it is 0 that wave runs with the load, freely. Of waves that something
-        below gives way to no more is asked.
+        It falls with speed; where it is 0 that wave runs with the load, freely. Where something below
+        already gives way to a wave, the layers above are not evaluated.
         """
         for layer in self.layers:
             layer.check()
-        found, going = np.full(len(k), np.inf), np.arange(len(k))
+        smallest, going = np.full(len(k), np.inf), np.arange(len(k))
         Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
         for layer in self.layers[::-1]:
-            here = layer.stands(k[going], Z)
-            found[going] = np.minimum(found[going], np.where(np.isnan(here), -np.inf, here))
-            holds = found[going] > 0.0
+            in_layer = layer.min_stiffness(k[going], Z)
+            smallest[going] = np.minimum(smallest[going], np.where(np.isnan(in_layer), -np.inf, in_layer))
+            holds = smallest[going] > 0.0
             going = going[holds]
             if not len(going):
-                return found
+                return smallest
             Z = layer.top.down + layer.excess(k[going], Z[holds])
         surface = least(Z)
-        found[going] = np.minimum(found[going], np.where(np.isnan(surface), -np.inf, surface))
-        return found
+        smallest[going] = np.minimum(smallest[going], np.where(np.isnan(surface), -np.inf, surface))
+        return smallest
 
 
-#: Wavenumbers an octave at which stiffness is looked at, and over which range: kH of the whole, of the
+#: Wavenumbers per octave at which stiffness is evaluated, and their range: kH of all layers, of the
 #: thinnest layer.
 _DENSITY, _LONGEST, _SHORTEST = 6, 1e-3, 30.0
-#: Times that the neighbourhood of the smallest one is looked at again, and wavenumbers there.
+#: Number of refinements next to the smallest stiffness, and wavenumbers in each.
 _CLOSER, _THERE = 4, 9
-#: Steps at most; those below waves inside grow so much, from the second on.
+#: Most steps; growth of steps below waves inside, and the second of them.
 _STEPS, _STRIDE, _FIRST_STEP = 90, 2.0, 1e-4
 
 
@@ -113,7 +114,7 @@ def weakest(stack: Stack) -> tuple[float, float]:
     H = [layer.H for layer in stack.layers]
     k = wavenumbers(sum(H), min(H))
     for _ in range(_CLOSER):
-        values = stack.stands(k)
+        values = stack.min_stiffness(k)
         i = int(np.argmin(values))
         lowest, at = float(values[i]), float(k[i])
         if not lowest > 0.0 or i in (0, len(k) - 1):
@@ -125,24 +126,24 @@ def weakest(stack: Stack) -> tuple[float, float]:
 
 
 def wavenumbers(whole: float, thinnest: float) -> NDArray[np.float64]:
-    """From waves much longer than all layers to some much shorter than the thinnest."""
+    """Wavenumbers times a, from waves much longer than all layers to much shorter than the thinnest."""
     first, last = _LONGEST / whole, _SHORTEST / thinnest
     return np.geomspace(first, last, int(_DENSITY * np.log2(last / first)) + 1)
 
 
 def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> float:
-    """Highest speed at which nothing gives way.
+    """Highest speed at which the stiffness against every wave is positive.
 
-    Where something does, one wave says how much slower it has to be; that is asked again for the wave
-    that is weakest there.
+    Where one is not, the speed falls to that at which the weakest wave's stiffness vanishes, and the
+    weakest wave there is sought again.
 
     Args:
-        stack: of a speed; raises ValueError where some wave inside is not faster.
+        stack: gives the layers at a speed; raises ValueError where some wave inside is not faster.
         most: a speed that is no lower.
         accuracy: relative.
 
     Raises:
-        SolveError: nothing was found.
+        SolveError: there is no such speed.
     """
     speed, step = most, accuracy
     for _ in range(_STEPS):
@@ -159,19 +160,19 @@ def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> fl
             speed, step = speed * (1.0 - step), max(_STRIDE * step, _FIRST_STEP)
         if not 0.0 < step < 1.0:
             break
-    raise SolveError("no speed was found at which the layers stand; are their constants as meant?")
+    raise SolveError("no speed was found at which the layers are stable; are their constants as meant?")
 
 
 def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accuracy: float) -> float:
     """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
 
-    def stands(speed: float) -> float:
+    def min_stiffness(speed: float) -> float:
         try:
-            return float(stack(speed).stands(np.array([k]))[0])
+            return float(stack(speed).min_stiffness(np.array([k]))[0])
         except (ValueError, SolveError):
             return -np.inf
 
-    low, f_low, f_high, side = 0.0, stands(0.0), stands(high), 0
+    low, f_low, f_high, side = 0.0, min_stiffness(0.0), min_stiffness(high), 0
     for _ in range(_STEPS):
         if high - low <= accuracy * high:
             break
@@ -179,7 +180,7 @@ def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accu
         if np.isfinite(f_high) and f_high < 0.0:  # Illinois
             guess = (low * f_high - high * f_low) / (f_high - f_low)
             middle = guess if low < guess < high else middle
-        value = stands(middle)
+        value = min_stiffness(middle)
         if value > 0.0:
             low, f_low = middle, value
             f_high = f_high / 2.0 if side == 1 else f_high
@@ -191,7 +192,7 @@ def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accu
     return low
 
 
-#: Speeds over the highest at which each wave's stiffness is looked at first, and steps from there.
+#: Speeds over the highest at which each wave's stiffness is evaluated first, and steps from there.
 _SPEEDS = np.concatenate([[0.0], 1.0 - np.geomspace(1.0, 1e-9, 40)[1:]])
 _CLOSE = 60
 
@@ -199,41 +200,41 @@ _CLOSE = 60
 def dispersion(
     stack: Callable[[float], Stack], most: float, k: NDArray, accuracy: float
 ) -> NDArray[np.float64]:
-    """Speed of the slowest wave with each wavenumber; NaN where it is no slower than waves inside.
+    """Speed of the slowest wave with each wavenumber, (n,); NaN where it is no slower than waves inside.
 
     Args:
-        stack: of a speed; raises ValueError where some wave inside is not faster.
-        most: a speed at which one is not.
+        stack: gives the layers at a speed; raises ValueError where some wave inside is not faster.
+        most: a speed at which some wave inside is not faster.
         k: wavenumbers times a, (n,).
         accuracy: relative.
     """
 
-    def stands(speed: float, some: NDArray) -> NDArray[np.float64]:
+    def min_stiffness(speed: float, k_waves: NDArray) -> NDArray[np.float64]:
         try:
-            return stack(speed).stands(some)
+            return stack(speed).min_stiffness(k_waves)
         except (ValueError, SolveError):
-            return np.full(len(some), -np.inf)
+            return np.full(len(k_waves), -np.inf)
 
-    slowest_inside = bisected(lambda c: bool(np.isfinite(stands(c, k[:1]))[0]), most)
+    slowest_inside = bisected(lambda c: bool(np.isfinite(min_stiffness(c, k[:1]))[0]), most)
     speeds = slowest_inside * _SPEEDS
-    values = np.array([stands(speed, k) for speed in speeds.tolist()])
-    found = np.full(len(k), np.nan)
+    values = np.array([min_stiffness(speed, k) for speed in speeds.tolist()])
+    slowest = np.full(len(k), np.nan)
     for i, column in enumerate(values.T):
         if (column <= 0.0).any():
             j = int(np.argmax(column <= 0.0))
-            holds = partial(_one_stands, stands, k[i : i + 1])
-            found[i] = bisected(holds, speeds[j], speeds[j - 1], accuracy)
-    return found
+            holds = partial(_is_stiff, min_stiffness, k[i : i + 1])
+            slowest[i] = bisected(holds, speeds[j], speeds[j - 1], accuracy)
+    return slowest
 
 
-def _one_stands(stands: Callable[[float, NDArray], NDArray], k: NDArray, speed: float) -> bool:
-    return bool(stands(speed, k)[0] > 0.0)
+def _is_stiff(min_stiffness: Callable[[float, NDArray], NDArray], k: NDArray, speed: float) -> bool:
+    return bool(min_stiffness(speed, k)[0] > 0.0)
 
 
 def bisected(
     holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 1e-13
 ) -> float:
-    """Highest number at which something holds that holds up to it."""
+    """Highest number up to which a condition holds."""
     if holds(high):
         return high
     for _ in range(_CLOSE):
@@ -244,9 +245,9 @@ def bisected(
     return low
 
 
-#: How constants change from the upper face of a layer to the lower one.
+#: Laws by which constants change from the upper face of a layer to the lower one.
 GRADINGS = ("linear", "exponential", "power")
-#: Depths at which a graded layer's planes are looked at.
+#: Number of depths at which the roots p of a graded layer are evaluated.
 _SAMPLES = 5
 
 
@@ -260,7 +261,7 @@ class Layer:
         bottom: at its lower face, of the same kind; None where the layer is uniform.
         grading: ``"linear"``: constants change like the depth; ``"exponential"``: their logarithms do;
             ``"power"``: like a power of the depth.
-        exponent: of that power, at least 1.
+        exponent: of ``"power"``, at least 1.
 
     Raises:
         ValueError: constants cannot change so.
@@ -278,48 +279,48 @@ class Layer:
         if type(self.bottom) is not type(self.solid) or self.bottom.plane != self.solid.plane:
             raise ValueError("expected the same kind of solid and the same plane at both faces")
         if self.grading == "exponential":
-            for key, (one, other) in self._changing.items():
-                if np.any(np.multiply(one, other) <= 0.0):
+            for key, (top, bottom) in self._changing.items():
+                if np.any(np.multiply(top, bottom) <= 0.0):
                     raise ValueError(
-                        f"grading: found {key} from {one} to {other}, expected two numbers of one sign "
+                        f"grading: found {key} from {top} to {bottom}, expected two numbers of one sign "
                         'with "exponential", or "linear"'
                     )
 
     @property
     def _changing(self) -> dict[str, tuple[Any, Any]]:
-        """Constants that differ at both faces."""
-        one, other = values(self.solid), values(self.bottom)
-        numbers = (key for key, known in parameters(self.solid).items() if not known.options)
-        return {key: (one[key], other[key]) for key in numbers if one[key] != other[key]}
+        """Constants that differ between the faces, with their values at the upper and the lower one."""
+        top, bottom = values(self.solid), values(self.bottom)
+        numbers = (key for key, parameter in parameters(self.solid).items() if not parameter.options)
+        return {key: (top[key], bottom[key]) for key in numbers if top[key] != bottom[key]}
 
     @property
     def power(self) -> float:
-        """Of the depth, by which the share of the change is done."""
+        """Power of the relative depth that gives the share of the change from top to bottom."""
         return self.exponent if self.grading == "power" else 1.0
 
     def at(self, share: float) -> Solid:
-        """The solid where that share of the change is done."""
+        """The solid at a share of the change from the upper face (0) to the lower one (1)."""
         if self.bottom is None or share == 0.0:
             return self.solid
 
-        def mixed(one: Any, other: Any) -> Any:
-            one, other = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
+        def mixed(top: Any, bottom: Any) -> Any:
+            top, bottom = np.asarray(top, dtype=float), np.asarray(bottom, dtype=float)
             if self.grading == "exponential":
-                now = one * (other / one) ** share
+                now = top * (bottom / top) ** share
             else:
-                now = one + (other - one) * share
+                now = top + (bottom - top) * share
             return float(now) if not now.ndim else tuple(now.tolist())
 
         changed = {key: mixed(*pair) for key, pair in self._changing.items()}
         return made(type(self.solid), values(self.solid) | changed)  # type: ignore[no-any-return]
 
     def words(self) -> str:
-        """The layer in a sentence's middle, with units."""
-        told = f"{self.thickness:.6g} m of {self.solid.words()}"
+        """Description of the layer with units, as part of a sentence."""
+        words = f"{self.thickness:.6g} m of {self.solid.words()}"
         if self.bottom is None:
-            return told
+            return words
         how = self.grading + f" {self.exponent:g}" * (self.grading == "power")
-        return f"{told}, graded ({how}) to {self.bottom.words()}"
+        return f"{words}, graded ({how}) to {self.bottom.words()}"
 
 
 @dataclass(frozen=True)
@@ -350,7 +351,7 @@ class Layered:
 
     @property
     def solids(self) -> Sequence[Solid]:
-        """All of them, from the top down, graded ones at both faces."""
+        """All solids from the top down, graded ones at both faces."""
         ends = (end for layer in self.layers for end in (layer.solid, layer.bottom) if end is not None)
         return (*ends, self.substrate)
 
@@ -372,12 +373,12 @@ class Layered:
 
     @property
     def flutter(self) -> tuple[float, float]:
-        """That of the solid at the surface: the shortest waves see no other."""
+        """Flutter of the solid at the surface: the shortest waves reach no other."""
         return self.surface.flutter
 
     @property
     def slowest(self) -> float:
-        """Least of the wave speeds by which solids' speeds are told [m/s]."""
+        """Least of the solids' wave speeds [m/s]."""
         return min(solid.c_s for solid in self.solids)
 
     @property
@@ -386,7 +387,7 @@ class Layered:
 
     @cached_property
     def depths(self) -> NDArray[np.float64]:
-        """Of the interfaces [m], (layers,)."""
+        """Depths of the interfaces [m], (layers,)."""
         return np.cumsum([layer.thickness for layer in self.layers])
 
     def at(self, depth: float) -> Solid:
@@ -400,15 +401,17 @@ class Layered:
 
     @property
     def changes(self) -> tuple[float, ...]:
-        """Length over which each layer's modulus changes by itself [m], infinite where it does not."""
-        found = []
+        """Length in which each layer's modulus changes by its own amount [m], infinite where uniform."""
+        lengths = []
         for layer in self.layers:
-            one, other = sorted((layer.solid.μ, (layer.bottom or layer.solid).μ))
-            found.append(layer.thickness / (other / one - 1.0) if other > one else float("inf"))
-        return tuple(found)
+            softer, stiffer = sorted((layer.solid.μ, (layer.bottom or layer.solid).μ))
+            lengths.append(
+                layer.thickness / (stiffer / softer - 1.0) if stiffer > softer else float("inf")
+            )
+        return tuple(lengths)
 
     def beside(self, interface: int) -> tuple[Solid, Solid]:
-        """The solids above and below an interface, from 0."""
+        """The solids above and below an interface; interfaces are numbered from 0."""
         layer, rest = self.layers[interface], self.layers[interface + 1 :]
         return layer.bottom or layer.solid, rest[0].solid if rest else self.substrate
 
@@ -424,7 +427,7 @@ class Layered:
         return highest(stack, bisected(self._outruns, most), 1e-9 if graded else 1e-13)
 
     def _outruns(self, c: float) -> bool:
-        """Are waves inside all solids faster?"""
+        """Return True if waves inside all solids are faster than c."""
         try:
             return bool(self.response(c).roots)
         except ValueError:
@@ -445,17 +448,17 @@ class Layered:
         return LayeredResponse(self, c)
 
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        """Of the solid at the surface."""
+        """σ_ZZ of the solid at the surface, in the unit of the stresses."""
         return self.surface.σ_ZZ(σ_XX, σ_YY, σ_XY)
 
     def words(self) -> str:
-        told = "; ".join(layer.words() for layer in self.layers)
-        return f"{told}; on {self.substrate.words()}"
+        words = "; ".join(layer.words() for layer in self.layers)
+        return f"{words}; on {self.substrate.words()}"
 
 
 @dataclass(frozen=True)
 class LayeredResponse:
-    """Layers seen from a load that moves; what has no layers in it is of the solid at the surface.
+    """Layers at a speed; quantities of a half-plane are those of the solid at the surface.
 
     See :class:`galinx.solvers.solids.solid.Response`.
     """
@@ -505,29 +508,33 @@ class LayeredResponse:
 
     @property
     def mirrored(self) -> bool:
-        """Are all solids their own mirror images?"""
+        """True where all solids are their own mirror images."""
         return all(
             solid.response(self.c * self.solid.c_s / solid.c_s).mirrored for solid in self.solid.solids
         )
 
     def medium(self, solid: Solid) -> Medium:
-        """One of its solids at that speed."""
+        """One of the solids at this speed."""
         return Medium(solid.response(self.c * self.solid.c_s / solid.c_s), solid.μ / self.solid.μ)
 
     @property
     def roots(self) -> list[tuple[complex, ...]]:
         """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
-        shares = [np.linspace(0.0, 1.0, _SAMPLES if one.bottom else 1) for one in self.solid.layers]
+        shares = [np.linspace(0.0, 1.0, _SAMPLES if layer.bottom else 1) for layer in self.solid.layers]
         solids = [
-            *([one.at(share) for share in some.tolist()] for one, some in zip(self.solid.layers, shares)),
+            *(
+                [layer.at(share) for share in of_layer.tolist()]
+                for layer, of_layer in zip(self.solid.layers, shares)
+            ),
             [self.solid.substrate],
         ]
         return [
-            tuple(p for solid in some for p in self.medium(solid).response.roots.each) for some in solids
+            tuple(p for solid in of_layer for p in self.medium(solid).response.roots.each)
+            for of_layer in solids
         ]
 
     def stack(self, a: float, rtol: float = 0.0) -> Stack:
-        """Its layers with lengths over a.
+        """The layers with lengths over a.
 
         Args:
             a: length [m].
@@ -551,5 +558,5 @@ class LayeredResponse:
         return self.surface.stresses(G)
 
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Not known: see :mod:`galinx.solvers.layers.kernel`."""
+        """Not available: see :class:`galinx.solvers.layers.kernel.Level`."""
         raise NotImplementedError("stresses inside layers are no function of one potential")

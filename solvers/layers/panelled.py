@@ -20,21 +20,21 @@ from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
 
-#: Points of a panel; values there to coefficients of Legendre polynomials, and to their derivative.
+#: Points of a panel; matrices from values there to coefficients of Legendre polynomials, and to slopes.
 _NODES = 14
 _τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 _DERIVATIVE = (
     np.stack([legendre.legval(_τ, legendre.legder(row)) for row in np.eye(_NODES)], axis=1) @ _TO_LEGENDRE
 )
-#: |x| beyond which the pressure is that of the ends; longest panels up to some |x|.
+#: |x| beyond which the pressure is that at the ends; longest panels up to some |x|.
 _REACH, _LONGEST = 26.0, ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
 #: Panels towards a kink: their grading, and their number where the pressure itself is infinite or has a
-#: cusp, and where it is only that which layers add to it.
+#: cusp, and where only the pressure that layers add is resolved.
 _TO_KINK, _TO_TIP, TO_BEND = 0.2, 18, 5
-#: Panels towards a place where a kernel is rough: their grading, number, points; within how many lengths
-#: of a panel a place is near.
+#: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
+#: length within which a place is near it.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
-#: Distance from a free end within which a pressure is continued, and up to which it is known for that.
+#: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
 _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
 
@@ -43,12 +43,14 @@ _ξ, _ω = legendre.leggauss(14)
 def ends_of_panels(
     finest: float, kinks: tuple[float, ...] = (), steps: int = _TO_TIP
 ) -> NDArray[np.float64]:
-    """In x, none longer than ``finest`` in t, and that times the usual length in x.
+    """Ends of panels in x, (panels + 1,).
+
+    No panel is longer than ``finest`` in t, nor than ``finest`` times the usual length in x.
 
     Args:
-        finest: that.
+        finest: longest panel.
         kinks: places in t towards which panels get shorter.
-        steps: how often they do.
+        steps: number of panels that do, to either side.
     """
     half = [0.0]
     while half[-1] < _REACH - 1e-9:
@@ -71,7 +73,7 @@ def ends_of_panels(
 
 
 def _longest(x: Any, finest: float) -> NDArray[np.float64]:
-    """Usual length of a panel from x on."""
+    """Longest panel in x at places x, with the shape of x."""
     limits, lengths = np.array(_LONGEST).T
     longest = lengths[np.searchsorted(limits, np.abs(x), side="right")]
     return np.asarray(np.minimum(finest * longest, 2.0 * finest * np.cosh(np.abs(x) / 2.0) ** 2))
@@ -79,13 +81,13 @@ def _longest(x: Any, finest: float) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Panels:
-    """A rule for what has the weight (1 - t)^α (1 + t)^β.
+    """Rule on panels for integrals with the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
         α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
         finest: longest panel in t.
         kinks: places in t towards which panels get shorter.
-        steps: how often they do.
+        steps: number of panels that do, to either side.
     """
 
     α: float
@@ -104,7 +106,7 @@ class Panels:
 
     @cached_property
     def x(self) -> NDArray[np.float64]:
-        """Points, (n,)."""
+        """Points in x, (n,)."""
         return ((self.ends[1:] + self.ends[:-1])[:, None] / 2.0 + self.half[:, None] * _τ).ravel()
 
     @cached_property
@@ -113,12 +115,12 @@ class Panels:
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
-        """Of integrals over t with the weight, (n,); what lies beyond is at the last points."""
-        found = (self.half[:, None] * _w).ravel() * self.density(self.x)
+        """Weights of integrals over t with (1 - t)^α (1 + t)^β, (n,); beyond the reach included."""
+        weights = (self.half[:, None] * _w).ravel() * self.density(self.x)
         beyond = 2.0 / (1.0 + np.exp(_REACH))
-        found[-1] += 2.0**self.β * beyond ** (1.0 + self.α) / (1.0 + self.α)
-        found[0] += 2.0**self.α * beyond ** (1.0 + self.β) / (1.0 + self.β)
-        return found
+        weights[-1] += 2.0**self.β * beyond ** (1.0 + self.α) / (1.0 + self.α)
+        weights[0] += 2.0**self.α * beyond ** (1.0 + self.β) / (1.0 + self.β)
+        return weights
 
     def density(self, x: NDArray) -> NDArray[np.float64]:
         """Weight times dt/dx; 1 - t = 2/(1 + e^x), and dt/dx is half the product of 1 - t and 1 + t."""
@@ -126,7 +128,7 @@ class Panels:
         return np.asarray(2.0 ** (self.α + self.β + 1.0) * np.exp(log))
 
     def weight(self, x: NDArray) -> NDArray[np.float64]:
-        """(1 - t)^α (1 + t)^β."""
+        """(1 - t)^α (1 + t)^β at x, with the shape of x."""
         log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
         return np.asarray(2.0 ** (self.α + self.β) * np.exp(log))
 
@@ -135,36 +137,39 @@ class Panels:
         return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh((x + δ) / 2.0)))
 
     def panel(self, x: NDArray) -> NDArray[np.int64]:
-        """In which panels positions lie."""
+        """Numbers of the panels in which positions x lie, with the shape of x."""
         return np.clip(np.searchsorted(self.ends, x) - 1, 0, len(self.half) - 1)
 
     def basis(self, x: NDArray, panel: int) -> NDArray[np.float64]:
-        """Values at places of a panel by those at its points, (len(x), nodes)."""
+        """Matrix from values at a panel's points to those at its places x, (len(x), nodes)."""
         middle = (self.ends[panel] + self.ends[panel + 1]) / 2.0
         return np.asarray(legendre.legvander((x - middle) / self.half[panel], _NODES - 1) @ _TO_LEGENDRE)
 
     def values(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
-        """p at any places by its values at the points, (n, ...)."""
+        """Values at places x of functions p with values (n, ...) at the points, shape of x and (...)."""
         inside = np.clip(x, -_REACH, _REACH)
-        found = np.empty((*inside.shape, *p.shape[1:]))
+        values = np.empty((*inside.shape, *p.shape[1:]))
         panels = self.panel(inside)
         for panel in np.unique(panels).tolist():
-            some = panels == panel
-            found[some] = self.basis(inside[some], panel) @ p[panel * _NODES : (panel + 1) * _NODES]
-        return found
+            rows = panels == panel
+            values[rows] = self.basis(inside[rows], panel) @ p[panel * _NODES : (panel + 1) * _NODES]
+        return values
 
     @cached_property
     def derivative(self) -> NDArray[np.float64]:
-        """dp/dt at the points by values in their panel, (panels, nodes, nodes)."""
+        """Matrices from values in a panel to slopes dp/dt at its points, (panels, nodes, nodes)."""
         slope = 1.0 / (2.0 * np.cosh(self.x / 2.0) ** 2)
         return _DERIVATIVE / self.half[:, None, None] / slope.reshape(-1, _NODES, 1)
 
     def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
-        """∫ kernel(t(x) - t) w(t) … dt by values at the points, (n, functions); rough where t = t(x)."""
+        """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt, (n, functions).
+
+        The kernel may be rough where t = t(x).
+        """
         away = -self.apart(x, self.x - x)
-        away[away == 0.0] = 1.0  # that is taken by what follows
+        away[away == 0.0] = 1.0  # the panels near x are replaced below
         by_rule = kernel(away)
-        found = by_rule * self.weights[:, None]
+        integrals = by_rule * self.weights[:, None]
         for panel, half in enumerate(self.half.tolist()):
             low, high = self.ends[panel], self.ends[panel + 1]
             if low - _NEAR * 2.0 * half <= x <= high + _NEAR * 2.0 * half:
@@ -173,9 +178,9 @@ class Panels:
                 values = kernel(-self.apart(x, δ)) * (weights * self.density(places))[:, None]
                 near = slice(panel * _NODES, (panel + 1) * _NODES)
                 beyond = self.weights[near] - half * _w * self.density(self.x[near])
-                found[near] = self.basis(places, panel).T @ values
-                found[near] += beyond[:, None] * by_rule[near]
-        return np.asarray(found)
+                integrals[near] = self.basis(places, panel).T @ values
+                integrals[near] += beyond[:, None] * by_rule[near]
+        return np.asarray(integrals)
 
     @staticmethod
     def _towards(x: float, low: float, high: float) -> tuple[NDArray, NDArray]:
@@ -185,13 +190,13 @@ class Panels:
         s, ds = (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
         at = min(max(x, low), high)
         parts = [((at - x) + (end - at) * s, abs(end - at) * ds) for end in (low, high) if end != at]
-        places, weights = (np.concatenate(some) for some in zip(*parts))
+        places, weights = (np.concatenate(numbers) for numbers in zip(*parts))
         return places, weights
 
 
 @dataclass(frozen=True)
 class PanelledPressure:
-    """A pressure by values at points of panels, see :class:`galinx.solvers.layers.contact.Pressure`."""
+    """Pressure by its values at points of panels, see :class:`galinx.solvers.layers.contact.Pressure`."""
 
     panels: Panels
     p: NDArray[np.float64]
@@ -200,16 +205,16 @@ class PanelledPressure:
     tips: ClassVar[tuple[float, ...]] = ()
 
     def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
-        """The same of a contact whose left and right end are free or not: p falls like d and d log d.
+        """Pressure continued to zero at free ends, left and right: p falls like d and d log d.
 
-        Nearer than ``_MENDED`` that is taken for it; the equation, which is weighted there as edges ask
-        for, leaves digits of the largest p.
+        Nearer to an end than ``_MENDED`` a fit of such terms replaces p; the equation, which is weighted
+        there as edges need it, resolves p only relative to the largest p.
         """
         p = self.p.copy()
-        for x in [side * self.panels.x for side, one in zip((-1.0, 1.0), free) if one]:
+        for x in [side * self.panels.x for side, is_free in zip((-1.0, 1.0), free) if is_free]:
             d = 2.0 / (1.0 + np.exp(x))
-            known, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
-            c, *_ = np.linalg.lstsq(_to_end(d[known]), self.p[known] / d[known], rcond=None)
+            fitted, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
+            c, *_ = np.linalg.lstsq(_to_end(d[fitted]), self.p[fitted] / d[fitted], rcond=None)
             p[near] = d[near] * (_to_end(d[near]) @ c)
         return PanelledPressure(self.panels, p)
 
@@ -225,26 +230,26 @@ class PanelledPressure:
         return self.panels.values(self.p, _x(r))
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        panels, found = self.panels, np.empty(len(r))
+        panels, values = self.panels, np.empty(len(r))
         under = np.abs(r) < 1.0
-        found[~under] = (panels.weights * self.p / (panels.t - r[~under, None])).sum(axis=1)
+        values[~under] = (panels.weights * self.p / (panels.t - r[~under, None])).sum(axis=1)
         x = _x(r[under])
         x = np.where(np.abs(x[:, None] - panels.x).min(axis=1) < 1e-7, x + 3e-7, x)
         difference = self.p - panels.values(self.p, x)[:, None]
-        found[under] = (
+        values[under] = (
             panels.weights * difference / panels.apart(x[:, None], panels.x - x[:, None])
         ).sum(axis=1)
-        return found / np.pi
+        return values / np.pi
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         panels, under = self.panels, np.abs(r) < 1.0
         σ = panels.weights * self.p
         beside = np.einsum("rtf,t->rf", kernel(r[~under, None] - panels.t), σ)
-        found = np.empty((len(r), beside.shape[-1]))
-        found[~under] = beside
+        integrals = np.empty((len(r), beside.shape[-1]))
+        integrals[~under] = beside
         for i, x in zip(np.flatnonzero(under), _x(r[under]).tolist()):
-            found[i] = self.p @ panels.row(kernel, x)
-        return found
+            integrals[i] = self.p @ panels.row(kernel, x)
+        return integrals
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         fine = replace(self.panels, finest=min(finest, self.panels.finest))
@@ -252,7 +257,7 @@ class PanelledPressure:
 
 
 def _to_end(d: NDArray) -> NDArray[np.float64]:
-    """What a pressure over its weight and d is a sum of next to a free end, (len(d), terms)."""
+    """Terms of a pressure over its weight and d at distances d from a free end, (len(d), terms)."""
     log = np.log(d)
     return np.column_stack([np.ones_like(d), log, d, d * log, d * log**2, d**2, d**2 * log])
 
@@ -263,7 +268,7 @@ def _x(r: NDArray) -> NDArray[np.float64]:
 
 
 def solved(equation: Any, finest: float) -> PanelledPressure:
-    """The pressure of an :class:`galinx.solvers.layers.contact.Equation` on such panels."""
+    """Pressure of a :class:`galinx.solvers.layers.contact.Equation` on panels up to ``finest``."""
     panels, p = parts(equation, finest, [equation.slope], [-2.0])
     return PanelledPressure(panels, p[:, 0])
 
@@ -271,7 +276,7 @@ def solved(equation: Any, finest: float) -> PanelledPressure:
 def parts(
     equation: Any, finest: float, slopes: Sequence[Callable[[NDArray], NDArray]], loads: Sequence[float]
 ) -> tuple[Panels, NDArray[np.float64]]:
-    """Panels, and values at their points of pressures under several slopes with several resultants.
+    """Panels, and pressures under several slopes with several resultants at their points.
 
     Args:
         equation: an :class:`galinx.solvers.layers.contact.Equation`.

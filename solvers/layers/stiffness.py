@@ -1,23 +1,22 @@
-"""A uniform solid between two depths, seen from a load that moves: what goes up in it and what goes down.
+"""Stiffness of layers, uniform and graded, seen from a load that moves.
 
-For a field e^(ikX), k > 0, displacements u = e^(ik Ḡ Y) a decay downwards and u = e^(ik G Y) b upwards, G
-of the solid's own half-plane, and their tractions t = (σ_XY, σ_YY) are k Z₋ u and k Z₊ u with
+**A uniform solid between two depths** (:class:`Medium`). For a field e^(ikX), k > 0, displacements
+u = e^(ik Ḡ Y) a decay downwards and u = e^(ik G Y) b upwards, G of the solid's own half-plane, and their
+tractions t = (σ_XY, σ_YY) are k Z₋ u and k Z₊ u with
 
     Z₋ = i conj(L),   Z₊ = i L,   L = Rᵀ + T G.
 
 Below the speed of the solid's surface wave Z₋ is positive and Z₊ negative, both Hermitian.
 
-A uniform layer: how it changes the stiffness of what is below it, and the field inside it.
-
-With E = e^(ik G H), Z_b the stiffness of what is below and
+**A uniform layer** (:class:`Uniform`) changes the stiffness of what is below it. With E = e^(ik G H), Z_b
+the stiffness of what is below and
 
     r = (Z₊ - Z_b)⁻¹ (Z_b - Z₋),   W = E r conj(E),
 
 the stiffness on top is Z₋ + δ, δ = (Z₊ - Z₋) W (1 + W)⁻¹: exponentials that decay, and no other.
 
-A layer whose constants change with depth: the Riccati equation of its stiffness, without cancellation.
-
-With Y upwards the stiffness Z of what is below obeys
+**A layer whose constants change with depth** (:class:`Graded`) has a Riccati equation of its stiffness,
+solved without cancellation. With Y upwards the stiffness Z of what is below obeys
 
     Z' = k [Q - R T⁻¹Rᵀ - i R T⁻¹Z + i Z T⁻¹Rᵀ - Z T⁻¹Z].
 
@@ -42,7 +41,7 @@ from ..errors import SolveError
 
 
 def inverse(M: NDArray) -> NDArray[Any]:
-    """Of matrices (..., 2, 2), by the formula."""
+    """Inverses of matrices (..., 2, 2), by Cramer's rule."""
     a, b, c, d = M[..., 0, 0], M[..., 0, 1], M[..., 1, 0], M[..., 1, 1]
     adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=-2)
     return np.asarray(adjugate / (a * d - b * c)[..., None, None])
@@ -65,7 +64,7 @@ class Medium:
 
     Attributes:
         response: of its half-plane at that speed.
-        modulus: what its stiffness is given over, over the modulus of the surface's solid.
+        modulus: unit of its stiffness over the modulus of the surface's solid.
     """
 
     response: Any
@@ -73,42 +72,42 @@ class Medium:
 
     @cached_property
     def G(self) -> NDArray[Any]:
-        """u,Y = G u,X of what decays upwards for k > 0, (2, 2)."""
+        """Matrix in u,Y = G u,X of fields that decay upwards for k > 0, (2, 2)."""
         return np.asarray(self.response.G)
 
     @cached_property
     def down(self) -> NDArray[Any]:
-        """Z₋, (2, 2)."""
+        """Stiffness Z₋ against fields that decay downwards, (2, 2)."""
         return np.asarray(1j * self.modulus * self.response.L.conj())
 
     @cached_property
     def up(self) -> NDArray[Any]:
-        """Z₊, (2, 2)."""
+        """Stiffness Z₊ against fields that decay upwards, (2, 2)."""
         return np.asarray(1j * self.modulus * self.response.L)
 
     @cached_property
     def T_inverse(self) -> NDArray[np.float64]:
-        """Inverse of the stiffness across, (2, 2)."""
+        """Inverse of T, the stiffness of tractions against u,Y, (2, 2)."""
         return np.asarray(self.response.T_inverse / self.modulus)
 
     def upwards(self, kh: NDArray) -> NDArray[Any]:
-        """e^(ik G h) for h >= 0, (n, 2, 2); what decays downwards is its conjugate at the same distance.
+        """e^(ik G h) for h >= 0, (n, 2, 2); its conjugate is the factor of fields that decay downwards.
 
         Args:
             kh: k times h, (n,).
         """
         p, other = self.response.roots.each
         middle, half = (p + other) / 2.0, (p - other) / 2.0
-        one, two = np.exp(1j * kh * p), np.exp(1j * kh * other)
+        first, second = np.exp(1j * kh * p), np.exp(1j * kh * other)
         x = kh * half
         near = np.abs(x) < 0.5
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             by_series = np.exp(1j * kh * middle) * kh * np.sinc(np.where(near, x, 0.0) / np.pi)
-            by_difference = (one - two) / (2j * half)
+            by_difference = (first - second) / (2j * half)
         change = np.where(near, by_series, by_difference)
         beyond = self.G - middle * np.eye(2)
         return np.asarray(
-            ((one + two) / 2.0)[:, None, None] * np.eye(2) + 1j * change[:, None, None] * beyond
+            ((first + second) / 2.0)[:, None, None] * np.eye(2) + 1j * change[:, None, None] * beyond
         )
 
 
@@ -117,7 +116,7 @@ _ONE = np.eye(2)
 
 @dataclass(frozen=True)
 class Uniform:
-    """A layer at a speed.
+    """A uniform layer at a speed.
 
     Attributes:
         medium: its solid.
@@ -138,10 +137,10 @@ class Uniform:
         return self.medium
 
     def check(self) -> None:
-        """There is nothing in it that could not be followed."""
+        """Do nothing: a uniform layer can always be resolved."""
 
     def _reflected(self, below: NDArray) -> NDArray:
-        """r, (n, 2, 2)."""
+        """Reflection r at the lower face, (n, 2, 2)."""
         return inverse(self.medium.up - below) @ (below - self.medium.down)
 
     def excess(self, k: NDArray, below: NDArray) -> NDArray:
@@ -155,8 +154,8 @@ class Uniform:
         W = E @ self._reflected(below) @ E.conj()
         return np.asarray((self.medium.up - self.medium.down) @ W @ inverse(_ONE + W))
 
-    def stands(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
-        """Smaller eigenvalue of what holds its lower face where the upper one is held, (n,).
+    def min_stiffness(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
+        """Smaller eigenvalue of the stiffness at the lower face where the upper one is held, (n,).
 
         Not positive: some wave with this wavenumber runs inside, slower than the load.
         """
@@ -170,28 +169,28 @@ class Uniform:
         """Displacement of the lower face by that of the upper one, (n, 2, 2).
 
         Args:
-            k, below: as before.
+            k, below: see :meth:`excess`.
         """
         E, r = self.medium.upwards(k * self.H), self._reflected(below)
         return np.asarray((_ONE + r) @ E.conj() @ inverse(_ONE + E @ r @ E.conj()))
 
     def cut(self, depth: float) -> tuple["Uniform", "Uniform"]:
-        """What is above and below a depth."""
+        """The parts of the layer above and below a depth over a."""
         return Uniform(self.medium, depth), Uniform(self.medium, self.H - depth)
 
     def first_order(self) -> NDArray[Any]:
-        """What k δ tends to for large k, (2, 2): δ falls exponentially."""
+        """Limit of k δ for large k, (2, 2): zero, for δ falls exponentially."""
         return np.zeros((2, 2), dtype=complex)
 
 
-#: Coefficients of the polynomials in which properties are expanded, at first and at most; what is small
-#: enough at their end, and what of them is rounding.
+#: Coefficients of the polynomials in which properties are expanded, at first and at most; size of the
+#: last ones that is small enough, and that which is rounding.
 _FEW, _MANY, _SMALL, _ROUNDING = 17, 513, 1e-12, 2e-15
 #: Twice k Im p times the depth below which nothing is felt on top.
 _FELT = 78.0
-#: Depths at which it is looked at how fast fields fall.
+#: Number of depths at which the decay of fields is evaluated.
 _LOOKED_AT = 33
-#: Slices by which it is seen whether a wave runs inside.
+#: Number of slices by which waves inside are detected.
 _SLICES = 16
 #: Relative error of a step, and absolute error of δ over Z.
 _STEP, _ABSOLUTE = 1e-10, 1e-14
@@ -199,10 +198,10 @@ _STEP, _ABSOLUTE = 1e-10, 1e-14
 
 @dataclass(frozen=True)
 class Graded:
-    """A layer, or a part of one, at a speed.
+    """A graded layer, or a part of one, at a speed.
 
     Attributes:
-        medium_of: its solid where the share s of the change from top to bottom is done, s in [0, 1].
+        medium_of: its solid at the share s of the change from top to bottom, s in [0, 1].
         H: thickness over a.
         power: s = (depth/whole)^power.
         offset, whole: depth of the upper face in a layer, and its thickness, of which this is a part;
@@ -236,7 +235,7 @@ class Graded:
         return self.medium_of(min((self.offset + depth) / self._whole, 1.0) ** self.power)
 
     def cut(self, depth: float) -> tuple["Graded", "Graded"]:
-        """What is above and below a depth."""
+        """The parts of the layer above and below a depth over a."""
         below = replace(self, H=self.H - depth, offset=self.offset + depth, whole=self._whole)
         return replace(self, H=depth, whole=self._whole), below
 
@@ -245,7 +244,7 @@ class Graded:
         """Ḡ, T⁻¹, Z₋ as Chebyshev series in 2s - 1, (terms, 3, 2, 2).
 
         Raises:
-            SolveError: they are not smooth.
+            SolveError: constants are not smooth functions of depth.
         """
         count = _FEW
         while count <= _MANY:
@@ -264,15 +263,16 @@ class Graded:
         raise SolveError("the solid of a graded layer changes too much to be followed at this speed")
 
     def check(self) -> None:
-        """
+        """Check that the layer can be resolved.
+
         Raises:
-            SolveError: its solid changes too much to be followed.
+            SolveError: its solid changes too much with depth.
         """
         self._series  # noqa: B018 - cached
 
     @cached_property
     def _falls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Depths d, and what k has to be multiplied by: fields fall like e^(-k ∫ Im p dd) at least."""
+        """Depths d and ∫ Im p dd up to these, (n,) each: fields fall like e^(-k ∫ Im p dd) at least."""
         from scipy.integrate import cumulative_trapezoid  # a slow import
 
         depth = np.linspace(0.0, self.H, _LOOKED_AT)
@@ -303,17 +303,17 @@ class Graded:
         return np.ascontiguousarray(c.reshape(len(c), 12)).view(float)
 
     def _rate(self, k: NDArray, depth: NDArray, δ: NDArray) -> NDArray[Any]:
-        """δ' over Y."""
+        """Derivative of δ along Y, (n, 2, 2)."""
         N, T, slope = self._properties(depth)
         moved = δ @ (N - T @ δ / 2.0)
         # δ is Hermitian, and so is δ T⁻¹ δ.
         return np.asarray(k[:, None, None] * (moved + moved.conj().swapaxes(1, 2)) - slope)
 
     def _swept(self, k: NDArray, below: NDArray, dense: bool) -> Any:
-        """δ times 1 + k H from the lowest depth that is felt upwards, over τ from 0 to 1.
+        """Solution for δ times 1 + k H from the lowest depth that matters upwards, over τ from 0 to 1.
 
         Raises:
-            SolveError: it is not finite: the speed is beyond that of a wave inside.
+            SolveError: δ is not finite: the speed is beyond that of a wave inside.
         """
         from scipy.integrate import solve_ivp
 
@@ -328,13 +328,13 @@ class Graded:
             return np.asarray((reach[:, None, None] * size * self._rate(k, reach * (1.0 - τ), δ)).ravel())
 
         with np.errstate(all="ignore"):
-            found = solve_ivp(
+            solution = solve_ivp(
                 rate, (0.0, 1.0), start.astype(complex).ravel(), method="DOP853", rtol=self.rtol,
                 atol=_ABSOLUTE * float(np.abs(self.top.down).max()), dense_output=dense,
             )  # fmt: skip
-        if not found.success:
-            raise SolveError(f"the stiffness of a graded layer was not found: {found.message}")
-        return found
+        if not solution.success:
+            raise SolveError(f"the stiffness of a graded layer was not found: {solution.message}")
+        return solution
 
     def excess(self, k: NDArray, below: NDArray) -> NDArray[Any]:
         """δ: stiffness on top less that of a half-plane of the solid there, (n, 2, 2).
@@ -343,11 +343,11 @@ class Graded:
             k: wavenumbers times a, (n,), positive.
             below: stiffness Z of what is below, (n, 2, 2).
         """
-        found = self._swept(k, below, dense=False)
-        return np.asarray(found.y[:, -1].reshape(-1, 2, 2) / (1.0 + k * self.H)[:, None, None])
+        solution = self._swept(k, below, dense=False)
+        return np.asarray(solution.y[:, -1].reshape(-1, 2, 2) / (1.0 + k * self.H)[:, None, None])
 
     def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
-        """Displacement of the lower face by that of the upper one, (n, 2, 2); 0 where nothing is felt."""
+        """Displacement of the lower face by that of the upper one, (n, 2, 2); 0 where it has decayed."""
         from scipy.integrate import solve_ivp
 
         dense, size = self._swept(k, below, dense=True).sol, (1.0 + k * self.H)[:, None, None]
@@ -359,31 +359,31 @@ class Graded:
             return np.asarray(((reach * k)[:, None, None] * (N - T @ δ) @ flat.reshape(-1, 2, 2)).ravel())
 
         start = np.tile(np.eye(2, dtype=complex), (len(k), 1, 1)).ravel()
-        found = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14)
-        if not found.success:
-            raise SolveError(f"the field in a graded layer was not found: {found.message}")
-        return np.where((reach >= self.H)[:, None, None], found.y[:, -1].reshape(-1, 2, 2), 0.0)
+        solution = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14)
+        if not solution.success:
+            raise SolveError(f"the field in a graded layer was not found: {solution.message}")
+        return np.where((reach >= self.H)[:, None, None], solution.y[:, -1].reshape(-1, 2, 2), 0.0)
 
     def first_order(self) -> NDArray[Any]:
-        """What k δ on top tends to for large k, (2, 2)."""
+        """Limit of k δ on top for large k, (2, 2)."""
         N, _, slope = (part[0] for part in self._properties(np.zeros(1)))
-        one = np.eye(2)
+        I = np.eye(2)
         # Nᴴ δ + δ N = Z₋' by rows.
-        system = np.kron(N.conj().T, one) + np.kron(one, N.T)
+        system = np.kron(N.conj().T, I) + np.kron(I, N.T)
         return np.asarray(np.linalg.solve(system, slope.ravel()).reshape(2, 2))
 
-    def stands(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
-        """Smallest of what holds faces inside where those above are held, by uniform slices, (n,)."""
-        h, found = self.H / _SLICES, []
+    def min_stiffness(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
+        """Smallest stiffness at faces inside where those above are held, by uniform slices, (n,)."""
+        h, smallest = self.H / _SLICES, []
         for i in range(_SLICES - 1, -1, -1):
             slice_ = Uniform(self.medium_at((i + 0.5) * h), h)
-            found.append(slice_.stands(k, below))
+            smallest.append(slice_.min_stiffness(k, below))
             below = slice_.top.down + slice_.excess(k, below)
-        return np.min(np.where(np.isnan(found), -np.inf, found), axis=0)
+        return np.min(np.where(np.isnan(smallest), -np.inf, smallest), axis=0)
 
 
 def _hopeful(c: NDArray) -> bool:
-    """Will coefficients that fall as these do be small before they are too many?"""
+    """Return True if coefficients that fall as ``c`` does will be small before there are too many."""
     half = len(c) // 2
     first, last = c[half // 2 : half].max(), c[-half // 2 :].max()
     rate = np.log(max(last, _ROUNDING) / max(first, _ROUNDING)) / (len(c) - half)

@@ -36,12 +36,12 @@ class Flat:
 
     @property
     def sharp(self) -> tuple[bool, bool]:
-        """The lower edge always touches, the higher one may lift off."""
+        """True for the edge that always touches, left and right: the higher edge may lift off."""
         return self.tilt >= 0.0, self.tilt <= 0.0
 
     @property
     def rise(self) -> float:
-        """Slope of the base, dimensionless; the angle itself, as linear theory has it."""
+        """Slope of the base, dimensionless: by linear theory the angle itself."""
         return self.tilt * pi / 180.0
 
     def height(self, X: NDArray) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ class Power:
     exponent: float = parameter("exponent", "exponent k", "", symbol="k", above=1.0, at_most=20.0)
     coefficient: float = parameter(
         "coefficient", "height at X = 1 m, as a number", "", symbol="c", above=0.0,
-        note="of a height of 1 µm at 1 mm with the exponent 3: 1e-6/(1e-3)^3 = 1000",
+        note="for a height of 1 µm at 1 mm with the exponent 3: 1e-6/(1e-3)^3 = 1000",
     )  # fmt: skip
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What the profile of a punch is."""
+"""Protocol and registry of punch profiles, and the functions that read their optional attributes."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol
@@ -14,19 +14,19 @@ from ..errors import SolveError
 class Profile(Protocol):
     """A rigid punch: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
 
-    A profile whose contact does not end at two sharp corners says so by ``sharp``; it has no half-width
-    then and is convex. What else it may have is read by the functions below.
+    A profile with a free end of the contact says so by ``sharp``; it has no half-width then and is
+    convex. All attributes but ``about`` are optional, and read by the functions of this module.
 
     Attributes:
-        about: what kind of punch it is.
+        about: kind of punch.
         half_width: half the width a of the contact [m] between two sharp corners; lengths are divided
-            by it. Read by the first function below.
-        sharp: are the left and the right end of the contact sharp corners of the punch whatever the
-            load? (True, True) if it has none of it.
-        kinks: positions [m] at which the slope or its derivative jumps, in their order; none if it has
-            none of it.
-        jumps: does the slope itself jump there, so that the pressure is infinite? False if not given.
-        exponent: k of a height c|X|^k, by which results at other loads follow; None if it is no power.
+            by it.
+        sharp: True for the left and for the right end of the contact if it is a sharp corner of the
+            punch whatever the load; (True, True) by default.
+        kinks: positions [m] at which the slope or its derivative jumps, in their order; none by default.
+        jumps: True if the slope itself jumps there, so that the pressure is infinite; False by default.
+        exponent: k of a height c|X|^k, by which results at other loads follow; None by default, for
+            other heights.
     """
 
     about: ClassVar[str]
@@ -35,7 +35,7 @@ class Profile(Protocol):
         """Gap [m] at X [m] from the middle when the lowest point touches, 0 where it is lowest."""
 
     def slope(self, X: NDArray) -> NDArray:
-        """Its derivative, dimensionless."""
+        """Derivative of the height at X [m], dimensionless."""
 
     def words(self) -> str:
         """The punch in a sentence's middle, with units."""
@@ -47,7 +47,7 @@ def half_width(profile: Any) -> float:
 
 
 def ends_are_found(profile: Any) -> bool:
-    """Does the contact end where the pressure says, and not at two sharp corners?"""
+    """Return True if an end of the contact is free, not a sharp corner of the punch."""
     return not all(getattr(profile, "sharp", (True, True)))
 
 
@@ -57,24 +57,24 @@ def kinks(profile: Any) -> Sequence[float]:
 
 
 def jumps(profile: Any) -> bool:
-    """Does the slope itself jump at its kinks?"""
+    """Return True if the slope itself jumps at the kinks."""
     return getattr(profile, "jumps", False)
 
 
 def smooth(profile: Any) -> bool:
-    """Has the slope all derivatives wherever there is a contact?"""
+    """Return True if the slope has all derivatives wherever there is a contact."""
     return not len(kinks(profile)) or (exponent(profile) or 1.0) % 2.0 == 0.0
 
 
 def exponent(profile: Any) -> float | None:
-    """Of a height that is a power of |X|; None if it is none."""
+    """Exponent k of a height c|X|^k; None for other heights."""
     return getattr(profile, "exponent", None)
 
 
 def cusp(profile: Any) -> float:
-    """Exponent below 1 of the distance from a kink with which the pressure leaves its value; 0 for none.
+    """Exponent below 1 of the pressure's change by the distance from a kink; 0 for no cusp.
 
-    Where the height is |X|^k, 1 < k < 2, that is k - 1.
+    It is k - 1 for a height |X|^k, 1 < k < 2.
     """
     k = exponent(profile) or 2.0
     return k - 1.0 if 1.0 < k < 2.0 and len(kinks(profile)) else 0.0
@@ -91,12 +91,12 @@ def leaving(profile: Any) -> float:
 
 
 def check_reach(profile: Any, left: float, right: float, found: str = "the contact would reach") -> None:
-    """Is the punch known over a contact? Both ways to find one ask.
+    """Check that the punch is known over a contact.
 
     Args:
         profile: the punch.
         left, right: ends of the contact [m].
-        found: how the message begins.
+        found: beginning of the message.
 
     Raises:
         SolveError: the contact is wider.

@@ -33,7 +33,7 @@ class RoundedFlat:
 
     @property
     def kinks(self) -> tuple[float, float]:
-        """The curvature jumps where the flat part ends."""
+        """Ends of the flat part [m], at which the curvature jumps."""
         return -self.flat_half_width, self.flat_half_width
 
     def height(self, X: NDArray) -> NDArray[np.float64]:

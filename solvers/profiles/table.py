@@ -67,7 +67,7 @@ class Table:
 
     @cached_property
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Positions between which the slope is linear, the slope and the height there."""
+        """Knots [m] between which the slope is linear, slopes and heights [m] there, (knots,) each."""
         X, P = self._points
         δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
         d = np.empty(len(X))
@@ -90,7 +90,7 @@ class Table:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """The curvature jumps where parabolas meet."""
+        """Positions [m] at which parabolas meet, and the curvature jumps."""
         return tuple(self._knots[0].tolist())
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
@@ -98,13 +98,13 @@ class Table:
         X = np.asarray(X, dtype=float)
         i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
         curvature = (s[i + 1] - s[i]) / (x[i + 1] - x[i])
-        found = P[i] + s[i] * (X - x[i]) + curvature * (X - x[i]) ** 2 / 2.0
+        height = P[i] + s[i] * (X - x[i]) + curvature * (X - x[i]) ** 2 / 2.0
         lowest = np.interp(0.0, s, x)
         j = np.clip(np.searchsorted(x, lowest) - 1, 0, len(x) - 2)
-        return found - (P[j] + s[j] * (lowest - x[j]) / 2.0)
+        return height - (P[j] + s[j] * (lowest - x[j]) / 2.0)
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Beyond the table it goes on as in its first and last piece."""
+        """Slope at X [m], linear between knots; beyond the table as in its first and last piece."""
         x, s, _ = self._knots
         i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
         return s[i] + (s[i + 1] - s[i]) * (X - x[i]) / (x[i + 1] - x[i])

@@ -26,8 +26,8 @@ class Wedge:
 
     slope_of_flanks: float = parameter(
         "slope", "slope of both flanks", "rad", symbol="s", above=0.0, usual=(1e-6, 0.2),
-        note='a number, or an angle to the surface as `"1 deg"`, which stands for its slope, as linear '
-        "theory has it; it wants it small",
+        note='a number, or an angle to the surface as `"1 deg"`, which linear theory takes for the '
+        "slope; it has to be small",
     )  # fmt: skip
 
     def __post_init__(self) -> None:

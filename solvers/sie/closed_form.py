@@ -3,13 +3,13 @@
 Lengths are divided by the half-width a, stresses by N/(2a); positions r = X/a. ``g`` is the signed
 ratio σ_XY/σ_YY under the punch: g = -f for a punch that drags the surface along with it.
 
-Pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is whole: exact on and below the surface.
-
-Cauchy's integral of such a pressure is elementary: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
+Parabolic and tilted flat punches have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is an
+integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface are
+exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
 
     Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt = (X(z) q(z) - [X q])/sin(πα),
 
-[X q] the part of X q that does not vanish at infinity. It serves parabolic and tilted flat punches.
+[X q] the part of X q that does not vanish at infinity.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from scipy.special import log1p
 from ..contact import EdgeTraction, from_edge, under_punch
 from ..solids.solid import Response
 
-#: Newton's steps for the logarithm of a distance; where the answer is double they halve what is left.
+#: Newton's steps for the logarithm of a distance; at a double root they halve the error.
 _STEPS = 80
 
 
@@ -104,13 +104,13 @@ class FlatPunch:
         return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
 
     def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """How far from X = -a and X = a, under the punch, -μ u,X over N/(2a) exceeds a value.
+        """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
 
         Under the punch u,X is a multiple of the pressure, infinite at both edges. From its least value,
         which is between them, the pressure grows towards each, so that its logarithm can be halved.
 
         Args:
-            strain: positive.
+            strain: value of -μ u,X over N/(2a) that is exceeded there, positive.
 
         Returns:
             Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
@@ -118,25 +118,25 @@ class FlatPunch:
         answer = self.response
         by_pressure = answer.q + (answer.n12 + answer.m * self.g) * self._cot
         size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
-        wanted = np.log(strain / size)
-        return self._within(self.β, self.α, wanted), self._within(self.α, self.β, wanted)
+        log_ratio = np.log(strain / size)
+        return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
 
     @staticmethod
-    def _within(own: Any, other: Any, wanted: Any) -> NDArray[np.float64]:
-        """Largest d with own·log d + other·log(2 - d) >= wanted, not beyond where that is least."""
+    def _within(own: Any, other: Any, level: Any) -> NDArray[np.float64]:
+        """Largest d with own·log d + other·log(2 - d) >= level, not beyond the least of that sum."""
         high = np.log(-2.0 * own)
-        low = np.minimum((wanted - other * np.log(2.0)) / own, high)  # as if 2 - d were 2
+        low = np.minimum((level - other * np.log(2.0)) / own, high)  # as if 2 - d were 2
         # Convex and falling from the left of the answer on: Newton's steps never pass it.
         t = low
         for _ in range(_STEPS):
             d = np.exp(t)
-            left = own * t + other * np.log(2.0 - d) - wanted
+            excess = own * t + other * np.log(2.0 - d) - level
             slope = np.minimum(own - other * d / (2.0 - d), -np.finfo(float).tiny)
             with np.errstate(over="ignore"):
-                found = np.where(left > 0.0, np.minimum(t - left / slope, high), t)
-            if np.array_equal(found, t):
+                moved = np.where(excess > 0.0, np.minimum(t - excess / slope, high), t)
+            if np.array_equal(moved, t):
                 break
-            t = found
+            t = moved
         return np.exp(t)
 
     def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
@@ -174,7 +174,7 @@ class EdgePotential:
         return self.at(z) * np.expm1(growth) / share
 
 
-#: |z| from which powers of 1/z serve, and how many of them: 3^-36 is no digit any more.
+#: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
 _FAR, _POWERS = 3.0, 36
 
 
@@ -241,11 +241,11 @@ class Weighted:
 
     @property
     def _leading(self) -> Any:
-        """What [X q] has of the first power of z: of the orders 0 and -1 it is a constant."""
+        """Coefficient of z in [X q]; 0 for the orders 0 and -1, of which [X q] is a constant."""
         return self.A if self.order == 1 else 0.0
 
     def _polynomial(self, z: Any) -> Any:
-        """[X q]; B vanishes where the order is 0 or 1."""
+        """Polynomial [X q] at z; B vanishes where the order is 0 or 1."""
         if self.order == 1:
             return self.A * (z + self.β - self.α)
         return self.A if self.order == 0 else self.B
@@ -263,10 +263,10 @@ class Weighted:
         ]
 
     def _far(self, z: NDArray) -> Any:
-        y, found = 1.0 / z, 0.0
+        y, total = 1.0 / z, 0.0
         for coefficient in reversed(self._powers):
-            found = (found + coefficient) * y
-        return found
+            total = (total + coefficient) * y
+        return total
 
     def _far_change(self, z: NDArray, step: NDArray, share: complex) -> Any:
         with np.errstate(invalid="ignore"):
@@ -279,6 +279,6 @@ class Weighted:
     @property
     def K_I(self) -> NDArray[np.float64]:
         """Intensity at the left and the right end as in Eqs 56-57, 0 at one that is free: (..., 2)."""
-        left = np.where(self.β < 0.0, 0.5 * (self.B - self.A) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        right = np.where(self.α < 0.0, -0.5 * (self.A + self.B) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        return np.stack(np.broadcast_arrays(left, right), axis=-1)
+        K_left = np.where(self.β < 0.0, 0.5 * (self.B - self.A) * 2.0 ** (self.α + self.β + 1.0), 0.0)
+        K_right = np.where(self.α < 0.0, -0.5 * (self.A + self.B) * 2.0 ** (self.α + self.β + 1.0), 0.0)
+        return np.stack(np.broadcast_arrays(K_left, K_right), axis=-1)

@@ -3,7 +3,7 @@
     (n/π) ⨍ σ_YY(t)/(t - r) dt - q g σ_YY(r) = μ v,X(r),   ∫ σ_YY dr = -2,
 
 lengths over a, stresses over N/(2a). The pressure is expanded in Jacobi polynomials under their weight,
-the Cauchy integrals are done by Gauss's rule, and the equation is asked for at the zeros of the
+the Cauchy integrals are done by Gauss's rule, and the equation is collocated at the zeros of the
 conjugate polynomial, where the rule is exact. Unlike the closed form this takes any punch profile.
 """
 
@@ -19,7 +19,7 @@ from ..solids.solid import Response
 
 
 def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
-    """P_0^(α,β), P_1^(α,β), … at r, by the three-term recurrence: (*r.shape, count)."""
+    """Jacobi polynomials P_0^(α,β), P_1^(α,β), … at r by the recurrence, (*r.shape, count)."""
     r, s = np.asarray(r, dtype=float), α + β
     P = np.empty((count, *r.shape))
     P[0] = 1.0
@@ -42,7 +42,7 @@ class Expansion:
     c: NDArray[np.float64]
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        """Σ c_j P_j(r), the pressure without its weight."""
+        """Pressure without its weight, Σ c_j P_j(r)."""
         r = np.asarray(r, dtype=float)
         return jacobi(len(self.c), self.α, self.β, r) @ self.c
 
@@ -58,20 +58,20 @@ class Expansion:
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt over N/(2a) on the surface, r off the edges.
 
-        Far from the contact by Gauss's rule; near it and under it the weight's own transform is known,
-        and what is left is a polynomial.
+        Far from the contact by Gauss's rule; near it and under it by the weight's own transform, and
+        the rest is a polynomial.
         """
         r = np.asarray(r, dtype=float)
         t, w = _gauss(_FINE, self.α, self.β)
         p = self.series(t)
         far = np.abs(r) > _NEAR
-        found = np.empty_like(r)
-        found[far] = p / (t - r[far, None]) @ w
+        transform = np.empty_like(r)
+        transform[far] = p / (t - r[far, None]) @ w
         near = r[~far]
         p_near = self.series(near)
-        found[~far] = np.pi * p_near * weights_hilbert(self.α, self.β, near)
-        found[~far] += (p - p_near[:, None]) / (t - near[:, None]) @ w
-        return found / np.pi
+        transform[~far] = np.pi * p_near * weights_hilbert(self.α, self.β, near)
+        transform[~far] += (p - p_near[:, None]) / (t - near[:, None]) @ w
+        return transform / np.pi
 
 
 #: Points of the rule for transforms, and |r| from which it serves alone: its error falls there by 1.5 a

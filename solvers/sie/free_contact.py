@@ -1,15 +1,14 @@
-"""Contacts whose ends are found: where they end, and the pressure under the punch.
+"""Contacts with free ends: the ends, and the pressure under the punch.
 
-Exact for parabolas and tilted flat punches, by quadrature for every other convex profile. Lengths are
-over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
+Both are exact for parabolas and tilted flat punches, and by quadrature for every other convex profile.
+Lengths are over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
 
-Where a contact with two free ends ends, for any convex profile.
-
-With w of :mod:`galinx.solvers.sie.panels`, s over the half-width h from the middle m of the contact:
+The ends of a contact with two free ends and any convex profile P meet two conditions. With w of
+:mod:`galinx.solvers.sie.panels`, s over the half-width h from the middle m of the contact:
 
     ∫ P'(m + h s)/w ds = 0,        N/μ = h (sin πa/N̂) ∫ s P'(m + h s)/w ds.
 
-Newton's method finds m/h and log h; a step that makes it worse is halved.
+Newton's method solves them for m/h and log h; a step that increases the residual is halved.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -27,22 +26,22 @@ from ..solids.solid import Response
 from .closed_form import FlatPunch, Weighted
 from .panels import FreeEnds, Panels, ends_of_panels
 
-#: Most steps, most halvings of one, and what of a residual is rounding.
+#: Steps at most, halvings of a step at most, and rounding in a residual.
 _STEPS, _HALVINGS, _ROUNDING = 60, 40, 1e-14
 #: Step for the derivatives; largest change of m/h and of log h in a step.
 _ε, _LARGEST = 1e-6, (0.5, 1.5)
-#: Doublings of the half-width within which a load is looked for, and of the centre over it.
+#: Doublings at most of the half-width in the search for the load, and of the centre over it.
 _DOUBLINGS, _FARTHER = 60, 12
-#: Logarithm of the load carried over that wanted from which Newton's method serves.
+#: Logarithm of the load carried over the given load below which Newton's method starts.
 _ROUGHLY = 3.0
 
 
 @dataclass(frozen=True)
 class Balance:
-    """Both conditions of a contact with free ends.
+    """Both conditions of a contact with two free ends.
 
     Attributes:
-        profile: of the punch.
+        profile: profile of the punch.
         a: exponent of the pressure at the right end.
         size: N N̂/(μ sin πa) [m].
     """
@@ -54,16 +53,21 @@ class Balance:
     def panels(self, centre: float, half_width: float) -> Panels:
         """Quadrature over a contact, lengths in m."""
         at = (np.array(kinks(self.profile), dtype=float) - centre) / half_width
-        # A power is no smooth function on either side of its kink; jumps and parabolas are.
+        # Beside its kink a power is not smooth; wedges and parabolas are.
         k = getattr(self.profile, "exponent", 1.0)
         return Panels(self.a, ends_of_panels(at, rough=not jumps(self.profile) and k != round(k)))
 
     def slope(self, panels: Panels, centre: float, half_width: float) -> NDArray[np.float64]:
-        """P' at the panels' points."""
+        """Slope P' of the profile at the panels' points, (points,)."""
         return np.asarray(self.profile.slope(centre + half_width * panels.t), dtype=float)
 
     def residual(self, lean: float, size: float) -> NDArray[np.float64]:
-        """Both conditions at m/h and log h, 0 where they are met, (2,); infinite without any load."""
+        """Residuals of both conditions, (2,), infinite if the contact carries no load.
+
+        Args:
+            lean: centre over half-width, m/h.
+            size: log h, h in m.
+        """
         h = float(np.exp(size))
         panels = self.panels(lean * h, h)
         slope = self.slope(panels, lean * h, h)
@@ -75,44 +79,45 @@ class Balance:
 
 
 def free_ends(balance: Balance, start: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Centre and half-width [m] of the contact.
+    """Centre and half-width [m] of a contact with two free ends.
 
     Args:
-        balance: what has to hold.
-        start: centre and half-width near by.
+        balance: conditions of the ends.
+        start: centre and half-width [m] of a contact near by.
 
     Raises:
-        SolveError: it was not found; the message says what was tried.
+        SolveError: the ends were not found; the message says what was tried.
     """
     point = np.array([start[0] / start[1], np.log(start[1])]) if start else _first(balance)
-    value, told = balance.residual(*point), []
+    value, residuals = balance.residual(*point), []
     for _ in range(_STEPS):
         size = float(np.abs(value).max())
-        told.append(size)
+        residuals.append(size)
         if size <= _ROUNDING:
             break
         step = _newton(balance.residual, point, value)
         for halving in range(_HALVINGS):
             moved = point + 0.5**halving * step
-            found = balance.residual(*moved)
-            if np.abs(found).max() < size:
+            trial = balance.residual(*moved)
+            if np.abs(trial).max() < size:
                 break
         else:
             break  # nothing better is near: rounding, or no contact
-        point, value = moved, found
-    if not told[-1] <= 1e3 * _ROUNDING:
+        point, value = moved, trial
+    if not residuals[-1] <= 1e3 * _ROUNDING:
         raise SolveError(
-            f"the ends of the contact of a {balance.profile.words()} were not found: after {len(told)} "
-            f"steps the conditions are off by {told[-1]:.3g}, wanted {_ROUNDING:g}; centre over "
-            f"half-width {point[0]:.6g}, half-width {np.exp(point[1]):.6g} m; the residuals were "
-            + ", ".join(f"{size:.2g}" for size in told[-6:])
+            f"the ends of the contact of a {balance.profile.words()} were not found: after "
+            f"{len(residuals)} steps the conditions are off by {residuals[-1]:.3g}, wanted "
+            f"{_ROUNDING:g}; centre over half-width {point[0]:.6g}, half-width "
+            f"{np.exp(point[1]):.6g} m; the residuals were "
+            + ", ".join(f"{size:.2g}" for size in residuals[-6:])
         )
     h = float(np.exp(point[1]))
     return float(point[0]) * h, h
 
 
 def _newton(residual: Callable[..., NDArray], point: NDArray, value: NDArray) -> NDArray[np.float64]:
-    """Newton's step, within limits; derivatives by differences."""
+    """Newton's step for m/h and log h, (2,), within limits; derivatives by differences."""
     steps = np.diag([_ε, _ε])
     J = np.column_stack([(residual(*(point + d)) - residual(*(point - d))) / (2.0 * _ε) for d in steps])
     if not np.all(np.isfinite(J)) or np.linalg.matrix_rank(J) < 2:
@@ -122,7 +127,7 @@ def _newton(residual: Callable[..., NDArray], point: NDArray, value: NDArray) ->
 
 
 def _first(balance: Balance) -> NDArray[np.float64]:
-    """A contact that carries about the load: m/h and log h."""
+    """Start of Newton's method: m/h and log h, (2,), of a contact that carries about the load."""
     size = float(np.log(1e-3))
     narrow, wide = -np.inf, np.inf
     for _ in range(_DOUBLINGS):
@@ -133,10 +138,10 @@ def _first(balance: Balance) -> NDArray[np.float64]:
             narrow = size
         else:
             wide = size
-        found = np.isfinite(narrow) and np.isfinite(wide)
-        if found and np.isfinite(carried) and abs(carried) < _ROUGHLY:
+        bracketed = np.isfinite(narrow) and np.isfinite(wide)
+        if bracketed and np.isfinite(carried) and abs(carried) < _ROUGHLY:
             return np.array([lean, size])
-        if found:
+        if bracketed:
             size = (narrow + wide) / 2.0
         else:
             size += np.log(2.0) if np.isfinite(narrow) else -np.log(2.0)
@@ -147,7 +152,7 @@ def _first(balance: Balance) -> NDArray[np.float64]:
 
 
 def _lean(balance: Balance, size: float) -> float:
-    """m/h at which the ends do not pull, roughly; by halving."""
+    """Approximate m/h at which ∫ P'/w vanishes at a given log h; by halving."""
     h, far = float(np.exp(size)), 1.0
 
     def pulled(lean: float) -> float:
@@ -158,7 +163,7 @@ def _lean(balance: Balance, size: float) -> float:
         if pulled(-far) <= 0.0 <= pulled(far):
             break
         far *= 2.0
-    # Where a flat part holds all of the contact nothing pulls: the middle of these places is taken.
+    # If a flat part holds all of the contact, the integral vanishes on an interval: its middle is taken.
     edges = []
     for beyond in (np.less, np.less_equal):
         low, high = -far, far
@@ -169,29 +174,29 @@ def _lean(balance: Balance, size: float) -> float:
     return float(np.mean(edges))
 
 
-#: Positions nearer than this to where the pressure is infinite are taken at this distance, over a.
+#: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6
-#: Distance over a from a cusp of the pressure at which it is looked at.
+#: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
 _CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
-#: Places at which a largest pressure is looked for, kinks and places beside them besides; most tops that
-#: are looked at more nearly, places between their neighbours, and how often nearer.
-_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
+#: Places at which the pressure is sampled for its largest value, and places about kinks; number of tops
+#: that are refined, places between their neighbours, and rounds of refinement.
+_SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
 _BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
 _TOPS, _BETWEEN, _ROUNDS = 5, 21, 8
 
 
 @dataclass(frozen=True)
 class Group:
-    """Some states whose pressure is of one kind.
+    """States whose pressure is of one kind.
 
     Attributes:
-        rows: numbers of these states.
-        pressure: a potential with ``σ_YY`` and ``hilbert``; of several states, or of the only one.
+        rows: numbers of these states, (rows,).
+        pressure: a potential with ``σ_YY`` and ``hilbert``, of all these states or of the only one.
         α, β: exponents at the right and the left end, (rows,).
-        half_width, centre: of the contact [m], (rows,).
-        K_I: at the left and the right end, (rows, 2).
+        half_width, centre: half-width and centre of the contact [m], (rows,).
+        K_I: intensities at the left and the right end, (rows, 2).
         infinite: places over the half-width at which the pressure is infinite inside the contact.
-        cusps: places over the half-width at which it has a cusp, and the exponent there.
+        cusps: places over the half-width at which the pressure has a cusp, and the exponent there.
     """
 
     rows: NDArray[np.int64]
@@ -205,7 +210,7 @@ class Group:
     cusps: tuple[Sequence[float], float] = ((), 0.0)
 
     def off(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions, none where the pressure is infinite."""
+        """Positions r over the half-width, moved off the places of infinite pressure."""
         for at in self.infinite:
             side = np.where(r < at, -1.0, 1.0)
             r = np.where(np.abs(r - at) < NEXT_TO_TIP, at + side * NEXT_TO_TIP, r)
@@ -214,12 +219,12 @@ class Group:
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts at one speed with several frictions.
+    """Contacts with free ends at one speed with several frictions.
 
     Attributes:
         response: of the half-plane at that speed.
         g: σ_XY/σ_YY, (states,).
-        groups: all states.
+        groups: all states by the kind of their pressure.
     """
 
     response: Response
@@ -227,84 +232,86 @@ class Contacts:
     groups: tuple[Group, ...]
 
     def of(self, name: str) -> NDArray[np.float64]:
-        """``α``, ``β``, ``half_width``, ``centre`` or ``K_I`` of every state."""
+        """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
         parts = [getattr(group, name) for group in self.groups]
-        found = np.empty((len(self.g), *parts[0].shape[1:]))
+        values = np.empty((len(self.g), *parts[0].shape[1:]))
         for group, part in zip(self.groups, parts):
-            found[group.rows] = part
-        return found
+            values[group.rows] = part
+        return values
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress at r in (-1, 1), (states, points)."""
-        found = np.empty((len(self.g), len(r)))
+        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
+        stress = np.empty((len(self.g), len(r)))
         for group in self.groups:
-            found[group.rows] = group.pressure.σ_YY(group.off(r))
-        return found
+            stress[group.rows] = group.pressure.σ_YY(group.off(r))
+        return stress
 
     def alike(self) -> Iterator[tuple[NDArray[np.int64], "Contacts", Sequence[float]]]:
-        """Numbers of states whose pressure is of one kind, these states, and kinks of their pressure."""
+        """Groups of states with one kind of pressure: their numbers, contacts and cusps, one by one."""
         for group in self.groups:
             own = replace(group, rows=np.arange(len(group.rows)))
             yield group.rows, Contacts(self.response, self.g[group.rows], (own,)), group.cusps[0]
 
     def pressure(self, r: NDArray) -> NDArray[np.float64]:
-        """σ_YY, also next to where it is infinite, (states, points)."""
-        found = np.empty((len(self.g), len(r)))
+        """Contact stress σ_YY over N/(2a) at r, also next to infinite values, (states, points)."""
+        stress = np.empty((len(self.g), len(r)))
         for group in self.groups:
-            found[group.rows] = group.pressure.σ_YY(r)
-        return found
+            stress[group.rows] = group.pressure.σ_YY(r)
+        return stress
 
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
         """In-plane stress on the whole surface, off the ends, (states, points)."""
-        found, answer = np.empty((len(self.g), len(r))), self.response
+        stress, answer = np.empty((len(self.g), len(r))), self.response
         for group in self.groups:
             at, σ_YY = group.off(r), np.zeros((len(group.rows), len(r)))
             under, g = np.abs(r) < 1.0, self.g[group.rows, None]
             σ_YY[:, under] = group.pressure.σ_YY(at[under])
             u_X = answer.q * σ_YY + (answer.n12 + answer.m * g) * group.pressure.hilbert(at)
-            found[group.rows] = answer.σ_XX(u_X, σ_YY, g * σ_YY)
-        return found
+            stress[group.rows] = answer.σ_XX(u_X, σ_YY, g * σ_YY)
+        return stress
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
         X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-        found = np.empty((3, len(self.g), X.shape[1]))
+        stresses = np.empty((3, len(self.g), X.shape[1]))
         for group in self.groups:
             of_each = group.rows if len(X) > 1 else [0]
             g = self.g[group.rows, None]
-            found[:, group.rows] = self.response.inside(group.pressure, g, X[of_each], Y[of_each])
-        return found
+            stresses[:, group.rows] = self.response.inside(group.pressure, g, X[of_each], Y[of_each])
+        return stresses
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """The same at points with Y <= 0, those of the surface among them."""
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points with Y <= 0, on the surface, too, (3, states, n)."""
         X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
         on = np.broadcast_to(Y == 0.0, (len(self.g), X.shape[1]))
-        found = self.inside(X, np.where(Y == 0.0, -1.0, Y))
+        stresses = self.inside(X, np.where(Y == 0.0, -1.0, Y))
         for group in self.groups:
             for row in group.rows[on[group.rows].any(axis=1)].tolist():
                 r = X[row if len(X) > 1 else 0, on[row]]
                 alone = self._alone(row, group)
                 σ_YY = np.zeros((1, len(r)))
                 σ_YY[:, np.abs(r) < 1.0] = alone.σ_YY(r[np.abs(r) < 1.0])
-                found[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
-        return found
+                stresses[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
+        return stresses
 
     @property
     def turns(self) -> NDArray[np.float64]:
-        """Places over the half-width at which stresses are finite and have a power of the distance: free
-        ends and kinks; NaN for none, (states, k)."""
+        """Free ends and kinks over the half-width, (states, k); NaN for none.
+
+        Stresses are finite there, and go with a power of the distance.
+        """
         each: list[list[float]] = [[] for _ in self.g]
         for group in self.groups:
             kinks = [] if len(group.infinite) else list(group.cusps[0])
             for row, α, β in zip(group.rows.tolist(), group.α, group.β):
                 each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
-        found = np.full((len(each), max(map(len, each))), np.nan)
-        for row, places in zip(found, each):
+        positions = np.full((len(each), max(map(len, each))), np.nan)
+        for row, places in zip(positions, each):
             row[: len(places)] = places
-        return found
+        return positions
 
     def _alone(self, row: int, group: Group) -> "Contacts":
-        """One state."""
+        """Contact of one state, whose number is ``row``, of a group."""
         i = int(np.flatnonzero(group.rows == row)[0])
         pressure = group.pressure
         if isinstance(pressure, Weighted):
@@ -312,15 +319,15 @@ class Contacts:
                 np.asarray(part)[i : i + 1] for part in (pressure.α, pressure.β, pressure.A, pressure.B)
             )
             pressure = Weighted(α, β, A, B, pressure.order)
-        some = slice(i, i + 1)
+        rows = slice(i, i + 1)
         alone = Group(
-            np.array([0]), pressure, group.α[some], group.β[some], group.half_width[some],
-            group.centre[some], group.K_I[some], group.infinite, group.cusps,
+            np.array([0]), pressure, group.α[rows], group.β[rows], group.half_width[rows],
+            group.centre[rows], group.K_I[rows], group.infinite, group.cusps,
         )  # fmt: skip
         return Contacts(self.response, self.g[row : row + 1], (alone,))
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest contact pressure, and where; NaN where it is infinite: (states,) each."""
+        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
         value, place = np.full((2, len(self.g)), np.nan)
         for group in self.groups:
             finite = (group.α > 0.0) & (group.β > 0.0) & (not group.infinite)
@@ -330,7 +337,7 @@ class Contacts:
 
 
 def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest pressure and its place."""
+    """Largest pressure of each state of a group and its place over the half-width, (rows,) each."""
     if isinstance(group.pressure, Weighted):
         place = (group.β - group.α) / (group.β + group.α)
         return -group.pressure.σ_YY(place[:, None])[:, 0], place
@@ -341,30 +348,30 @@ def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def largest(
     pressure: Callable[[NDArray], NDArray], cusps: tuple[Sequence[float], float] = ((), 0.0)
 ) -> tuple[float, float]:
-    """The largest pressure under a punch and its place, by looking nearer and nearer to several tops.
+    """Largest pressure under a punch and its place, by ever finer samples about several tops.
 
     Args:
         pressure: at r in (-1, 1), (points,).
-        cusps: places at which it has a cusp, and the exponent there; 0 where it is d log d.
+        cusps: places of its cusps, and the exponent there; 0 where the cusp is d log d.
     """
     places, exponent = cusps
     beside = np.ravel(np.add.outer(np.array(places, dtype=float), _BESIDE_KINKS))
-    r = np.unique(np.concatenate([_LOOKED_AT, beside[np.abs(beside) < 1.0]]))
+    r = np.unique(np.concatenate([_SAMPLES, beside[np.abs(beside) < 1.0]]))
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    found = [_nearer(pressure, r[i - 1], r[i + 1], places) for i in tops.tolist()]
+    maxima = [_nearer(pressure, r[i - 1], r[i + 1], places) for i in tops.tolist()]
     if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
         for at in places:
             near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
-            found.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
-    return max(found)
+            maxima.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
+    return max(maxima)
 
 
 def _nearer(
     pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float]
 ) -> tuple[float, float]:
-    """The largest pressure between two places, and where; a parabola at last, if there is no kink."""
+    """Largest pressure between two places, and its place; by a parabola at last, if there is no kink."""
     for _ in range(_ROUNDS):
         r = np.linspace(low, high, _BETWEEN)
         p = pressure(r)
@@ -375,10 +382,10 @@ def _nearer(
             break
     if any(low <= at <= high for at in kinks):
         return float(p.max()), float(r[p.argmax()])
-    left, middle, right = p[i - 1 : i + 2]
-    bend = left - 2.0 * middle + right
-    u = float(np.clip((left - right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
-    top = middle + (right - left) * u / 2.0 + bend * u**2 / 2.0
+    p_left, p_middle, p_right = p[i - 1 : i + 2]
+    bend = p_left - 2.0 * p_middle + p_right
+    u = float(np.clip((p_left - p_right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
+    top = p_middle + (p_right - p_left) * u / 2.0 + bend * u**2 / 2.0
     return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
 
 
@@ -391,27 +398,27 @@ class Exponents:
 
 
 def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
-    """What the local analysis says of the ends: as of a flat punch at sharp ones, one more at others."""
+    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
     flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
     if all(sharp):
         return flat
     try:
-        found = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
+        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
     except SolveError:
-        found = None  # told of by the method that solves
-    if found:
-        return Exponents(found.of("α"), found.of("β"))
+        exact = None  # the method that solves reports it
+    if exact:
+        return Exponents(exact.of("α"), exact.of("β"))
     return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
 
 
 def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
-    """The contacts of a punch.
+    """Contacts of a punch with free ends.
 
     Args:
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY under the punch, (states,).
-        profile: of the punch; its ends are found.
-        load: N/μ [m], or that of each state, (states,).
+        profile: profile of the punch, with a free end at least.
+        load: N/μ [m], a number or one for each state, (states,).
 
     Raises:
         SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
@@ -442,36 +449,36 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
 def _tilted(
     response: Response, g: NDArray, n: NDArray, profile: Flat, load: NDArray
 ) -> tuple[Group, ...]:
-    """Flat punches with both edges in contact, or with one lifted off."""
+    """Contacts of a tilted flat punch: both edges in contact, or one lifted off."""
     flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
     sin, α, β = flat._sin, flat.α, flat.β
     a, b = 1.0 + α, 1.0 + β
     A, B = 2.0 * sin / np.pi, -θ * sin / n * (2.0 * half / load)
     lifted = (A + 2.0 * a * B > 0.0) | (A - 2.0 * b * B > 0.0)
     order = np.where(lifted, 0, -1)
-    # One end given, one found: the contact starts at the lower edge.
+    # One end is sharp, one free: the contact starts at the lower edge.
     share = a if θ > 0.0 else b
     h = np.where(lifted, load * n / (2.0 * np.pi * share * abs(θ)) if θ else half, half)
     centre = np.where(lifted, np.sign(θ) * (h - half), 0.0)
     α, β = (np.where(lifted, α + (θ > 0.0), α), np.where(lifted, β + (θ < 0.0), β))
     A = np.where(lifted, sin / (np.pi * share), A + B * (flat.α - flat.β))
     B = np.where(lifted, 0.0, B)
-    found = []
+    groups = []
     for kind in (-1, 0):
         rows = np.flatnonzero(order == kind)
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
             K = pressure.K_I[:, 0]
-            found.append(Group(rows, pressure, α[rows], β[rows], h[rows], centre[rows], K))
-    return tuple(found)
+            groups.append(Group(rows, pressure, α[rows], β[rows], h[rows], centre[rows], K))
+    return tuple(groups)
 
 
 def _by_quadrature(
     response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
 ) -> Sequence[Group]:
-    """Any convex profile, state after state, equal ones once."""
-    flat, found, start = FlatPunch(response, g), [], None
+    """Contacts of any convex profile, state after state; equal states are solved once."""
+    flat, groups, start = FlatPunch(response, g), [], None
     _, first, inverse = np.unique(
         np.column_stack([load, g]), axis=0, return_index=True, return_inverse=True
     )
@@ -487,14 +494,22 @@ def _by_quadrature(
                 np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
                 np.array([m]), np.zeros((1, 2)), tips, pressure.cusps,
             )  # fmt: skip
-            found.append(group)
-    return found
+            groups.append(group)
+    return groups
 
 
 def pressure_of(
     balance: Balance, response: Response, g: float, m: float, h: float, load: float
 ) -> tuple[FreeEnds, tuple[float, ...]]:
-    """The pressure of a contact, and where it is infinite inside, over the half-width."""
+    """Pressure of a contact with given ends, and the places over h of infinite pressure inside.
+
+    Args:
+        balance: conditions of the ends.
+        response: of the half-plane.
+        g: σ_XY/σ_YY under the punch.
+        m, h: middle and half-width of the contact [m].
+        load: N/μ [m].
+    """
     panels, profile = balance.panels(m, h), balance.profile
     unit = 2.0 * h / load
 

@@ -1,4 +1,4 @@
-"""The pressure that answers any slope of a contact with two free ends, by quadrature in panels.
+"""Pressure under any slope of a contact with two free ends, by quadrature in panels.
 
 With f = μ v,X under the punch over the contact [-1, 1], w = (1 - s)^a (1 + s)^b, a + b = 1, and
 N̂ = n + g n₁₂ the potential of the pressure that vanishes at both ends is
@@ -28,8 +28,8 @@ from ..approximation import legendre_panel
 _NODES = 20
 _τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 
-#: Longest panel; |x| beyond which f is that of the end and the rest is known; grading next to a place
-#: where the slope is not smooth, and how far it goes.
+#: Longest panel; |x| beyond which f is that of the end and the integral is exact; grading next to a place
+#: where the slope is not smooth, and its steps.
 _LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
 
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
@@ -38,7 +38,7 @@ _NEAR = 2.4
 #: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
 _FAR, _CLOSE = 200.0, 0.1
 
-#: Distance from a cusp of the pressure that is as good as none, and that from which it is extrapolated.
+#: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
 _AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
 
 #: Gauss points along a short step, from its start to its end, over which the derivative is summed.
@@ -46,11 +46,11 @@ _along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], 
 
 
 def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
-    """Where panels end in x.
+    """Ends of the panels in x, growing, (panels + 1,).
 
     Args:
         kinks: positions in (-1, 1) at which the slope or its derivative jumps.
-        rough: is the slope no smooth function on both sides of them, but a power?
+        rough: True if the slope beside them is a power that is not smooth.
     """
     inside = kinks[np.abs(kinks) < 1.0]
     at = np.sort(np.log1p(-inside) - np.log1p(inside))
@@ -68,11 +68,11 @@ def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Panels:
-    """Quadrature over the contact.
+    """Quadrature over the contact, in panels of x = log((1 - t)/(1 + t)).
 
     Attributes:
         a: exponent of w at the right end, in (0, 1).
-        ends: of the panels in x.
+        ends: ends of the panels in x, (panels + 1,).
     """
 
     a: float
@@ -102,23 +102,23 @@ class Panels:
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
-        """Of ∫ F(t)/w(t) dt = Σ weights·F, F at :attr:`t`."""
+        """Weights of ∫ F(t)/w(t) dt = Σ weights·F, F at :attr:`t`, (panels·nodes + 2,)."""
         density = np.exp(self.b * self.x - np.logaddexp(0.0, self.x))
         inner = self.half[:, None] * _w * density
         tails = np.exp(-_REACH * np.array([self.b, self.a])) / [self.b, self.a]
         return np.append(inner.ravel(), tails)
 
     def transform(self, f: NDArray, y: NDArray) -> NDArray[Any]:
-        """T(y), a principal value where y is real.
+        """Transform T(y), (points,); a principal value where y is real.
 
         Args:
-            f: at :attr:`t`, (nodes,), or (points, nodes) where it is another for every y.
+            f: values at :attr:`t`, (n,), or (points, n) if f differs from y to y.
             y: (points,).
         """
         return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, False)
 
     def derivative(self, f: NDArray, y: NDArray) -> NDArray[np.complex128]:
-        """dT/dy off the real axis; of one f."""
+        """Derivative dT/dy off the real axis, (points,), for f at :attr:`t`, (n,)."""
         return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, True)
 
     def _transform(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
@@ -128,35 +128,35 @@ class Panels:
         near = np.abs(ζ + root) < _NEAR
         kernel = _kernels(self.b, self.x, y, derived)
         by_panel = ((values * kernel) @ _w) * self.half
-        found = np.where(near, 0.0, by_panel).sum(axis=1)
+        integral = np.where(near, 0.0, by_panel).sum(axis=1)
         point, panel = np.nonzero(near)
         ξ = self.x[panel] - y[point][:, None]
         simple, double = _smooth(self.b, ξ, derived)
         of_panel = values[point, panel]
-        # Of two panels that meet the distances from there are the same number, and logarithms cancel.
-        left, right = (y[point] - self.ends[panel + i] for i in (0, 1))
-        Q, Q_derived = _second_kind(ζ[point, panel], left, right, self.half[panel], derived)
+        # The distance from the end at which two panels meet is the same number, and logarithms cancel.
+        from_start, from_end = (y[point] - self.ends[panel + i] for i in (0, 1))
+        Q, Q_derived = _second_kind(ζ[point, panel], from_start, from_end, self.half[panel], derived)
         near_part = -2.0 * np.einsum("ik,ik->i", (of_panel * simple) @ _TO_LEGENDRE.T, Q)
         if derived:
             twice = np.einsum("ik,ik->i", (of_panel * double) @ _TO_LEGENDRE.T, Q_derived)
             near_part = near_part - 2.0 * twice / self.half[panel]
-        np.add.at(found := found.astype(np.result_type(found, near_part)), point, near_part)
-        return found + self._tails(f, y, derived)
+        np.add.at(integral := integral.astype(np.result_type(integral, near_part)), point, near_part)
+        return integral + self._tails(f, y, derived)
 
     def _tails(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-        """Beyond the panels, where f is that of the ends: two terms of a power series are all of it."""
-        found: Any = 0.0
+        """Part of T or -dT/dy beyond the panels, where f is that of the ends: two terms of a series."""
+        tails: Any = 0.0
         for value, rate, ξ, sign in (
             (f[:, -2], self.b, -_REACH - y, 1.0), (f[:, -1], self.a, y - _REACH, -1.0)
         ):  # fmt: skip
             for k in (rate, rate + 1.0):
                 term = np.exp(k * ξ) / k
-                found = found + value * (-k * term if derived else sign * term)
-        return found
+                tails = tails + value * (-k * term if derived else sign * term)
+        return tails
 
 
 def _kernels(b: float, x: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-    """:func:`_kernel` of x - y, (points, panels, nodes): the exponential of a sum is a product."""
+    """Kernel :func:`_kernel` at x - y, (points, panels, nodes), by products of exponentials."""
     far = np.abs(y.real) > _FAR
     at = np.where(far, 0.0, y)[:, None, None]
     E = np.exp(x) * np.exp(-at)
@@ -174,7 +174,7 @@ def _kernels(b: float, x: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
 
 
 def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
-    """k = e^(bξ)/(1 - e^ξ), or -dk/dξ, stable for every ξ."""
+    """Kernel k = e^(bξ)/(1 - e^ξ), or -dk/dξ, stable for every ξ."""
     lower = ξ.real < 0.0
     falling = np.where(lower, ξ, -ξ)
     E, rest = np.exp(falling), -np.expm1(falling)
@@ -188,9 +188,9 @@ def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
 
 
 def _smooth(b: float, ξ: NDArray, derived: bool) -> tuple[NDArray[Any], NDArray[Any]]:
-    """What multiplies 1/ξ, and 1/ξ², in the kernel, or in its derivative over -ξ.
+    """Smooth factors of 1/ξ and 1/ξ² in the kernel, or in its negative derivative.
 
-    The kernel is κ/ξ with κ = -e^(bξ) ξ/(e^ξ - 1); its negative derivative κ/ξ² - κ'/ξ.
+    The kernel is κ/ξ with κ = -e^(bξ) ξ/(e^ξ - 1); its negative derivative is κ/ξ² - κ'/ξ.
     """
     small = np.abs(ξ) < 1e-3
     safe = np.where(small, 1.0, ξ)
@@ -204,27 +204,29 @@ def _smooth(b: float, ξ: NDArray, derived: bool) -> tuple[NDArray[Any], NDArray
 
 
 def _second_kind(
-    ζ: NDArray, left: NDArray, right: NDArray, half: NDArray, derived: bool
+    ζ: NDArray, from_start: NDArray, from_end: NDArray, half: NDArray, derived: bool
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Q_k(ζ) with ∫ P_k(τ)/(τ - ζ) dτ = -2 Q_k, principal values for real ζ, and dQ_k/dζ: (n, nodes).
+    """Legendre's functions of the second kind Q_k(ζ), and dQ_k/dζ: (n, nodes) each.
+
+    ∫ P_k(τ)/(τ - ζ) dτ = -2 Q_k, principal values for real ζ.
 
     Args:
-        ζ: in a panel's own coordinate.
-        left, right: distances from its ends, of which ``half`` is half the difference.
+        ζ: in a panel's own coordinate, (n,).
+        from_start, from_end: distances from its ends, of which ``half`` is half the difference, (n,).
         half: half its length.
-        derived: are derivatives wanted?
+        derived: True to compute derivatives.
     """
-    left, right = _off(left), _off(right)
+    from_start, from_end = _off(from_start), _off(from_end)
     if np.iscomplexobj(ζ):
-        first = 0.5 * (np.log(left) - np.log(right))
+        first = 0.5 * (np.log(from_start) - np.log(from_end))
     else:
-        first = 0.5 * np.log(np.abs(left / right))
+        first = 0.5 * np.log(np.abs(from_start / from_end))
     Q = [first, ζ * first - 1.0]
     for k in range(1, _NODES - 1):
         Q.append(((2 * k + 1) * ζ * Q[k] - k * Q[k - 1]) / (k + 1))
     if not derived:
         return np.stack(Q, axis=-1), np.stack(Q, axis=-1)
-    steepness = -(half**2) / (left * right)
+    steepness = -(half**2) / (from_start * from_end)
     D = [steepness, first + ζ * steepness]
     for k in range(1, _NODES - 1):
         D.append(D[k - 1] + (2 * k + 1) * Q[k])
@@ -232,18 +234,18 @@ def _second_kind(
 
 
 def _off(distance: NDArray) -> NDArray[Any]:
-    """Not quite at a panel's end: the logarithms of two panels cancel there, infinite ones would not."""
+    """Distances from a panel's end, none 0: infinite logarithms of two panels would not cancel."""
     return np.where(np.abs(distance) < 1e-300, 1e-300, distance)
 
 
 @dataclass(frozen=True)
 class FreeEnds:
-    """The pressure of a contact [-1, 1] with two free ends, over N/(2h).
+    """Pressure of a contact [-1, 1] with two free ends, over N/(2h).
 
     Attributes:
-        panels: of the contact.
+        panels: quadrature over the contact.
         f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
-        slope: the same at any positions in the contact.
+        slope: function that gives μ v,X over N/(2h) at any positions in the contact.
         n, Q: n + g n₁₂ and g q of the half-plane.
         cusps: positions at which the pressure has a cusp, and its exponent there, below 1; 0 for none.
     """
@@ -264,55 +266,55 @@ class FreeEnds:
         f = self.slope(r)
         # Without f(r) nothing cancels towards the ends.
         T = self.panels.transform(self.f - f[:, None], np.log1p(-r) - np.log1p(r))
-        found = -self._factor * np.sin(np.pi * self.panels.a) * T
+        stress = -self._factor * np.sin(np.pi * self.panels.a) * T
         places, exponent = self.cusps
         for at in places if exponent else ():
-            here = np.abs(r - at) < _AT_CUSP
-            if here.any():  # what is left of the smallest panel there is not small
-                found[here] = self._at_cusp(at, exponent)
-        return found
+            at_cusp = np.abs(r - at) < _AT_CUSP
+            if at_cusp.any():  # the part of the smallest panel that is missed there is not small
+                stress[at_cusp] = self._at_cusp(at, exponent)
+        return stress
 
     def _at_cusp(self, at: float, exponent: float) -> float:
-        """σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
+        """Contact stress at a cusp: σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
         d = _BESIDE_CUSP * np.array([-1.0, 1.0])
         near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
         return near + (near - far) / (2.0**exponent - 1.0)
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface, (points,)."""
-        found, inside, beside = np.empty(len(r)), np.abs(r) < 1.0, np.abs(r) > 1.0
+        transform, inside, beside = np.empty(len(r)), np.abs(r) < 1.0, np.abs(r) > 1.0
         under, end = r[inside], ~inside & ~beside
-        found[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
-        found[end] = self.slope(r[end]) / self.n
-        found[beside] = self.at(r[beside] - 0.0j).real
-        return found
+        transform[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
+        transform[end] = self.slope(r[end]) / self.n
+        transform[beside] = self.at(r[beside] - 0.0j).real
+        return transform
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
         flat = np.ravel(z).astype(complex)
-        found = self._phase * self.panels.transform(self.f, _seen(flat))
-        return found.reshape(np.shape(z))
+        value = self._phase * self.panels.transform(self.f, _logarithm(flat))
+        return value.reshape(np.shape(z))
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         shape = np.broadcast_shapes(np.shape(z), np.shape(step))
         z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
-        found, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
+        change, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
         z, step = z[stepped], step[stepped]
         δ: NDArray = -step / (1.0 - z) - step / (1.0 + z)
         if share != 0.0:
             δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
-        y = _seen(z)
+        y = _logarithm(z)
         for node, weight in zip(_along, _along_weights):
-            found[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
-        return (self._phase * found).reshape(shape)
+            change[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
+        return (self._phase * change).reshape(shape)
 
     @property
     def _phase(self) -> complex:
         return complex(-self._factor * np.exp(-1j * np.pi * self.panels.a))
 
 
-def _seen(z: NDArray) -> NDArray[np.complex128]:
-    """log((1 - z)/(1 + z)) with its imaginary part in (0, π] below the surface and beside the contact."""
+def _logarithm(z: NDArray) -> NDArray[np.complex128]:
+    """Coordinate y = log((1 - z)/(1 + z)), 0 < Im y <= π below the surface and beside the contact."""
     y = np.log((1.0 - z) / (1.0 + z))
     return y.real + 1j * np.abs(y.imag)
 

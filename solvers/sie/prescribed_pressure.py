@@ -1,4 +1,4 @@
-"""Exact solution for a pressure that is put in, linear between knots, with σ_XY = g σ_YY.
+"""Exact solution for a prescribed pressure, linear between knots, with σ_XY = g σ_YY.
 
 A piece from x₀ to x₁ has its middle at m, its half-width h and its own coordinate w = (z - m)/h. With
 L = log((w - 1)/(w + 1)) its part of ∫ σ/(t - z) dt is σ(w) L + σ₁ - σ₀. Where two pieces meet their
@@ -17,14 +17,14 @@ from scipy.special import log1p
 from ..contact import from_edge
 from ..solids.solid import Response
 
-#: |w| from which powers of 1/w serve, and how many of them: 4^-27 is no digit any more.
+#: |w| from which powers of 1/w serve, and their number: 4^-27 is below rounding.
 _FAR, _POWERS = 2.0, 27
 
 #: A point nearer to a knot than this is moved to this distance, over a: the logarithms of two pieces
 #: cancel there, but infinite ones would not.
 _NEXT_TO_KNOT = 1e-30
 
-#: Pairs of a piece and a point that are looked at together.
+#: Pairs of a piece and a point that are computed together.
 _AT_ONCE = 50_000
 
 
@@ -66,16 +66,16 @@ class LinearPressure:
     @staticmethod
     def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:
         """Φ, or its real part on the surface, of all pieces."""
-        return functools.reduce(np.add, (of_some.sum(axis=0) for of_some in integrals)) / np.pi
+        return functools.reduce(np.add, (of_pieces.sum(axis=0) for of_pieces in integrals)) / np.pi
 
     def _pieces(self, z: NDArray) -> Iterator["_Pieces"]:
-        """Pieces that are loaded, some at a time, with the points z seen from them."""
+        """Pieces that are loaded, as many at a time as memory allows, with the points z."""
         loaded = np.flatnonzero((self.values[1:] != 0.0) | (self.values[:-1] != 0.0))
         ends = np.stack([loaded, loaded + 1])
         together = max(1, _AT_ONCE // max(z.size, 1))
         for first in range(0, len(loaded), together):
-            some = ends[:, first : first + together].reshape(2, -1, *(1,) * z.ndim)
-            yield _Pieces(self.knots[some], self.values[some], z)
+            group = ends[:, first : first + together].reshape(2, -1, *(1,) * z.ndim)
+            yield _Pieces(self.knots[group], self.values[group], z)
 
 
 class _Pieces:
@@ -96,7 +96,7 @@ class _Pieces:
         self._far = abs(self._w) > _FAR
 
     def at(self) -> NDArray[Any]:
-        """The integrals."""
+        """Integrals ∫ σ/(t - z) dt, (pieces, ...)."""
         ratio = self._right / self._left
         L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
         v = 1.0 / np.where(self._far, self._w, np.inf)
@@ -105,13 +105,13 @@ class _Pieces:
         return np.where(self._far, far, self._pressure * L + 2.0 * slope)
 
     def change(self, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """Their change for a step share·step of the points, over share."""
+        """Change of the integrals for a step share·step of the points, over share, (pieces, ...)."""
         d = step / self._half
-        left, right = self._left + share * d, self._right + share * d
-        growth = 2.0 * d / (left * self._right)
+        from_left, from_right = self._left + share * d, self._right + share * d
+        growth = 2.0 * d / (from_left * self._right)
         if share != 0.0:
             growth = log1p(share * growth) / share  # of L
-        near = self._pressure * growth + self._slope * d * np.log(right / left)
+        near = self._pressure * growth + self._slope * d * np.log(from_right / from_left)
         far = self._far & (abs(self._w + share * d) > _FAR)
         w = np.where(far, self._w, np.inf)
         v, moved = 1.0 / w, 1.0 / (w + share * d)
@@ -131,7 +131,7 @@ class _Pieces:
 
     @property
     def _pressure(self) -> NDArray[Any]:
-        """The linear function, at the points; exact at both ends."""
+        """Linear function of the piece at the points; exact at both ends."""
         return (self._values[1] * self._left - self._values[0] * self._right) / 2.0
 
 
@@ -140,7 +140,7 @@ def _moved(distance: NDArray) -> NDArray[Any]:
 
 
 def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDArray[Any]]:
-    """S = Σ q^k/(2k + first) and (S(other) - S(q))/(other - q), by Horner's rule."""
+    """Series S = Σ q^k/(2k + first), and (S(other) - S(q))/(other - q), by Horner's rule."""
     S, divided = np.zeros_like(q), np.zeros_like(q)
     for k in reversed(range(_POWERS)):
         divided = divided * other + S
@@ -150,12 +150,12 @@ def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDA
 
 @dataclass(frozen=True)
 class GivenPressure:
-    """The exact solution of a pressure put in, at one speed.
+    """Exact solution for a prescribed pressure, at one speed.
 
     Args:
         response: of the half-plane at that speed.
         g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
-        pressure: what is put in.
+        pressure: prescribed pressure.
     """
 
     response: Response

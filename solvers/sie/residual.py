@@ -1,20 +1,18 @@
-"""How far an answer is from the equations that it was not computed by.
+"""Residuals of a solution in equations that it was not computed by, and the indentation by its pressure.
 
-A pressure is put into the singular integral equation N̂ H[σ_YY] - Q σ_YY = μ v,X, N̂ = n + g n₁₂, Q = g q.
-A field inside is held against the line loads that its pressure is made of, and its resultants at a depth
-against those of the surface. All integrals over the contact are one rule in x = log((1 + t)/(1 - t)), in
-which powers of the distance from the ends are exponentials; the pressure without such powers is smooth
-there but for kinks, towards which panels halve.
+The residual of a pressure is that of the singular integral equation N̂ H[σ_YY] - Q σ_YY = μ v,X,
+N̂ = n + g n₁₂, Q = g q. A field inside is compared with the sum of the line loads that its pressure is
+made of, and its resultants at a depth with those of the surface. All integrals over the contact are one
+rule in x = log((1 + t)/(1 - t)), in which powers of the distance from the ends are exponentials; the
+pressure without such powers is smooth there but for kinks, towards which panels halve.
 
-How deep a punch is, from the pressure below it: the surface's displacement by line loads.
-
-Line loads move the surface, by v,X = (n + g n₁₂) H[σ_YY] - g q σ_YY, so that at the left end of the
-contact
+The indentation v₀ is from the pressure below the punch. Line loads move the surface, by
+v,X = (n + g n₁₂) H[σ_YY] - g q σ_YY, so that at the left end of the contact
 
     μ v(-1) = -(n + g n₁₂)/π ∫ σ_YY(t) log((1 + t)/D) dt + (g q/2) ∫ σ_YY(t) dt,
 
-with D the distance at which a line load does not move it, the mean of both sides. There the punch has the
-height P(-1), and v = P(-1) - v₀.
+with D the distance at which a line load does not move it, the mean of both sides. The punch has the
+height P(-1) at that end, and v = P(-1) - v₀.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,21 +25,21 @@ from ..solids.potentials import DATUM
 from ..solids.solid import Response
 from .closed_form import Weighted
 
-#: Panels' ends where nothing is near: beyond |x| = 12 all is powers of e^x, beyond 300 nothing is left.
+#: Panels' ends off all kinks: beyond |x| = 12 all is powers of e^x, beyond 300 it is negligible.
 _OUTER = np.append(np.arange(12.0, 300.0, 8.0), 300.0)
 _ENDS = np.concatenate([-_OUTER[::-1], np.linspace(-12.0, 12.0, 17)[1:-1], _OUTER])
 #: Points and weights of a panel; the shortest panel.
 _τ, _w = np.polynomial.legendre.leggauss(12)
 _SHORTEST = 1e-9
 
-#: Places under the punch at which the equation is looked at, and how far from a kink.
+#: Places under the punch at which the residual is evaluated, and their least distance from a kink.
 _AT, _OFF_KINKS = np.cos(np.pi * (np.arange(16) + 0.5) / 16.0), 0.02
-#: Nearer to an end than this the pressure without its powers is that at this distance.
+#: Distance from an end within which the pressure without its powers is taken as constant.
 _NEXT_TO_END = 1e-7
 
-#: Points inside that are looked at, and along a line at a depth, over what that is wider than deep.
+#: Points inside at which line loads are summed; points along a line at a depth, over its width by depth.
 _INSIDE, _ALONG = 6, 64
-#: Least depth over a at which a point is looked at.
+#: Least depth over a of a point at which line loads are summed.
 _DEEP = 1e-3
 
 #: σ_YY over N/(2a) at positions (n,) of all states: (states, n).
@@ -49,11 +47,11 @@ Pressure = Callable[[NDArray], NDArray]
 
 
 class Rule:
-    """Points in (-1, 1) and weights.
+    """Quadrature over the contact: points in (-1, 1) and weights.
 
     Args:
         at: positions towards which panels halve.
-        sizes: to which, in x.
+        sizes: size in x of the smallest panel at each.
 
     Attributes:
         t, left, right: positions, and distances from both ends, (n,).
@@ -74,11 +72,11 @@ class Rule:
         self._weights = (half[:, None] * _w).ravel() * self.left * self.right / 2.0
 
     def weights(self, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-        """Of ∫ (1 - t)^α (1 + t)^β F dt, (states, n); exponents (states,)."""
+        """Weights of ∫ (1 - t)^α (1 + t)^β F dt, (states, n); exponents (states,)."""
         return self._weights * self.right ** α[:, None] * self.left ** β[:, None]
 
     def smooth(self, pressure: Pressure, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-        """A pressure over (1 - t)^α (1 + t)^β, (states, n)."""
+        """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""
         return _smooth(pressure, np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END), α, β)
 
 
@@ -95,16 +93,16 @@ def of_pressure(
     kinks: Sequence[float] | NDArray = (),
     breaks: Sequence[float] | NDArray = (),
 ) -> NDArray[np.float64]:
-    """What a pressure leaves of the integral equation, over its own part in it, (states,).
+    """Residual of a pressure in the integral equation, over N̂ times the largest pressure, (states,).
 
     Args:
         response: of the half-plane.
         g: σ_XY/σ_YY, (states,).
         exponents: α at the right and β at the left end, (states,) each; their sum is whole.
         slope: μ v,X under the punch over N/(2a).
-        pressure: the pressure.
+        pressure: contact stress over N/(2a).
         kinks: places at which the pressure is not smooth.
-        breaks: places between which it is a polynomial, if it is one.
+        breaks: ends of pieces in which the pressure is a polynomial; none for other pressures.
     """
     α, β = exponents
     sizes = np.append(np.full(len(kinks), _SHORTEST), np.full(len(breaks), 1.0))
@@ -114,17 +112,17 @@ def of_pressure(
     order = np.round(α + β).astype(int)
     H = np.empty_like(at)
     for kind in np.unique(order).tolist():
-        some = order == kind
-        ends = α[some, None], β[some, None]
-        H[some] = Weighted(*ends, 1.0, 0.0, kind).hilbert(s) * at[some]
+        rows_of_order = order == kind
+        ends = α[rows_of_order, None], β[rows_of_order, None]
+        H[rows_of_order] = Weighted(*ends, 1.0, 0.0, kind).hilbert(s) * at[rows_of_order]
     weights = rule.weights(α, β) / np.pi
-    # Σ w (p(t) - p(s))/(t - s), as a matrix and what it has of p(s).
+    # Σ w (p(t) - p(s))/(t - s): a matrix times p(t), less the part of p(s).
     divided = 1.0 / (rule.t[:, None] - s)
     H += (weights * p) @ divided - at * (weights @ divided)
     σ = pressure(s)
     own = (response.n + g * response.n12)[:, None]
-    left = own * H - (g * response.q)[:, None] * σ - slope(s)
-    return np.asarray(np.abs(left).max(axis=1) / (own[:, 0] * np.abs(σ).max(axis=1)))
+    defect = own * H - (g * response.q)[:, None] * σ - slope(s)
+    return np.asarray(np.abs(defect).max(axis=1) / (own[:, 0] * np.abs(σ).max(axis=1)))
 
 
 def of_contact(
@@ -137,13 +135,13 @@ def of_contact(
     kinks: Sequence[float] | NDArray = (),
     breaks: Sequence[float] | NDArray = (),
 ) -> NDArray[np.float64]:
-    """:func:`of_pressure` of a punch.
+    """Residual :func:`of_pressure` for the contact of a punch, (states,).
 
     Args:
-        response, g, pressure, kinks, breaks: the same.
+        response, g, pressure, kinks, breaks: as in :func:`of_pressure`.
         local: exponents α and β, (states,).
-        body: what slides over what, under the load of each state.
-        lengths: middle and half-width of each contact [m], (states,), where ends are found.
+        body: punch and half-plane, under the load of each state.
+        lengths: middle and half-width of each contact [m], (states,), with free ends.
     """
     m, h = lengths or (np.zeros(len(g)), np.full(len(g), body.half_width))
     unit = np.broadcast_to(h / body.displacement, g.shape)
@@ -159,8 +157,8 @@ class _LineLoads:
     """Φ of line loads on the surface, see :class:`galinx.solvers.solids.solid.Potential`.
 
     Args:
-        t: their positions, (n,).
-        loads: ∫σ_YY of each, (states, n).
+        t: positions, (n,).
+        loads: ∫σ_YY of each load, (states, n).
     """
 
     def __init__(self, t: NDArray, loads: NDArray) -> None:
@@ -189,27 +187,27 @@ def of_field(
     points: NDArray,
     kinks: Sequence[float] | NDArray = (),
 ) -> NDArray[np.float64]:
-    """How far stresses inside are from line loads and from equilibrium, over the largest, (states,).
+    """Residual of stresses inside against line loads and equilibrium, over the largest, (states,).
 
     Args:
-        response, g, exponents, pressure, kinks: of :func:`of_pressure`.
+        response, g, exponents, pressure, kinks: as in :func:`of_pressure`.
         inside: σ_XX, σ_YY, σ_XY at X and Y (n,), (3, states, n).
-        points: at which line loads are summed, some of many, (m, 2).
+        points: positions X, Y, (m, 2), at a few of which line loads are summed.
     """
     α, β = exponents
     deep = points[points[:, 1] <= -_DEEP]
-    some = deep[np.unique(np.linspace(0, len(deep) - 1, min(_INSIDE, len(deep))).astype(int))]
-    X, Y = some.T
+    samples = deep[np.unique(np.linspace(0, len(deep) - 1, min(_INSIDE, len(deep))).astype(int))]
+    X, Y = samples.T
     feet = [X + p * Y for p in response.roots.each]
     at = np.concatenate([kinks, *(z.real for z in feet)])
     sizes = np.concatenate([np.full(len(kinks), _SHORTEST), *(0.3 * np.abs(z.imag) for z in feet)])
     rule = Rule(at, sizes)
     loads = rule.weights(α, β) * rule.smooth(pressure, α, β)
     off = np.zeros(len(g))
-    if len(some):
-        wanted = response.inside(_LineLoads(rule.t, loads), g[:, None], X[None], Y[None])
-        size = np.abs(wanted).max(axis=(0, 2))
-        off = np.abs(inside(X, Y) - wanted).max(axis=(0, 2)) / size
+    if len(samples):
+        reference = response.inside(_LineLoads(rule.t, loads), g[:, None], X[None], Y[None])
+        size = np.abs(reference).max(axis=(0, 2))
+        off = np.abs(inside(X, Y) - reference).max(axis=(0, 2)) / size
     # Along a line below the surface: X = L tan θ, in which what is analytic in 1/X is periodic.
     depth = 1.0 / min(p.imag for p in response.roots.each)
     L = depth * max(abs(p) for p in response.roots.each)
@@ -221,33 +219,33 @@ def of_field(
     return np.asarray(np.maximum(off, balance / np.abs(loads).sum(axis=1)))
 
 
-#: Places of the tanh-sinh rule, and how far it goes towards the ends.
+#: Places of the tanh-sinh rule, and its half-length.
 _COUNT, _FAR = 400, 2.9
 #: Share of the load next to the ends that the rule may leave.
 _BEYOND = 1e-3
 
 
 def places() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Positions over a under the punch, dense at its ends, and the weights of an integral: (n,) each."""
+    """Positions over a under the punch, dense at its ends, and weights of an integral: (n,) each."""
     t, step = np.linspace(-_FAR, _FAR, _COUNT, retstep=True)
     u = np.pi / 2.0 * np.sinh(t)
     return np.tanh(u), step * np.pi / 2.0 * np.cosh(t) / np.cosh(u) ** 2
 
 
 def indentation(response: Response, g: NDArray, σ_YY: NDArray, height: Any) -> NDArray[np.float64]:
-    """v₀ of the punch's lowest point over N/(2μ), (states,), to about 2e-5 of it.
+    """Indentation v₀ of the punch's lowest point over N/(2μ), (states,), to about 2e-5 of it.
 
-    NaN where pressures are so singular that the rule does not reach much of the load.
+    NaN where the pressure is so singular that the rule misses much of the load.
 
     Args:
         response: of a uniform half-plane at its speed.
         g: σ_XY/σ_YY, (states,).
         σ_YY: over N/(2a) at :func:`places`, (states, n).
-        height: of the punch at the left end of the contact over N/(2μ), (states,).
+        height: height of the punch at the left end of the contact over N/(2μ), (states,).
     """
     X, weights = places()
     weighted = σ_YY * weights
-    # What the rule leaves next to the ends of a sharp punch is in the load, which is 2.
+    # The exact load is -2: the difference is the part next to the ends of a sharp punch.
     load = weighted.sum(axis=1)
     beyond = np.abs(load / -2.0 - 1.0) > _BEYOND
     mean = weighted @ np.log((1.0 + X) / DATUM) / load

@@ -1,4 +1,4 @@
-"""Solids of which nothing is assumed but a plane of symmetry normal to Z."""
+"""Anisotropic solids with a plane of symmetry normal to Z."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -30,7 +30,7 @@ class Anisotropic(PlaneSolid):
     ρ: float = density()
     along_Z: tuple[float, ...] = numbers(
         "stiffness_Z", "stiffness c13, c23, c36", "Pa", 3, optional=True,
-        note="tells σ_ZZ in plane strain, which is NaN without it",
+        note="determines σ_ZZ in plane strain, which is NaN without it",
     )  # fmt: skip
     plane: str = in_plane()
 
@@ -68,8 +68,8 @@ class Anisotropic(PlaneSolid):
 
     def words(self) -> str:
         names = ("c11", "c12", "c16", "c22", "c26", "c66")
-        told = ", ".join(f"{name} = {value:.6g} Pa" for name, value in zip(names, self.constants))
-        return f"{told}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        constants = ", ".join(f"{name} = {value:.6g} Pa" for name, value in zip(names, self.constants))
+        return f"{constants}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
 
 
 SOLIDS.register("anisotropic", Anisotropic)

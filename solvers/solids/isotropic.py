@@ -57,12 +57,12 @@ class Isotropic:
 
     @property
     def nearly_incompressible(self) -> bool:
-        """Near ν = 1/2 in plane strain."""
+        """True near ν = 1/2 in plane strain."""
         return self.κ - 1.0 < INCOMPRESSIBLE
 
     @property
     def knows_σ_ZZ(self) -> bool:
-        """It always is."""
+        """True: the constants are always enough for σ_ZZ."""
         return True
 
     @property
@@ -76,7 +76,7 @@ class Isotropic:
 
     @property
     def flutter(self) -> tuple[float, float]:
-        """σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else none.
+        """Least σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else infinite.
 
         By n and q the condition is β_d = ∓ i g (2w - 1), with w = (1 + k - k c²)/(1 + β_s β_d).
         Between c_s and c_d, g is real at c² = 2 alone, where it is 1; that is below c_d² = 1/k for ν > 0.
@@ -132,7 +132,7 @@ class MovingFrame:
 
     @property
     def c11(self) -> float:
-        """Stiffness over μ against being stretched with nothing across, 1/k; infinite at ν = 1/2."""
+        """Stiffness over μ along X without strain across, 1/k; infinite at ν = 1/2."""
         return 1.0 / self.k if self.k else inf
 
     @property
@@ -142,17 +142,17 @@ class MovingFrame:
 
     @property
     def c22(self) -> float:
-        """That along Y is that along X."""
+        """Stiffness over μ along Y without strain across, equal to :attr:`c11`."""
         return self.c11
 
     @property
     def c16(self) -> float:
-        """Nothing is sheared by being stretched."""
+        """Coupling of σ_XX and shear over μ: none."""
         return 0.0
 
     @property
     def c26(self) -> float:
-        """Nor along Y."""
+        """Coupling of σ_YY and shear over μ: none."""
         return 0.0
 
     @cached_property
@@ -217,7 +217,7 @@ class MovingFrame:
 
     @property
     def mirrored(self) -> bool:
-        """It is its own mirror image."""
+        """True: an isotropic solid is its own mirror image."""
         return True
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
@@ -241,14 +241,14 @@ class MovingFrame:
 
     @cached_property
     def G(self) -> NDArray[Any]:
-        """u,Y = G u,X of what decays below the surface, (2, 2); regular up to ν = 1/2 and at rest."""
+        """Matrix of u,Y = G u,X of decaying fields, (2, 2); regular up to ν = 1/2 and at rest."""
         s, d, k, w = self.β_s, self.β_d, self.k, self._w
         across = (1.0 - k) / ((s + d) * w)
         return np.array([[1j * d / w, -s * across], [-d * across, 1j * s * k / w]])
 
     @cached_property
     def L(self) -> NDArray[Any]:
-        """Stiffness of the surface, (σ_XY, σ_YY) = L u,X of what decays, (2, 2); regular likewise."""
+        """Stiffness of the surface, (σ_XY, σ_YY) = L u,X of decaying fields, (2, 2); regular as G."""
         s, d, w = self.β_s, self.β_d, self._w
         coupling = 1.0 - s * (1.0 - self.k) / ((s + d) * w)
         return np.array([[1j * d / w, coupling], [-coupling, 1j * s / w]])
@@ -260,7 +260,7 @@ class MovingFrame:
 
     @cached_property
     def roots(self) -> Roots:
-        """iβ_s and iβ_d by their sum and product."""
+        """Roots iβ_s and iβ_d by their sum and product."""
         return Roots(1j * (self.β_s + self.β_d), complex(-self.β_s * self.β_d))
 
     @property

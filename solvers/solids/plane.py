@@ -1,8 +1,7 @@
-"""Solids given by their stiffness in the plane: what orthotropic, cubic and anisotropic ones share.
+"""Solids given by their stiffness in the plane, and their half-plane seen from a load that moves over it.
 
-The half-plane of any uniform solid seen from a load that moves over it.
-
-With the stiffness C over c₆₆ in the frame of the scene, c the speed over √(c₆₆/ρ) and
+Orthotropic, cubic and anisotropic solids share this base. With the stiffness C over c₆₆ in the frame of
+the scene, c the speed over √(c₆₆/ρ) and
 
     Q = [[c₁₁ - c², c₁₆], [c₁₆, c₆₆ - c²]],  R = [[c₁₆, c₁₂], [c₆₆, c₂₆]],  T = [[c₆₆, c₂₆], [c₂₆, c₂₂]]
 
@@ -29,7 +28,7 @@ from .solid import Potential
 
 @dataclass(frozen=True)
 class AnisotropicFrame:
-    """Surface and inside of such a half-plane, see :class:`galinx.solvers.solids.solid.Response`.
+    """Half-plane of an anisotropic solid at a speed, see :class:`galinx.solvers.solids.solid.Response`.
 
     Args:
         c11, c12, c16, c22, c26: stiffness over c₆₆, positive definite.
@@ -46,16 +45,16 @@ class AnisotropicFrame:
     c26: float
     c: float
 
-    #: c₆₆ over itself.
+    #: Stiffnesses are over c₆₆.
     c66 = 1.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.c < 1.0 or self._found is None:
+        if not 0.0 <= self.c < 1.0 or self._decaying_roots is None:
             raise ValueError(f"c = {self.c!r}: expected a speed below that of all waves in the solid")
 
     @cached_property
     def _matrices(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Q, R and T."""
+        """Matrices Q, R and T of the equations of motion, (2, 2) each."""
         inertia = (self.c * self.c) * np.eye(2)
         Q = np.array([[self.c11, self.c16], [self.c16, self.c66]]) - inertia
         R = np.array([[self.c16, self.c12], [self.c66, self.c26]])
@@ -63,34 +62,34 @@ class AnisotropicFrame:
         return Q, R, T
 
     @cached_property
-    def _found(self) -> Roots | None:
-        """The roots, None where there are none."""
+    def _decaying_roots(self) -> Roots | None:
+        """Roots p with Im p > 0, None where a root is real."""
         Q, R, T = self._matrices
         mixed = R + R.T
-        one, across, other = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
-        return roots(np.convolve(one, other) - np.convolve(across, across))
+        first, second, third = np.array([T, mixed, Q])[:, [0, 0, 1], [0, 1, 1]].T
+        return roots(np.convolve(first, third) - np.convolve(second, second))
 
     @property
     def roots(self) -> Roots:
-        """Of the planes in which the fields are analytic."""
-        assert self._found
-        return self._found
+        """Roots p of the planes X + pY in which the fields are analytic, Im p > 0."""
+        assert self._decaying_roots
+        return self._decaying_roots
 
     @cached_property
     def G(self) -> NDArray[Any]:
-        """u,Y = G u,X of what decays below the surface: the quadratic less T times that of the roots."""
+        """Matrix of u,Y = G u,X of decaying fields: the quadratic less T times that of the roots."""
         Q, R, T = self._matrices
         return np.linalg.solve(R + R.T + self.roots.sum * T, self.roots.product * T - Q)
 
     @cached_property
     def L(self) -> NDArray[Any]:
-        """Y⁻¹ of the surface: (σ_XY, σ_YY) = Y⁻¹ u,X of what decays."""
+        """Stiffness of the surface, (σ_XY, σ_YY) = L u,X of decaying fields, (2, 2)."""
         _, R, T = self._matrices
         return R.T + T @ self.G
 
     @cached_property
     def T_inverse(self) -> NDArray[np.float64]:
-        """T⁻¹, (2, 2)."""
+        """Inverse T⁻¹ of the stiffness across, (2, 2)."""
         return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
 
     @cached_property
@@ -119,18 +118,18 @@ class AnisotropicFrame:
 
     @cached_property
     def least_stiffness(self) -> float:
-        """Smallest eigenvalue of the surface's stiffness -iY⁻¹, Hermitian; it falls with speed."""
+        """Smallest eigenvalue of the surface's Hermitian stiffness -iL; it falls with speed."""
         Z = -1j * self.L
         return float(np.linalg.eigvalsh((Z + Z.conj().T) / 2.0)[0])
 
     @cached_property
     def margin(self) -> float:
-        """That over its value at rest; 0 at the speed of a wave along the surface."""
+        """Least stiffness over its value at rest; 0 at the speed of a wave along the surface."""
         return self.least_stiffness / self.at(0.0).least_stiffness
 
     @property
     def contraction(self) -> complex:
-        """Midway between the roots."""
+        """Point midway between the roots in the hyperbolic metric of the half-plane."""
         return self.roots.midpoint
 
     @property
@@ -140,16 +139,16 @@ class AnisotropicFrame:
 
     @property
     def mirrored(self) -> bool:
-        """Is it its own mirror image in X = 0?"""
+        """True if the solid is its own mirror image in X = 0."""
         return self.c16 == 0.0 == self.c26
 
     def at(self, c: float) -> "AnisotropicFrame":
-        """The same solid at another speed."""
+        """Half-plane of this solid at another speed c."""
         return AnisotropicFrame(self.c11, self.c12, self.c16, self.c22, self.c26, c)
 
     @cached_property
     def _C(self) -> NDArray[np.float64]:
-        """Stiffness, (3, 3)."""
+        """Stiffness over c₆₆: σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY, (3, 3)."""
         return np.array(
             [
                 [self.c11, self.c12, self.c16],
@@ -160,12 +159,12 @@ class AnisotropicFrame:
 
     @cached_property
     def _along(self) -> NDArray[np.float64]:
-        """σ_XX by u,X, σ_YY and σ_XY where two of these vanish: Hooke's law, u,Y and v,Y eliminated."""
+        """Coefficients of u,X, σ_YY and σ_XY in σ_XX, (3,): Hooke's law, u,Y and v,Y eliminated."""
         s11, s12, s16 = np.linalg.inv(self._C)[0]
         return np.array([1.0, -s12, -s16]) / s11
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
-        """In-plane stress where strain and tractions are known."""
+        """In-plane stress σ_XX from the strain μ u,X and the tractions, of one shape."""
         by_u_X, by_σ_YY, by_σ_XY = self._along
         return by_u_X * u_X + by_σ_YY * σ_YY + by_σ_XY * σ_XY
 
@@ -197,8 +196,8 @@ class AnisotropicFrame:
         strain = self._Y[0], (beyond @ self._Y)[0]
         tractions = np.eye(2), self.L @ beyond @ self._Y
 
-        def part(one: NDArray, two: NDArray) -> NDArray[np.float64]:
-            return ((one[0] * g + one[1]) * at + (two[0] * g + two[1]) * change).real
+        def part(first: NDArray, second: NDArray) -> NDArray[np.float64]:
+            return ((first[0] * g + first[1]) * at + (second[0] * g + second[1]) * change).real
 
         u_X = part(*strain)
         σ_XY, σ_YY = (part(tractions[0][i], tractions[1][i]) for i in (0, 1))
@@ -213,19 +212,19 @@ def surface_wave(solid: AnisotropicFrame) -> float:
     """
     low, high = 0.0, 1.0
     while low < (middle := (low + high) / 2.0) < high:
-        low, high = (middle, high) if _stands(solid, middle) else (low, middle)
+        low, high = (middle, high) if _surface_is_stiff(solid, middle) else (low, middle)
     return low
 
 
-def _stands(solid: AnisotropicFrame, c: float) -> bool:
-    """Is the surface's stiffness positive at this speed?"""
+def _surface_is_stiff(solid: AnisotropicFrame, c: float) -> bool:
+    """True if the surface's stiffness is positive at the speed c."""
     try:
         return solid.at(c).least_stiffness > 0.0
     except ValueError:
         return False
 
 
-#: A minor over the product of its diagonal that rounding alone could leave.
+#: Minor over the product of its diagonal that may be rounding alone.
 _ROUNDING = 1e-13
 
 
@@ -245,7 +244,7 @@ class PlaneSolid(ABC):
 
     @property
     def knows_σ_ZZ(self) -> bool:
-        """Are the constants enough for σ_ZZ?"""
+        """True if the constants are enough for σ_ZZ."""
         return True
 
     @property
@@ -316,11 +315,11 @@ def along_axes(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, angle: float) -> 
 
 
 def check_minors(matrix: NDArray, meaning: dict[tuple[int, ...], str]) -> None:
-    """Is a symmetric matrix positive definite?
+    """Check that a symmetric matrix is positive definite.
 
     Args:
         matrix: (n, n).
-        meaning: of minors by their rows, with the constants that make them, in order of size.
+        meaning: formulas of minors in the constants, by the rows of the minor, in order of size.
 
     Raises:
         ValueError: a minor is not positive; the message has its meaning and value.
@@ -335,5 +334,5 @@ def check_minors(matrix: NDArray, meaning: dict[tuple[int, ...], str]) -> None:
         if not minor > _ROUNDING:
             raise ValueError(
                 f"{constants}: found {minor:.3g}, expected a number > 0; with these constants some "
-                "deformation would give energy instead of taking it"
+                "deformation would release energy instead of storing it"
             )

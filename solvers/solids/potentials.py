@@ -1,16 +1,15 @@
-"""Exact stresses inside the half-plane under a known pressure, stable for every 0 <= c < 1.
+"""Exact fields inside a half-plane from the complex potential of its loads.
 
-The two potentials live at z_j = (X + i β_j Y)/a. At slow speed they nearly coincide, and what counts
-is their difference over c², which is therefore computed as such.
-
-The complex planes X + pY in which the parts of a solid's fields are analytic: two roots of a quartic.
-
-Only their sum and their product are found, which stay smooth where the roots meet; so do they in every
+The parts of a solid's fields are analytic in two complex planes X + pY; p are two roots of a quartic.
+Only their sum and product are computed, which stay smooth where the roots meet, as they do in every
 isotropic solid at rest.
 
-A half-plane's displacement far from loads on its surface: of line loads, and of their moments.
+Stresses under a known pressure are stable for every 0 <= c < 1. Of an isotropic solid the two potentials
+are at z_j = (X + i β_j Y)/a. At slow speed they nearly coincide, and stresses depend on their difference
+over c², which is therefore computed as such.
 
-Tractions t(s) at |s| <= a move a point z = X + Y G, a matrix with the eigenvalues X + pY, by
+Displacements far from loads on the surface are those of line loads and of their moments. Tractions t(s)
+at |s| <= a move a point z = X + Y G, a matrix with the eigenvalues X + pY, by
 
     u = Im[log(z) 𝐘 M₀ - Σ z⁻ⁿ 𝐘 Mₙ/n]/π,   Mₙ = ∫ sⁿ t ds,   𝐘 = L⁻¹,
 
@@ -27,29 +26,29 @@ from scipy.special import log1p
 
 from .solid import Potential
 
-#: c² below which its part in the difference of the potentials, over c², has no digit left.
+#: c² below which its part in the difference of the potentials, over c², is below rounding.
 _AT_REST = 1e-30
 
-#: A step over the distance from the contact from which on a potential's two values differ by enough to be
-#: subtracted; a longer one may lead from where one form of the potential serves to where another does.
+#: Step over the distance from the contact above which a potential's two values differ by enough to be
+#: subtracted; a longer step may end where another form of the potential serves.
 _APART = 0.05
 
 
 def value_and_change(
     Φ: Potential, z: NDArray, step: NDArray, share: complex
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Φ(z) and (Φ(z + share·step) - Φ(z))/share, to full accuracy for steps of any length.
+    """Potential Φ(z) and its change (Φ(z + share·step) - Φ(z))/share, accurate for any step.
 
     Args:
         Φ: a pressure's potential.
         z, step: positions below the surface over a, and steps from there, of one shape.
-        share: how much of the step is gone; its limit is taken where it is 0.
+        share: share of the step that is taken; 0 for the limit.
     """
     at, moved = Φ.at(z), z + share * step
     apart = np.abs(share * step) > _APART * np.minimum(_from_contact(z), _from_contact(moved))
     if not apart.any():
         return at, Φ.change(z, step, share)
-    # Where a potential is not asked for it is looked at in a place that it knows.
+    # Where the difference is not used, the potential is evaluated at z, where it is defined.
     difference = (Φ.at(np.where(apart, moved, z)) - at) / share
     if apart.all():
         return at, difference
@@ -58,7 +57,7 @@ def value_and_change(
 
 
 def _from_contact(z: NDArray) -> NDArray[np.float64]:
-    """Distance from -1 <= z <= 1."""
+    """Distance of z from the contact -1 <= z <= 1."""
     return np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
 
 
@@ -87,13 +86,13 @@ def stresses(frame: Any, Φ: Potential, g: Any, X: ArrayLike, Y: ArrayLike) -> N
 
 
 def field(frame: Any, g: Any, s_s: Any, h_s: Any, s: Any, h: Any) -> tuple[Any, Any, Any]:
-    """σ_XX, σ_YY, σ_XY of a potential Φ; plain arithmetic, so that a proof's symbols may be put in.
+    """σ_XX, σ_YY, σ_XY of a potential Φ; plain arithmetic, so that a proof may insert symbols.
 
     Args:
         frame: constants of the moving frame.
         g: σ_XY/σ_YY on the surface.
         s_s, h_s: -Im and Re of Φ(z_s).
-        s, h: the same of (Φ(z_d) - Φ(z_s))/c².
+        s, h: -Im and Re of (Φ(z_d) - Φ(z_s))/c².
     """
     k, β_s, β_d, e, r, q, κ = (
         frame.k, frame.β_s, frame.β_d, frame.e, frame.r, frame.q, frame.κ
@@ -131,29 +130,29 @@ class Roots:
 
     @cached_property
     def each(self) -> tuple[complex, complex]:
-        """p₁ and p₂; half the digits where they meet, but sum and product stay."""
+        """Roots p₁ and p₂, with half the digits where they meet."""
         middle = self.sum / 2.0
         half = np.sqrt(middle**2 - self.product + 0j)
         return complex(middle + half), complex(middle - half)
 
     @cached_property
     def midpoint(self) -> complex:
-        """Midway between them in the hyperbolic metric of the upper half-plane."""
+        """Point midway between the roots in the hyperbolic metric of the upper half-plane."""
         p, other = self.each
-        seen = (other - p.real) / p.imag  # where p is at i
-        ζ = (seen - 1j) / (seen + 1j)
+        moved = (other - p.real) / p.imag  # where p is at i
+        ζ = (moved - 1j) / (moved + 1j)
         ζ /= 1.0 + np.sqrt(1.0 - abs(ζ) ** 2)
         return complex(p.real + p.imag * 1j * (1.0 + ζ) / (1.0 - ζ))
 
     @cached_property
     def apart(self) -> float:
-        """Their hyperbolic distance; 0 where they meet."""
+        """Hyperbolic distance of the roots; 0 where they meet."""
         p, other = self.each
         return float(2.0 * np.arcsinh(abs(p - other) / (2.0 * np.sqrt(p.imag * other.imag))))
 
 
 def roots(coefficients: NDArray) -> Roots | None:
-    """The two roots with Im p > 0 of a real quartic, or None where it has real ones.
+    """Two roots with Im p > 0 of a real quartic, or None where it has real roots.
 
     Args:
         coefficients: of p⁴ to p⁰, (5,).
@@ -191,9 +190,9 @@ def line_loads(
     """Displacements over 1/μ of moments of surface tractions, normal and tangential, (terms, 2, 2, n).
 
     Args:
-        solid: has G, L and roots of the half-plane at its speed.
+        solid: half-plane at its speed, with G, L and roots.
         X, Y: positions with Y <= 0, (n,).
-        terms: how many: line loads alone, their first moment besides, ….
+        terms: number of moments: 1 for line loads alone, 2 for their first moment besides, ….
         datum: distance over a at which a line load does not move the surface, the mean of both sides.
     """
     p, other = solid.roots.each
@@ -203,12 +202,12 @@ def line_loads(
     # The argument goes from 0 ahead of the load to -π behind it; half of that is a translation.
     log = np.log(z / datum) + 0.5j * np.pi
     change = np.where(step == 0.0, Y / z, log1p(step) / np.where(step == 0, 1, other - p))
-    one = np.eye(2)
-    function = log[:, None, None] * one + change[:, None, None] * (solid.G - p * one)
-    inverse = np.linalg.inv(X[:, None, None] * one + Y[:, None, None] * solid.G)
+    identity = np.eye(2)
+    function = log[:, None, None] * identity + change[:, None, None] * (solid.G - p * identity)
+    inverse = np.linalg.inv(X[:, None, None] * identity + Y[:, None, None] * solid.G)
     of_loads = np.linalg.solve(solid.L, LOADS.T)
-    found, power = [function], one
+    functions, power = [function], identity
     for n in range(1, terms):
         power = power @ inverse
-        found.append(-power / n)
-    return np.moveaxis(np.array(found) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi
+        functions.append(-power / n)
+    return np.moveaxis(np.array(functions) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi

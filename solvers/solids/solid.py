@@ -1,7 +1,4 @@
-"""What solvers ask of an elastic solid, at rest and at speed.
-
-Constants that several kinds of solid have, each as the field of a dataclass.
-"""
+"""Protocols of elastic solids at rest and at speed, and the fields that several kinds of solid share."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol, runtime_checkable
@@ -42,12 +39,12 @@ class Response(Protocol):
     Attributes:
         c: speed over the solid's wave speed, dimensionless.
         n, m, n12, q: of the surface, dimensionless.
-        margin: 1 at rest, 0 at the highest speed that finite elements can do, negative beyond;
+        margin: 1 at rest, 0 at the highest speed that finite elements can solve, negative beyond;
             displacements grow as it falls.
         contraction: p of the plane X + pY, Im p > 0, midway between those in which the fields are
             analytic; 1j at rest in an isotropic solid.
-        spread: hyperbolic distance of these, 0 where they meet.
-        mirrored: is the solid its own mirror image in X = 0?
+        spread: hyperbolic distance of the two p, 0 where they meet.
+        mirrored: True if the solid is its own mirror image in X = 0.
     """
 
     @property
@@ -70,7 +67,7 @@ class Response(Protocol):
     def mirrored(self) -> bool: ...
 
     def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        """In-plane stress where the strain μ u,X and the other stresses are known, of one shape."""
+        """In-plane stress σ_XX from the strain μ u,X and the other stresses, of one shape."""
 
     def stresses(self, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), of displacement gradients μ ∂u_i/∂X_j (..., 2, 2)."""
@@ -87,14 +84,14 @@ class Response(Protocol):
 
 @runtime_checkable
 class Far(Protocol):
-    """A response that is known far from the contact."""
+    """A response with displacements far from the contact."""
 
     def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
         """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
 
         Args:
             X, Y: positions over a, (n,).
-            terms: how many moments at most, the resultants first.
+            terms: number of moments, the resultants first.
         """
 
 
@@ -105,29 +102,29 @@ class ByCells(Protocol):
     def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
         """The weak form's constants in each solid from the top down, (n, names) each.
 
-        They stand at :func:`galinx.solvers.approximation.chebyshev_points` of the share of the
+        They are given at :func:`galinx.solvers.approximation.chebyshev_points` of the share of the
         change from the solid's upper face to its lower one; at a single point where the solid is uniform.
 
         Args:
-            names: what the form calls them.
+            names: names of the constants in the form.
         """
 
     def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
-        """Which of the solids is at some heights over a, of their shape.
+        """Numbers of the solids at heights over a, of the shape of ``Y``.
 
         Args:
             Y: heights.
-            side: at an interface 1 for the solid above it, -1 for that below.
+            side: at an interface 1 for the solid above it, -1 for the solid below.
         """
 
     def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
-        """Share of the change that is done at heights over a in one of them, of their shape."""
+        """Share of a graded solid's change at heights over a in it, 0 to 1, of the shape of ``Y``."""
 
     def stresses_at(self, solid: NDArray, Y: NDArray, G: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY of displacement gradients in solids at heights.
 
         Args:
-            solid, Y: which solids, and heights over a, (n,).
+            solid, Y: numbers of the solids, and heights over a, (n,).
             G: μ ∂u_i/∂X_j, (..., n, 2, 2).
 
         Returns:
@@ -139,7 +136,7 @@ class Solid(Protocol):
     """An elastic solid: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
 
     Attributes:
-        about: what kind of solid it is.
+        about: kind of solid.
         form: name of the weak form that finite elements solve, see :mod:`galinx.solvers.fem.forms`; its
             constants are attributes of the response.
         nearly_incompressible: displacements alone would lose digits; the form has an unknown pressure.
@@ -166,7 +163,7 @@ class Solid(Protocol):
 
     @property
     def knows_σ_ZZ(self) -> bool:
-        """Are the constants enough for :meth:`σ_ZZ`? It is NaN without."""
+        """True if the constants are enough for :meth:`σ_ZZ`, which is NaN otherwise."""
 
     @property
     def flutter(self) -> tuple[float, float]:
@@ -200,22 +197,22 @@ USUAL_STIFFNESS = (1e3, 2e12)
 
 
 def modulus(key: str, about: str, symbol: str = "") -> Any:
-    """A stiffness that is positive [Pa]."""
+    """Field of a positive stiffness [Pa]."""
     return parameter(key, about, "Pa", symbol=symbol, above=0.0, usual=USUAL_STIFFNESS)
 
 
 def density() -> Any:
-    """ρ [kg/m³]."""
+    """Field of the density ρ [kg/m³]."""
     return parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
 
 
 def angle(axis: str) -> Any:
-    """From X to an axis of the solid [°]."""
+    """Field of the angle from X to an axis of the solid [°]."""
     note = "counterclockwise, Y upwards"
     return parameter("angle", f"angle from X to {axis}", "deg", symbol=r"\theta", default=0.0, note=note)
 
 
 def in_plane() -> Any:
-    """Plane strain or plane stress."""
+    """Field of the choice between plane strain and plane stress."""
     note = '`"stress"` is a thin sheet'
     return choice("plane", "plane strain or stress", ("strain", "stress"), note=note)

@@ -1,4 +1,4 @@
-"""What the surface of a half-plane answers to tractions at complex speeds.
+"""Admittance of the surface of a half-plane at complex speeds, and the friction from which waves grow.
 
 Fields e^(ik(X - Ct)) below the surface have u,Y = G u,X, where G has the two roots p of
 
@@ -11,9 +11,8 @@ Away from the real axis no root is real (the solid is one of real speeds), so th
 whole plane but where |C| is real and at least the least speed at which a decaying root meets a growing
 one; there the value is that of Im C → -0. Its poles are the speeds of the wave along the surface.
 
-Friction from which on short waves along a sliding interface grow: its flutter threshold.
-
-A solid slides on something rigid and flat, under Coulomb friction: v = 0 and σ_XY = g σ_YY on an infinite
+The flutter threshold is the friction from which on short waves along a sliding interface grow. A solid
+slides on something rigid and flat, under Coulomb friction: v = 0 and σ_XY = g σ_YY on an infinite
 surface. Waves e^(ik(X - ct)) along it obey the steady equations of the solid at the speed c, whatever the
 sliding speed is, so that with (u,X, v,X) = 𝐘 (σ_XY, σ_YY)
 
@@ -22,9 +21,9 @@ sliding speed is, so that with (u,X, v,X) = 𝐘 (σ_XY, σ_YY)
 They grow if Im c > 0, and at any length: the shorter, the faster (Renardy, J. Elasticity 27 (1992) 281;
 Martins, Guimarães and Faria, J. Vib. Acoust. 117 (1995) 445). L₁₁/L₂₁ is analytic in the upper half of
 the c plane. Growing waves have the real values that it takes there, on curves along which it is
-monotonic, and these curves end on the real axis; the least of each sign is a value at such an end. Ends
-are the speeds at which L₁₁/L₂₁ is real alone, and, where all waves leave the surface and it is real all
-along, its extremes.
+monotonic, and these curves end on the real axis; the least of each sign is a value at such an end. The
+ends are the isolated speeds at which L₁₁/L₂₁ is real and, on stretches where it is real everywhere
+because all waves leave the surface, its extremes.
 """
 
 from collections.abc import Callable, Iterator
@@ -37,19 +36,19 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-#: Imaginary part of a root below which it is real, over its size, where C is.
+#: Imaginary part over the size of a root below which the root is real, where C is real.
 _REAL = 1e-9
 #: Newton's steps: roots begin with half the digits where two of them meet.
 _STEPS = 3
-#: Directions that are looked at for waves, and halvings of what is between two of them.
-_SEEN, _HALVINGS = 1440, 60
+#: Directions at which speeds of waves are computed, and halvings of the angle between two of them.
+_DIRECTIONS, _HALVINGS = 1440, 60
 #: Points on a circle round the pole, which halves the way to the next speed at which 𝐘 is not analytic.
 _CIRCLE = 64
 
 
 @runtime_checkable
 class InPlane(Protocol):
-    """A uniform solid that tells its stiffness over μ = c₆₆: c₁₁, c₁₂, c₁₆, c₂₂, c₂₆."""
+    """A uniform solid with its stiffness over μ = c₆₆ in the plane: c₁₁, c₁₂, c₁₆, c₂₂, c₂₆."""
 
     @property
     def c11(self) -> float: ...
@@ -65,7 +64,7 @@ class InPlane(Protocol):
 
 @dataclass(frozen=True)
 class Waves:
-    """Two of the four of a solid at some speeds: fields with u,Y = G u,X and tractions L u,X.
+    """Two of a solid's four waves at given speeds: fields with u,Y = G u,X and tractions L u,X.
 
     Attributes:
         s, d: sum and product of their roots p, (n,).
@@ -79,27 +78,27 @@ class Waves:
 
     @property
     def conjugate(self) -> "Waves":
-        """Of the conjugate speeds the two others."""
+        """Other two waves, at the conjugate speeds."""
         return Waves(self.s.conj(), self.d.conj(), self.G.conj(), self.L.conj())
 
     def exponential(self, κ: NDArray) -> NDArray[np.complex128]:
-        """e^(iκG), (n, 2, 2), κ (n,) of that sign with which it decays."""
+        """Matrix exponential e^(iκG), (n, 2, 2); κ, (n,), has the sign with which it decays."""
         middle = self.s / 2.0
         half = np.sqrt(middle**2 - self.d)
-        one, two = (np.exp(1j * κ * (middle + sign * half)) for sign in (1.0, -1.0))
+        first, second = (np.exp(1j * κ * (middle + sign * half)) for sign in (1.0, -1.0))
         x = κ * half
         near = np.abs(x) < 0.5
         by_series = np.exp(1j * κ * middle) * κ * np.sinc(np.where(near, x, 0.0) / pi)
-        by_difference = (one - two) / (2j * np.where(near, 1.0, half))
+        by_difference = (first - second) / (2j * np.where(near, 1.0, half))
         change = np.where(near, by_series, by_difference)
         beyond = self.G - middle[:, None, None] * np.eye(2)
-        mean = (one + two)[:, None, None] / 2.0 * np.eye(2)
+        mean = (first + second)[:, None, None] / 2.0 * np.eye(2)
         return np.asarray(mean + 1j * change[:, None, None] * beyond)
 
 
 @dataclass(frozen=True)
 class Admittance:
-    """Of the surface of a uniform solid.
+    """Admittance 𝐘(C) of the surface of a uniform solid: u,X over tractions/μ.
 
     Args:
         c11, c12, c16, c22, c26: stiffness over c₆₆.
@@ -113,10 +112,10 @@ class Admittance:
 
     @classmethod
     def of(cls, response: Any) -> "Admittance":
-        """That of a half-plane's solid.
+        """Admittance of a half-plane's solid.
 
         Raises:
-            ValueError: the response does not tell its solid's stiffness in the plane.
+            ValueError: the response has no c11 … c26, its solid's stiffness in the plane.
         """
         if not isinstance(response, InPlane):
             raise ValueError(
@@ -127,7 +126,7 @@ class Admittance:
 
     @property
     def mirrored(self) -> "Admittance":
-        """Of the mirror image in X = 0."""
+        """Admittance of the solid's mirror image in X = 0."""
         return Admittance(self.c11, self.c12, -self.c16, self.c22, -self.c26)
 
     def __call__(self, C: NDArray) -> NDArray[np.complex128]:
@@ -135,7 +134,7 @@ class Admittance:
         return np.asarray(np.linalg.inv(self.waves(C).L), dtype=complex)
 
     def waves(self, C: NDArray) -> "Waves":
-        """The two with Im p > 0 at speeds (n,)."""
+        """Two waves with Im p > 0 at speeds C, (n,)."""
         C = np.asarray(C, dtype=complex)
         s, d = self._sum_and_product(C)
         C2 = C * C
@@ -165,7 +164,10 @@ class Admittance:
         ]
 
     def _sum_and_product(self, C: NDArray) -> tuple[NDArray, NDArray]:
-        """Of the two roots, polished, for they keep their digits where these meet."""
+        """Sum and product of the two roots with Im p > 0, (n,) each; polished.
+
+        They keep their digits where the roots meet.
+        """
         size = np.maximum(1.0, np.abs(C))
         a = np.array(self._quartic(C * C))
         b = (a / a[4] * size ** (np.arange(5)[:, None] - 4.0))[:4]  # of p over its size
@@ -175,8 +177,8 @@ class Admittance:
         return s * size, d * size**2
 
     def _imaginary(self, p: NDArray, C: NDArray, size: NDArray, b: NDArray) -> NDArray[np.float64]:
-        """Imaginary parts of roots; where they are real, of what they are for Im C → -0."""
-        found = p.imag.copy()
+        """Imaginary parts of roots, (n, 4); where a root is real, its sign for Im C → -0."""
+        imaginary = p.imag.copy()
         at = (C.imag == 0.0)[:, None] & (np.abs(p.imag) < _REAL * np.maximum(np.abs(p), 1.0))
         slope_p = 4.0 * p**3 + 3.0 * b[3][:, None] * p**2 + 2.0 * b[2][:, None] * p + b[1][:, None]
         whole = p * size[:, None]
@@ -185,8 +187,8 @@ class Admittance:
         by_C2 = (by_C2 - (1.0 + self.c22) * whole**2) / a4
         with np.errstate(divide="ignore", invalid="ignore"):  # where two meet it does not matter which
             rate = -by_C2 * 2.0 * C[:, None] / (slope_p * size[:, None] ** 3)
-        found[at] = -_REAL * rate.real[at]
-        return found
+        imaginary[at] = -_REAL * rate.real[at]
+        return imaginary
 
     @cached_property
     def meeting(self) -> NDArray[np.float64]:
@@ -194,19 +196,19 @@ class Admittance:
 
         There the root is real, and the square of the speed of waves e^(ik(X + pY)) stationary in p.
         """
-        φ = (np.arange(_SEEN + 1) / _SEEN - 0.5) * pi * (1.0 - 1.0 / _SEEN)
+        φ = (np.arange(_DIRECTIONS + 1) / _DIRECTIONS - 0.5) * pi * (1.0 - 1.0 / _DIRECTIONS)
         low, high = np.tan(φ[:-1]), np.tan(φ[1:])
-        found = []
+        speeds = []
         for sheet in (0, 1):
             below, above = self._slope(low, sheet), self._slope(high, sheet)
             turns = (below > 0.0) != (above > 0.0)
-            one, other, rising = low[turns], high[turns], below[turns] > 0.0
+            start, end, rising = low[turns], high[turns], below[turns] > 0.0
             for _ in range(_HALVINGS):
-                middle = (one + other) / 2.0
+                middle = (start + end) / 2.0
                 first = (self._slope(middle, sheet) > 0.0) == rising
-                one, other = np.where(first, middle, one), np.where(first, other, middle)
-            found.append(np.linalg.eigvalsh(self._acoustic(one))[:, sheet])
-        return np.unique(np.sqrt(np.concatenate(found)))
+                start, end = np.where(first, middle, start), np.where(first, end, middle)
+            speeds.append(np.linalg.eigvalsh(self._acoustic(start))[:, sheet])
+        return np.unique(np.sqrt(np.concatenate(speeds)))
 
     def _acoustic(self, p: NDArray) -> NDArray[np.float64]:
         """Q(0) + p (R + Rᵀ) + p² T at real p (n,), (n, 2, 2)."""
@@ -223,25 +225,25 @@ class Admittance:
         return np.array([[[self.c11, self.c16], [self.c16, 1.0]], mixed, across])
 
     def _slope(self, p: NDArray, sheet: int) -> NDArray[np.float64]:
-        """Of the square of the speed of the slower or the faster wave by p."""
+        """Derivative by p of the squared speed of the slower or the faster wave, (n,)."""
         _, mixed, across = self._parts
         wave = np.linalg.eigh(self._acoustic(p))[1][:, :, sheet]
         return np.einsum("ni,nij,nj->n", wave, mixed + 2.0 * np.multiply.outer(p, across), wave)
 
     @property
     def least(self) -> float:
-        """The least of these: 𝐘 is analytic below."""
+        """Least speed of :attr:`meeting`; 𝐘 is analytic below it."""
         return float(self.meeting[0])
 
     @cached_property
     def fastest(self) -> float:
         """Largest speed of a wave inside, over all directions in the plane."""
-        φ = np.linspace(-pi / 2.0, pi / 2.0, _SEEN, endpoint=False)[1:]
+        φ = np.linspace(-pi / 2.0, pi / 2.0, _DIRECTIONS, endpoint=False)[1:]
         waves = np.linalg.eigvalsh(self._acoustic(np.tan(φ)))[:, 1] * np.cos(φ) ** 2
         return float(np.sqrt(max(waves.max(), np.linalg.eigvalsh(self._parts[2])[1])))
 
     def residue(self, speed: float) -> NDArray[np.complex128]:
-        """Of 𝐘 at the speed of the wave along the surface, (2, 2)."""
+        """Residue of 𝐘 at the speed of the wave along the surface, (2, 2)."""
         radius = (self.least - speed) / 2.0
         turn = np.exp(2j * pi * (np.arange(_CIRCLE) + 0.5) / _CIRCLE)
         around = self(speed + radius * turn)
@@ -249,13 +251,13 @@ class Admittance:
 
     @property
     def impedance(self) -> NDArray[np.float64]:
-        """Of plane waves straight down, over √(μρ): tractions by velocities of the surface, (2, 2)."""
+        """Impedance over √(μρ) of plane waves straight down: tractions by surface velocities, (2, 2)."""
         λ, vectors = np.linalg.eigh(self._parts[2])
         return np.asarray(vectors * np.sqrt(λ) @ vectors.T)
 
 
 def _roots(b: NDArray) -> NDArray[np.complex128]:
-    """Of p⁴ + b₃p³ + … by coefficients of p⁰ to p³, (4, n): (n, 4)."""
+    """Roots of p⁴ + b₃p³ + …, (n, 4), from the coefficients of p⁰ to p³, (4, n)."""
     if not (b[1].any() or b[3].any()):
         middle = -b[2] / 2.0
         apart = np.sqrt(middle**2 - b[0])
@@ -269,18 +271,18 @@ def _roots(b: NDArray) -> NDArray[np.complex128]:
 
 
 def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, NDArray]:
-    """Sum and product of two roots of p⁴ + b₃p³ + …, Newton's method for both quadratic factors.
+    """Sum and product of two roots of p⁴ + b₃p³ + …, by Newton's method for both quadratic factors.
 
     Args:
-        s, d: of the two, (n,).
-        e: product of the other two.
+        s, d: approximate sum and product of the two, (n,).
+        e: approximate product of the other two, (n,).
         b: coefficients of p⁰ to p³, (4, n).
     """
     for _ in range(_STEPS):
         t = -b[3] - s  # sum of the other two
         rest = np.array([d + e + s * t - b[2], -(s * e + t * d) - b[1], d * e - b[0]])
-        one = np.ones_like(s)
-        slopes = np.array([[t - s, one, one], [d - e, -t, -s], [0.0 * s, e, d]])
+        ones = np.ones_like(s)
+        slopes = np.array([[t - s, ones, ones], [d - e, -t, -s], [0.0 * s, e, d]])
         with np.errstate(all="ignore"):
             try:
                 step = np.linalg.solve(np.moveaxis(slopes, 2, 0), rest.T[..., None])[..., 0].T
@@ -291,16 +293,16 @@ def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, 
     return s, d
 
 
-#: Speeds that are looked at between two at which roots meet; between two of those, and how often again.
+#: Speeds sampled between two at which roots meet; samples between two of those, and how often again.
 _SPEEDS, _CLOSER, _TIMES = 400, 64, 8
-#: Imaginary part over the size from which on a ratio is not real.
+#: Imaginary part over the size above which a ratio is not real.
 _REAL_RATIO = 1e-8
 #: Share of the way to a stretch's end over which a slope is taken, and the least of the stretch.
 _STEP, _LEAST = 1e-5, 1e-13
 
 
 def thresholds(surface: Admittance) -> tuple[float, float]:
-    """Least g > 0, and least -g > 0, from which on waves grow; infinite where none do.
+    """Flutter thresholds: least g > 0 and least -g > 0 from which on waves grow; infinite for none.
 
     Args:
         surface: of the solid that slides.
@@ -311,7 +313,7 @@ def thresholds(surface: Admittance) -> tuple[float, float]:
     for way in (1.0, -1.0)[: 1 if mirrored else 2]:
         for low, high in pairwise(ends):
             values += _values(surface, lambda x: x, way * low, way * high)
-    # Beyond the last, by 1/c: from one infinity to the other.
+    # Beyond the last speed, by 1/c: from one infinity to the other.
     values += _values(surface, lambda x: 1.0 / x, -1.0 / ends[-1], 1.0 / ends[-1])
     if mirrored:
         values += [-g for g in values]
@@ -330,17 +332,17 @@ def _values(
         return np.asarray(L / np.linalg.norm(L, axis=0))
 
     def off(x: NDArray) -> NDArray[np.float64]:
-        """How far from real their ratio is."""
-        one, other = pair(x)
-        return np.asarray((one * other.conj()).imag)
+        """Im(L₁₁ L₂₁*): 0 where the ratio is real."""
+        L11, L21 = pair(x)
+        return np.asarray((L11 * L21.conj()).imag)
 
     def turn(x: NDArray) -> NDArray[np.float64]:
-        """Slope of their ratio's angle, where it is real."""
+        """Slope of the angle of L₁₁/L₂₁, on a stretch where the ratio is real."""
         step = np.maximum(
             _STEP * np.minimum(np.abs(x - start), np.abs(end - x)), _LEAST * abs(end - start)
         )
-        (one, other), (later, after) = pair(x - step), pair(x + step)
-        return np.asarray((one.conj() * after - later * other.conj()).real / step)
+        (L11_before, L21_before), (L11_after, L21_after) = pair(x - step), pair(x + step)
+        return np.asarray((L11_before.conj() * L21_after - L11_after * L21_before.conj()).real / step)
 
     share = (1.0 - np.cos(np.pi * (np.arange(_SPEEDS) + 0.5) / _SPEEDS)) / 2.0
     x = start + share * (end - start)
@@ -352,5 +354,5 @@ def _values(
             closer = np.linspace(low, high, _CLOSER + 1)
             first = max(int(np.argmax((sign(closer) > 0.0) != (at[i] > 0.0))), 1)
             low, high = closer[first - 1], closer[first]
-        one, other = pair(np.array([(low + high) / 2.0]))[:, 0].tolist()
-        yield (one * other.conjugate()).real / abs(other) ** 2 if other else inf
+        L11, L21 = pair(np.array([(low + high) / 2.0]))[:, 0].tolist()
+        yield (L11 * L21.conjugate()).real / abs(L21) ** 2 if L21 else inf

@@ -16,7 +16,7 @@ from .admittance import Admittance
 from .transform import Transformed
 
 #: Polynomials of the pressure without waves, and for each radian of the shortest wave along the
-#: contact's half-width; so many of them, as a share, tell the error.
+#: contact's half-width; share of them that a second solution has, by which the error is estimated.
 _TERMS, _PER_RADIAN, _FEWER = 18, 1.0, 0.75
 #: Radians of the shortest wave along the half-width at most, and in a panel of distances.
 MOST, _TURN = 60.0, 4.0
@@ -26,13 +26,13 @@ _BAND = 3.0
 
 @dataclass(frozen=True)
 class Oscillation:
-    """What a punch answers to loads that oscillate, of shape (frequencies,) each.
+    """Answers of a punch to loads that oscillate, (frequencies,) each.
 
     Attributes:
         ω: angular frequencies over c_s/a.
         flexibility: v̂₀/N̂ over 1/(2μ), complex.
-        centre: that of the pressure's amplitude over a, complex.
-        error: relative error of the flexibility, as fewer polynomials tell it.
+        centre: centre of the pressure's amplitude over a, complex.
+        error: relative error of the flexibility, estimated by fewer polynomials.
     """
 
     ω: NDArray[np.float64]
@@ -42,12 +42,12 @@ class Oscillation:
 
     @property
     def stiffness(self) -> NDArray[np.complex128]:
-        """N̂/v̂₀ over 2μ."""
+        """Dynamic stiffness N̂/v̂₀ over 2μ, complex, (frequencies,)."""
         return 1.0 / self.flexibility
 
 
 class OscillatingPunch:
-    """All frictions at one speed.
+    """A flat punch under loads that oscillate, at one speed and any friction.
 
     Args:
         response: of steady motion at that speed.
@@ -68,29 +68,29 @@ class OscillatingPunch:
         self._ω, self._response = ω, response
         band = np.floor(np.log(ω.max() / ω) / np.log(_BAND))
         self._bands = []
-        for one in np.unique(band)[::-1]:
-            shortest = float(ω[band == one].max()) / (rayleigh - response.c)
+        for number in np.unique(band)[::-1]:
+            shortest = float(ω[band == number].max()) / (rayleigh - response.c)
             terms = ceil(_TERMS + _PER_RADIAN * shortest)
-            s = 1j * ω[band == one]
+            s = 1j * ω[band == number]
             self._bands.append((terms, Transformed(response, rayleigh, s, terms, _TURN / shortest, way)))
 
     def oscillation(self, g: float) -> Oscillation:
-        """What is answered where σ_XY = g σ_YY under the punch."""
+        """Answers at all frequencies where σ_XY = g σ_YY under the punch."""
         parts = []
         for terms, transformed in self._bands:
             basis = transformed.basis(g)
-            found, fewer = transformed.answers(basis, (terms, ceil(_FEWER * terms)))
-            moments = found[:, :-1] @ basis.moments
-            parts.append((found[:, -1], moments[:, 1] / moments[:, 0], fewer[:, -1]))
+            amplitudes, from_fewer = transformed.answers(basis, (terms, ceil(_FEWER * terms)))
+            moments = amplitudes[:, :-1] @ basis.moments
+            parts.append((amplitudes[:, -1], moments[:, 1] / moments[:, 0], from_fewer[:, -1]))
         v, centre, other = (np.concatenate(values) for values in zip(*parts))
         return Oscillation(self._ω, v, centre, np.abs(v - other) / np.abs(v))
 
     def plane_waves(self, g: float) -> float:
-        """What the stiffness over iω comes to at high frequencies, over 2μ: c_d/c_s where isotropic."""
+        """Limit of the stiffness over iω at high frequencies, over 2μ: c_d/c_s of an isotropic solid."""
         slopes = np.linalg.inv(Admittance.of(self._response).impedance)[1]
         return float(1.0 / (slopes[1] + g * slopes[0]))
 
 
 def highest(response: Response, rayleigh: float) -> float:
-    """Highest angular frequency over c_s/a that is known at a speed."""
+    """Highest angular frequency over c_s/a that can be solved at a speed."""
     return MOST * (rayleigh - response.c)

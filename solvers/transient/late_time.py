@@ -1,8 +1,8 @@
-"""How a flat punch that starts from rest comes to steady sliding: like 1/t, by a formula.
+"""Late times of a flat punch that starts from rest: its approach to steady sliding, like 1/t.
 
-At late times t the pressure is nearly that of steady motion, and what waves sent out before leave behind
-is a tilt of the surface: with N̂ = n + g n₁₂ the kernel of complex speeds c + is/k differs from the steady
-one by
+At late times t the pressure is nearly that of steady motion, and the waves that were sent out before
+leave a tilt of the surface behind: with N̂ = n + g n₁₂ the kernel of complex speeds c + is/k differs from
+the steady one by
 
     i s N̂'(c)/(k|k|),  that is (N̂'/π) s log s X + …,  so that  μ v = … + (2/π) N̂' X/t
 
@@ -11,7 +11,7 @@ one tilted by as much the other way, in closed form, and
 
     centre: + 2 (N̂'/N̂) (1 + α)(1 + β)/t,    K_I: + 2 (N̂'/N̂) (1 + α)/t at X = a, - 2 (N̂'/N̂) (1 + β)/t at -a
 
-the latter relative to K_I. At rest N̂' = 0, and the next term is left, a bend by N̂'' X²/(2π t²).
+the latter relative to K_I. At rest N̂' = 0, and the next term remains, a bend by N̂'' X²/(2π t²).
 """
 
 from dataclasses import dataclass
@@ -21,18 +21,18 @@ import numpy as np
 
 from ..solids.solid import Solid
 
-#: Step of differences in c, at which half of the digits of a second one are left.
+#: Step of differences in c, at which half of the digits of a second difference remain.
 _STEP = 1e-4
 
 
 @dataclass(frozen=True)
 class Approach:
-    """What is left of the way to steady sliding at late times; times over a/c_s.
+    """Differences from steady sliding at late times t over a/c_s.
 
     Attributes:
-        centre: of the pressure over a, times t.
+        centre: difference of the pressure's centre over a, times t.
         K_left, K_right: differences of K_I at X = -a and X = a over K_I of steady motion, times t.
-        at_rest: the same of both times t², where nothing moves.
+        at_rest: next term of centre and intensities, times t²; at c = 0 the only one.
     """
 
     centre: float
@@ -41,13 +41,13 @@ class Approach:
     at_rest: float
 
     def within(self, share: float) -> float:
-        """Time from which on all are within a share of steady motion, when the load came on at once."""
+        """Time over a/c_s from which on all differences are below ``share``; the load came on at once."""
         slow = max(map(abs, (self.centre, self.K_left, self.K_right)))
         return (slow + sqrt(slow**2 + 4.0 * share * self.at_rest)) / (2.0 * share)
 
 
 def approach(solid: Solid, c: float, g: float) -> Approach:
-    """Of a start from rest.
+    """Approach to steady sliding after a start from rest.
 
     Args:
         solid: uniform.

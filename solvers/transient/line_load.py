@@ -1,9 +1,8 @@
-"""Responses ahead of and behind a load that moves, of uniform solids and of layers.
+"""Responses ahead of and behind a line load that moves over a uniform solid or over layers.
 
-Surface motion of a half-plane under tractions that change in time, by Laplace's transform.
-
-Seen from a frame that moves at c, fields e^(ikX + st) obey the formulas of steady motion with the complex
-speed C = c + is/k (lengths over a, speeds over c_s, times over a/c_s, stresses over μ)::
+The load changes in time; responses are Laplace's transforms. Seen from a frame that moves at c, fields
+e^(ikX + st) obey the formulas of steady motion with the complex speed C = c + is/k (lengths over a,
+speeds over c_s, times over a/c_s, stresses over μ)::
 
     ik û = 𝐘(C) σ̂ where k < 0,    the conjugate of 𝐘(C*) instead where k > 0
 
@@ -13,14 +12,14 @@ X > 0
     v̂ = i/(2π) ∫₀ [𝐘(C) - conj 𝐘(C*)] e^(-sζX) dζ/ζ
 
 is taken along ways on which the integrand decays: the second part straight from 0; the first part on the
-upper side of the real axis up to the least speed of waves inside, and from there alike, with the residue
-of the wave along the surface. On these ways lie no other singularities, whatever the solid.
+upper side of the real axis up to the least speed of waves inside, and from there straight on as well,
+with the residue of the wave along the surface. On these ways lie no other singularities, whatever the
+solid.
 
-What layers add to the surface motion of a half-plane under tractions that change in time.
-
-For wavenumbers k < 0 fields e^(ik(X - Ct)), C = c + is/k, have in each layer two waves that decay
-downwards, u,Y = G₁ u,X with Im p > 0, and two that decay upwards, G₂. With E₁ = e^(-ikG₁H),
-E₂ = e^(ikG₂H) and tractions Z u,X of what is below, those on top are (L₁ + δ) u,X with
+Layers add echoes. For wavenumbers k < 0 fields e^(ik(X - Ct)), C = c + is/k, have in each layer two waves
+that decay downwards, u,Y = G₁ u,X with Im p > 0, and two that decay upwards, G₂. With E₁ = e^(-ikG₁H),
+E₂ = e^(ikG₂H) and tractions Z u,X on the layer's lower face, tractions on its upper face are (L₁ + δ) u,X
+with
 
     r = (L₂ - Z)⁻¹ (Z - L₁),   W = E₂ r E₁,   δ = (L₂ - L₁) W (1 + W)⁻¹:
 
@@ -44,7 +43,7 @@ from .admittance import Admittance, Waves
 
 #: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8
-#: Decay after which nothing is left of an integrand.
+#: Decay after which an integrand is negligible.
 _GONE = 32.0
 #: Directions of the ways below the real axis, and how far from the fastest decay one is taken.
 _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
@@ -52,16 +51,16 @@ _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
 _FIRST = 0.1
 #: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
 _PANELS, _HALVINGS, _ACCURACY = 3, 12, 1e-10
-#: Radians of the exponential that a panel bears.
+#: Radians of the exponential in a panel at most.
 _TURN = 5.0
-#: Where a panel is looked at.
+#: Places of a panel, -1 to 1, at which its polynomial is compared with the function.
 _BETWEEN = np.linspace(-0.9, 0.9, 4)
 #: Width of panels of distances that have the same points.
 _PANEL = 0.125
-#: So many distances have panels in common.
+#: Number of distances from which on exponentials are products, with panels in common.
 _MANY = 64
 #: Distances are treated together where one is so many times another at most.
-_ALIKE = 4.0
+_RATIO = 4.0
 
 
 @dataclass(frozen=True)
@@ -90,15 +89,15 @@ class Kernel:
             slopes: of these along X instead.
         """
         values = np.zeros((4, len(x)), dtype=complex)
-        group = np.floor(np.log(x / x.max()) / log(_ALIKE) + 1e-9)
-        for one in np.unique(group):
-            values[:, group == one] = self._of(x[group == one], s, slopes)
+        group = np.floor(np.log(x / x.max()) / log(_RATIO) + 1e-9)
+        for number in np.unique(group):
+            values[:, group == number] = self._of(x[group == number], s, slopes)
         ζ, residue = self._pole
         wave = (-s * ζ if slopes else 1.0) * np.exp(-s * ζ * x)
         return values + residue[:, None] * wave
 
     def _of(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
-        """Without the wave along the surface."""
+        """Displacements without the wave along the surface, or their slopes, (4, n)."""
         ψ = float(np.angle(s))
         down = int(np.abs(_DIRECTIONS - ψ).argmin())
         last = _GONE / (abs(s) * cos(ψ - _DIRECTIONS[down]) * float(x.min()))
@@ -109,19 +108,19 @@ class Kernel:
             (ζ[felt], values[:, felt]),
             *self._ways(down, max(0, ceil(log(last / self._first) / _WIDTH))),
         ]
-        found = np.zeros((4, len(x)), dtype=complex)
+        displacements = np.zeros((4, len(x)), dtype=complex)
         for ζ, values in ways:
-            found += (values * (-s * ζ) if slopes else values) @ _exponentials(-s * ζ, x).T
-        return found
+            displacements += (values * (-s * ζ) if slopes else values) @ _exponentials(-s * ζ, x).T
+        return displacements
 
     @cached_property
     def _edges(self) -> NDArray[np.float64]:
-        """0, and slownesses seen from the frame at which 𝐘 is not analytic, growing."""
+        """Slownesses, as seen from the frame, at which 𝐘 is not analytic, growing from 0."""
         return np.concatenate([[0.0], 1.0 / (self.surface.meeting[::-1] - self.c)])
 
     @cached_property
     def _pole(self) -> tuple[float, NDArray[np.complex128]]:
-        """Slowness of the wave along the surface, and what it carries, (4,)."""
+        """Slowness of the wave along the surface, and its displacements by line loads, (4,)."""
         ζ = 1.0 / (self.rayleigh - self.c)
         return ζ, -ζ * self.surface.residue(self.rayleigh)[::-1, ::-1].ravel()
 
@@ -132,101 +131,105 @@ class Kernel:
         return _FIRST * min(self._pole[0] - ends[-1], *np.diff(ends))
 
     def _rows(self, ζ: NDArray, below: bool = False) -> NDArray[np.complex128]:
-        """Of 𝐘/ζ what σ_YY and σ_XY do along Y, and along X, (4, n); ``below``, of its conjugate."""
+        """Components of 𝐘/ζ: v of σ_YY and σ_XY, then u of them, (4, n); ``below``: conj 𝐘(C*)/ζ."""
         C = self.c + 1.0 / ζ
         Y = np.conj(self.surface(np.conj(C))) if below else self.surface(C)
         return np.asarray(Y[:, ::-1, ::-1].reshape(-1, 4).T / ζ)
 
     def _ways(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
-        """Points and weighted values of both ways in a direction, up to some panels."""
+        """Points and weighted values of both ways in a direction, over so many panels and the first."""
         count = _POINTS * (panels + 1)
         return [(ζ[:count], values[:, :count]) for ζ, values in self._downwards(down, panels)]
 
     def _downwards(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
-        known = self._known.get(down)
-        if known is None or len(known[0][0]) < _POINTS * (panels + 1):
+        ways = self._computed_ways.get(down)
+        if ways is None or len(ways[0][0]) < _POINTS * (panels + 1):
             v, weights = _distances(self._first, panels + 8)
             along = np.exp(-1j * _DIRECTIONS[down])
             ends = (self._edges[-1], False, 1.0), (0.0, True, -1.0)
-            known = []
+            ways = []
             for start, below, sign in ends:
                 ζ = start + along * v
                 factor = sign * 1j / (2.0 * pi) * along * weights
-                known.append((ζ, factor * self._rows(ζ, below)))
-            self._known[down] = known
-        return known
+                ways.append((ζ, factor * self._rows(ζ, below)))
+            self._computed_ways[down] = ways
+        return ways
 
     @cached_property
-    def _known(self) -> dict[int, list[tuple[NDArray, NDArray]]]:
-        """Ways by direction, as far as they have been needed."""
+    def _computed_ways(self) -> dict[int, list[tuple[NDArray, NDArray]]]:
+        """Points and weighted values of both ways by direction, as far as they have been computed."""
         return {}
 
     @cached_property
     def _refined(self) -> dict[int, tuple[NDArray, NDArray]]:
-        """The way above the real axis by the number of halvings."""
+        """Points and weighted values above the real axis by the number of halvings."""
         return {}
 
     def _above(self, halvings: int) -> tuple[NDArray, NDArray]:
-        """Points and weighted values above the real axis, with each panel halved some times."""
+        """Points and weighted values above the real axis, with each panel halved ``halvings`` times."""
         if halvings not in self._refined:
             t, w = leggauss(_POINTS)
             cuts = np.arange(2**halvings)[:, None]
             finer = ((2.0 * cuts + 1.0 + t) / 2**halvings - 1.0).ravel()
             which, start, length, values = self._panels
             ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
-            told = values @ (_interpolation(finer) * np.tile(w, 2**halvings)[:, None]).T
-            told = told * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
-            self._refined[halvings] = ζ.ravel(), told.swapaxes(0, 1).reshape(4, -1)
+            weighted = values @ (_interpolation(finer) * np.tile(w, 2**halvings)[:, None]).T
+            weighted = weighted * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
+            self._refined[halvings] = ζ.ravel(), weighted.swapaxes(0, 1).reshape(4, -1)
         return self._refined[halvings]
 
     def _between(self, which: NDArray, φ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Slownesses at shares of angles between two edges, where roots become smooth, and slopes."""
+        """Slownesses at φ, 0 to 1 between two edges, and their slopes by φ; roots are smooth in φ."""
         low, high = self._edges[which], self._edges[which + 1]
         return low + (high - low) * np.sin(pi / 2.0 * φ) ** 2, (high - low) * pi / 2.0 * np.sin(pi * φ)
 
     @cached_property
     def _panels(self) -> tuple[NDArray[np.int64], NDArray, NDArray, NDArray[np.complex128]]:
-        """Of panels so short that polynomials tell 𝐘: which edge is before each, start and length in φ,
-        (panels,) each, and values times slopes at Gauss's points, (panels, 4, points)."""
+        """Panels so short that 𝐘 is a polynomial in each.
+
+        Returns:
+            Number of the edge before each panel, start and length in φ, (panels,) each, and values times
+            slopes at Gauss's points, (panels, 4, points).
+        """
         t, _ = leggauss(_POINTS)
-        wanted = [
+        pending = [
             (n, k / _PANELS, 1.0 / _PANELS) for n in range(len(self._edges) - 1) for k in range(_PANELS)
         ]
-        found = []
+        accepted = []
         for halvings in range(_HALVINGS + 1):
             again = []
-            for n, start, length in wanted:
+            for n, start, length in pending:
                 at = np.append(t, _BETWEEN)
                 ζ, slope = self._between(np.array(n), start + length * (1.0 + at) / 2.0)
                 values = self._rows(ζ) * slope
-                known, rest = values[:, : len(t)], values[:, len(t) :]
-                off = np.abs(known @ _interpolation(_BETWEEN).T - rest).max()
+                at_gauss, between = values[:, : len(t)], values[:, len(t) :]
+                off = np.abs(at_gauss @ _interpolation(_BETWEEN).T - between).max()
                 if off > _ACCURACY * np.abs(values).max() and halvings < _HALVINGS:
                     again += [(n, start, length / 2.0), (n, start + length / 2.0, length / 2.0)]
                 else:
-                    found.append((n, start, length, known))
-            wanted = again
-        which, starts, lengths, values = (np.array(column) for column in zip(*found))
+                    accepted.append((n, start, length, at_gauss))
+            pending = again
+        which, starts, lengths, values = (np.array(column) for column in zip(*accepted))
         return which, starts, lengths, values
 
 
 def _interpolation(at: NDArray) -> NDArray[np.float64]:
-    """What Gauss's points of a panel tell between them, (points there, Gauss's)."""
+    """Matrix from values at Gauss's points of a panel to values at other places, (places, points)."""
     t, _ = leggauss(_POINTS)
     return np.asarray(np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(at, _POINTS - 1).T).T)
 
 
 def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
-    """exp(a x), (x, a): of few places and steps from there, where x are points of even panels."""
+    """Exponentials exp(a x), (x, a); products of a few where x are points of even panels."""
     if len(x) < _MANY:
         return np.asarray(np.exp(np.multiply.outer(x, a)))
     steps = np.mod(x, _PANEL)
     _, first, step = np.unique(np.round(steps, 12), return_index=True, return_inverse=True)
     places, place = np.unique(np.round((x - steps) / _PANEL), return_inverse=True)
     whole, rest = (np.exp(np.multiply.outer(of, a)) for of in (places * _PANEL, steps[first]))
-    found = whole[place]
-    found *= rest[step]
-    return np.asarray(found)
+    product = whole[place]
+    product *= rest[step]
+    return np.asarray(product)
 
 
 def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -238,25 +241,25 @@ def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[
     return np.append(near, v.ravel()), np.append(weights, (v * _WIDTH / 2.0 * w).ravel())
 
 
-#: Decay after which nothing is left of an integrand; wavenumbers at which it is looked for.
-_LAYERS_GONE, _LOOKED = 34.0, np.geomspace(1e-3, 1e5, 161)
+#: Decay after which an integrand is negligible; wavenumbers at which the decay is computed.
+_LAYERS_GONE, _WAVENUMBERS = 34.0, np.geomspace(1e-3, 1e5, 161)
 #: Gauss's points of a panel of wavenumbers, its radians at most, halvings at most, and accuracy.
 _LAYERS_POINTS, _LAYERS_TURN, _LAYERS_HALVINGS, _LAYERS_ACCURACY = 12, 5.0, 14, 1e-10
-#: Panels at first at least, and where a panel is looked at.
+#: Panels at first at least, and places of a panel at which its polynomial is compared.
 _FEWEST, _LAYERS_BETWEEN = 8, np.linspace(-0.9, 0.9, 4)
-#: Wavenumbers whose exponentials are made at once.
+#: Wavenumbers whose exponentials are computed at once.
 _TOGETHER = 512
 _ONE = np.eye(2)
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A solid among others.
+    """A uniform layer.
 
     Attributes:
-        surface: its own.
+        surface: admittance of the layer's solid.
         modulus: its c₆₆ over that of the solid at the surface.
-        slower: speeds over its own wave speed over those over that of the solid at the surface.
+        slower: wave speed of the solid at the surface over the layer's own.
         H: thickness over a.
     """
 
@@ -266,9 +269,9 @@ class Sheet:
     H: float
 
     def waves(self, C: NDArray) -> Waves:
-        """Those with Im p > 0 at speeds of the solid at the surface, L over that one's c₆₆."""
-        found = self.surface.waves(self.slower * C)
-        return replace(found, L=self.modulus * found.L)
+        """Waves with Im p > 0 at speeds C over c_s of the solid at the surface, L over its c₆₆."""
+        own = self.surface.waves(self.slower * C)
+        return replace(own, L=self.modulus * own.L)
 
 
 @dataclass(frozen=True)
@@ -277,7 +280,7 @@ class Sheets:
 
     Attributes:
         layers: uniform, from the top down.
-        substrate: its thickness says nothing.
+        substrate: half-plane below them; its thickness is not used.
     """
 
     layers: tuple[Sheet, ...]
@@ -285,32 +288,32 @@ class Sheets:
 
     @classmethod
     def of(cls, response: LayersInCells) -> "Sheets":
-        """Those of a response.
+        """Layers of a response.
 
         Raises:
             ValueError: a layer is graded.
         """
-        solid, found = response.solid, []
+        solid, layers = response.solid, []
         for layer in solid.layers:
             if layer.bottom is not None:
                 raise ValueError("a layer is graded: expected uniform ones")
         thicknesses = [*(layer.thickness / response.a for layer in solid.layers), np.inf]
-        for one, H in zip((*(layer.solid for layer in solid.layers), solid.substrate), thicknesses):
-            surface = Admittance.of(one.response(0.0))
-            found.append(Sheet(surface, one.μ / solid.μ, solid.c_s / one.c_s, H))
-        return cls(tuple(found[:-1]), found[-1])
+        for own, H in zip((*(layer.solid for layer in solid.layers), solid.substrate), thicknesses):
+            surface = Admittance.of(own.response(0.0))
+            layers.append(Sheet(surface, own.μ / solid.μ, solid.c_s / own.c_s, H))
+        return cls(tuple(layers[:-1]), layers[-1])
 
     @property
     def mirrored(self) -> "Sheets":
         """The mirror image in X = 0."""
         every = (*self.layers, self.substrate)
-        found = [replace(sheet, surface=sheet.surface.mirrored) for sheet in every]
-        return Sheets(tuple(found[:-1]), found[-1])
+        mirror_images = [replace(layer, surface=layer.surface.mirrored) for layer in every]
+        return Sheets(tuple(mirror_images[:-1]), mirror_images[-1])
 
     @property
     def fastest(self) -> float:
         """Largest speed of a wave inside, over the wave speed of the solid at the surface."""
-        return max(one.surface.fastest / one.slower for one in (*self.layers, self.substrate))
+        return max(layer.surface.fastest / layer.slower for layer in (*self.layers, self.substrate))
 
     def change(self, k: NDArray, C: NDArray) -> NDArray[np.complex128]:
         """Δ𝐘 at wavenumbers times a, k < 0, and speeds C, Im C < 0, (n,) each: (n, 2, 2)."""
@@ -337,7 +340,7 @@ class Sheets:
 
 @dataclass(frozen=True)
 class Echoes:
-    """What layers add to the response at distances ahead of a line load in a frame that moves at c.
+    """Part of the layers in the response ahead of a line load in a frame that moves at c.
 
     Args:
         sheets: the layers.
@@ -355,70 +358,70 @@ class Echoes:
             s: over c_s/a, Re s > 0.
             slopes: of these along X instead.
         """
-        # Those of k > 0 are the conjugates of what -k makes at the conjugate of s.
+        # Displacements by k > 0 are the conjugates of those by -k at the conjugate of s.
         return np.asarray(self._half(x, s, slopes) + self._half(x, np.conj(s), slopes).conj())
 
     def _half(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
-        """Of all k < 0."""
+        """Displacements by all k < 0, or their slopes, (4, n)."""
         if (last := self._last(s)) == 0.0:
             return np.zeros((4, len(x)), dtype=complex)
         t, w = leggauss(_LAYERS_POINTS)
-        known = np.linalg.solve(
+        interpolate = np.linalg.solve(
             legvander(t, _LAYERS_POINTS - 1).T, legvander(_LAYERS_BETWEEN, _LAYERS_POINTS - 1).T
         ).T
         count = max(_FEWEST, ceil(last * float(x.max()) / _LAYERS_TURN))
         starts, length, most = np.arange(count) * (last / count), last / count, 0.0
-        found = np.zeros((4, len(x)), dtype=complex)
+        displacements = np.zeros((4, len(x)), dtype=complex)
         for halvings in range(_LAYERS_HALVINGS + 1):
             κ = starts[:, None] + length * (1.0 + np.append(t, _LAYERS_BETWEEN)) / 2.0
             values = self._values(-κ.ravel(), s).reshape(4, *κ.shape)
-            told, rest = values[..., :_LAYERS_POINTS], values[..., _LAYERS_POINTS:]
+            at_gauss, between = values[..., :_LAYERS_POINTS], values[..., _LAYERS_POINTS:]
             most = max(most, float(np.abs(values).max()))
-            off = np.abs(told @ known.T - rest).max(axis=(0, 2))
+            off = np.abs(at_gauss @ interpolate.T - between).max(axis=(0, 2))
             fine = (off <= _LAYERS_ACCURACY * most) | (halvings == _LAYERS_HALVINGS)
             k = -κ[fine, :_LAYERS_POINTS].ravel()
             factor = np.tile(length / 2.0 * w, int(fine.sum())) * ((1j * k) if slopes else 1.0)
-            weighted = told[:, fine].reshape(4, -1) * factor
-            for some in (slice(n, n + _TOGETHER) for n in range(0, len(k), _TOGETHER)):
-                found += weighted[:, some] @ np.exp(1j * np.outer(k[some], x))
+            weighted = at_gauss[:, fine].reshape(4, -1) * factor
+            for block in (slice(n, n + _TOGETHER) for n in range(0, len(k), _TOGETHER)):
+                displacements += weighted[:, block] @ np.exp(1j * np.outer(k[block], x))
             starts, length = np.repeat(starts[~fine], 2), length / 2.0
             starts[1::2] += length
             if not len(starts):
                 break
-        return np.asarray(found / (2.0 * pi), dtype=np.complex128)
+        return np.asarray(displacements / (2.0 * pi), dtype=np.complex128)
 
     def _values(self, k: NDArray, s: complex) -> NDArray[np.complex128]:
-        """Displacements by tractions less those of the uniform solid, (4, n)."""
+        """Displacements by tractions at wavenumbers k less those of the uniform solid, (4, n)."""
         change = self.sheets.change(k, self.c + 1j * s / k)
         return np.asarray(change[:, ::-1, ::-1].reshape(-1, 4).T / (1j * k))
 
     def _last(self, s: complex) -> float:
-        """Wavenumber beyond which nothing is left, 0 where there is nothing at all."""
-        k = -_LOOKED
-        left = np.flatnonzero(self.sheets.decay(k, self.c + 1j * s / k) < _LAYERS_GONE)
-        return float(_LOOKED[min(left[-1] + 1, len(k) - 1)]) if len(left) else 0.0
+        """Wavenumber beyond which the echoes are negligible; 0 if they always are."""
+        k = -_WAVENUMBERS
+        not_decayed = np.flatnonzero(self.sheets.decay(k, self.c + 1j * s / k) < _LAYERS_GONE)
+        return float(_WAVENUMBERS[min(not_decayed[-1] + 1, len(k) - 1)]) if len(not_decayed) else 0.0
 
 
 class Side(Protocol):
-    """Of a line load on one side, in the mirror image behind it: see :class:`.kernel.Kernel`."""
+    """Response on one side of a line load; behind it that of the mirror image, see :class:`Kernel`."""
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]: ...
 
 
 @dataclass(frozen=True)
 class OnLayers:
-    """That of the solid at the surface, and echoes.
+    """Response of layers: that of a half-plane of the uppermost solid, and echoes.
 
     Attributes:
-        uniform: of a half-plane of that solid.
-        echoes: of the layers.
+        uniform: response of a half-plane of the solid at the surface.
+        echoes: part of the layers.
     """
 
     uniform: Side
     echoes: Echoes
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-        """Of both, (4, n)."""
+        """v̂ of line loads σ_YY and σ_XY, and û of them, (4, n); arguments of :class:`Kernel`."""
         return np.asarray(self.uniform(x, s, slopes) + self.echoes(x, s, slopes))
 
 
@@ -429,7 +432,7 @@ def fastest(response: Any) -> float:
 
 
 def both_sides(response: Any, rayleigh: float, way: int) -> tuple[Side, Side]:
-    """On the sides towards +X and -X of a load that moves over a solid.
+    """Responses on the sides towards +X and -X of a line load that moves over a solid.
 
     Args:
         response: of the solid at the load's speed, :class:`LayersInCells` of layers.
@@ -437,14 +440,11 @@ def both_sides(response: Any, rayleigh: float, way: int) -> tuple[Side, Side]:
         way: ±1, in which the load moves along X.
 
     Raises:
-        ValueError: the solid's waves are not known.
+        ValueError: the solid's stiffness in the plane is not known.
     """
     if not isinstance(response, LayersInCells):
         surface, V = Admittance.of(response), way * response.c
         return Kernel(surface, V, rayleigh), Kernel(surface.mirrored, -V, rayleigh)
     sheets, V = Sheets.of(response), way * response.c
-    alone = both_sides(response.surface, response.solid.surface.limit(), way)
-    right, left = (
-        OnLayers(one, Echoes(of, c)) for one, of, c in zip(alone, (sheets, sheets.mirrored), (V, -V))
-    )
-    return right, left
+    ahead, behind = both_sides(response.surface, response.solid.surface.limit(), way)
+    return OnLayers(ahead, Echoes(sheets, V)), OnLayers(behind, Echoes(sheets.mirrored, -V))

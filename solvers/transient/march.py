@@ -1,18 +1,16 @@
-"""Pressure under a flat punch whose friction changes in time: the convolution is marched through.
+"""Pressure under a flat punch whose friction changes in time, by a convolution in steps.
 
 At the stages of step n, with the quadrature's weights W of the response to σ_YY and g σ_YY ::
 
     Σ_m W_{n-m} [σ_m] = -v₀,      σ(t) = (1 - X)^α(t) (1 + X)^β(t) Σ a_j(t) P_j(X; t)
 
-tested with fixed polynomials. Exponents are those of the friction of each moment. What such a pressure
-does is analytic in g, and interpolated between a few of them; so what has been is kept by their shares.
+tested with fixed polynomials. Exponents are those of the friction of each moment. The displacement by
+such a pressure is analytic in g: it is interpolated between a few frictions, Chebyshev's points of the
+range, and the pressures before step n are kept as shares of the pressures of these.
 
-Convolution quadrature by Radau IIA of three stages (Lubich & Ostermann, Math. Comp. 60, 105, 1993).
-
-What a response K makes of f over time is, at the stages of step n, Σ_m W_{n-m} f_m, where the weights are
-those of Σ_k W_k ζ^k = K(Δ(ζ)/h) and Δ(ζ) = (A + ζ/(1 - ζ) 1 bᵀ)⁻¹ is the scheme's. It is of order five.
-
-Pressures of any friction of a range by those of a few: analytic in g, so Chebyshev's points serve.
+The quadrature is Radau IIA of three stages, of order five (Lubich & Ostermann, Math. Comp. 60, 105,
+1993): the convolution of a response K with f is, at the stages of step n, Σ_m W_{n-m} f_m, with weights
+by Σ_k W_k ζ^k = K(Δ(ζ)/h) and the scheme's Δ(ζ) = (A + ζ/(1 - ζ) 1 bᵀ)⁻¹.
 """
 
 from collections.abc import Callable
@@ -27,21 +25,21 @@ from .transform import Basis, Transformed
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
 _ROUNDING = 1e-16
-#: Length of the transform over what is told of it: the longer, the less comes round.
+#: Length of the discrete transform over the number of steps: the longer, the less comes round.
 _LONGER = 1.75
 #: Stages.
 STAGES = 3
 
 
 class Radau:
-    """For a number of steps.
+    """Convolution quadrature over a number of equal steps.
 
     Args:
         end: last time.
-        steps: of equal length.
+        steps: their number.
 
     Attributes:
-        s: where Laplace's transform of a response is needed, (values,).
+        s: arguments of Laplace's transform of a response, (values,).
         times: of all stages, (steps, stages); the last is the end of the step.
     """
 
@@ -56,7 +54,7 @@ class Radau:
         self._length = ceil(_LONGER * steps)
         self._h, self._nodes = h, A.sum(axis=1)
         self.times = self._stages(steps)
-        # What comes round and the enlarged rounding are alike small.
+        # With this radius what comes round and the enlarged rounding are of one size.
         self._radius = _ROUNDING ** (1.0 / (steps + self._length))
         half = self._length // 2 + 1
         ζ = self._radius * np.exp(-2j * pi * np.arange(half) / self._length)
@@ -69,7 +67,7 @@ class Radau:
         return np.asarray(self._h * (np.arange(steps)[:, None] + self._nodes))
 
     def convolved(self, response: NDArray, given: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
-        """What a response makes of what is given over time, after each step, (steps, n).
+        """Convolution of a response with a function of time, after each step, (steps, n).
 
         Args:
             response: its transform at ``s``, (values, n).
@@ -78,11 +76,11 @@ class Radau:
         return self.answered(response[..., None], given(self.times)[..., None])
 
     def answered(self, response: NDArray, given: NDArray) -> NDArray[np.float64]:
-        """What a response makes of many functions of time, after each step, (steps, n).
+        """Sum of a response's convolutions with many functions, after each step, (steps, n).
 
         Args:
             response: its transform at ``s``, (values, n, functions).
-            given: at all stages, (steps, stages, functions).
+            given: functions at all stages, (steps, stages, functions).
         """
         scale = self._radius ** np.arange(self._steps)[:, None, None]
         scaled = np.fft.rfft(given * scale, self._length, axis=0)
@@ -92,31 +90,31 @@ class Radau:
         return np.asarray(np.fft.irfft(last, self._length, axis=0)[: self._steps] / scale[..., 0])
 
     def weights(self, response: NDArray) -> NDArray[np.float64]:
-        """W_0, W_1, … of a response, (steps, stages, stages, ...).
+        """Weights W_0, W_1, … of a response, (steps, stages, stages, ...).
 
         Args:
             response: its transform at ``s``, (values, ...).
         """
         of_mode = response.reshape(-1, STAGES, *response.shape[1:])
-        found = np.empty((self._steps, STAGES, STAGES, *response.shape[1:]))
+        weights = np.empty((self._steps, STAGES, STAGES, *response.shape[1:]))
         scale = self._radius ** -np.arange(float(self._steps))
         for i in range(STAGES):
             for j in range(STAGES):
                 both = self._vectors[:, i] * self._inverse[:, :, j]
                 whole = np.fft.irfft(np.einsum("fm,fm...->f...", both, of_mode), self._length, axis=0)
-                found[:, i, j] = (whole[: self._steps].T * scale).T
-        return found
+                weights[:, i, j] = (whole[: self._steps].T * scale).T
+        return weights
 
 
-#: Accuracy over the largest, frictions at most, and frictions and places at which it is looked at.
-_ACCURACY, _MOST, _LOOKED = 1e-10, 24, 7
+#: Accuracy over the largest pressure, frictions at most, and frictions and places at which it is tested.
+_ACCURACY, _MOST, _TESTED = 1e-10, 24, 7
 _PLACES = -np.cos(pi * (np.arange(64) + 0.5) / 64)
-#: Range of friction that is none: differences of it are rounding.
+#: Half-range of friction below which friction is constant: differences are rounding.
 _SAME = 1e-13
 
 
 class Between:
-    """All frictions from g_least to g_most.
+    """Interpolation in friction: pressures of any g from ``least`` to ``most`` by those of a few.
 
     Args:
         response: of steady motion.
@@ -124,8 +122,8 @@ class Between:
         terms: polynomials of the pressure.
 
     Attributes:
-        bases: at the few frictions.
-        middle: at the middle of the range.
+        bases: polynomials of the pressure at the few frictions.
+        middle: polynomials at the middle of the range.
     """
 
     def __init__(self, response: Response, least: float, most: float, terms: int) -> None:
@@ -141,41 +139,42 @@ class Between:
     def _take(self, count: int) -> None:
         self._angles = pi * (np.arange(count) + 0.5) / count
         self.bases = [
-            Basis(self._response, self._middle + self._half * one, self._terms)
-            for one in np.cos(self._angles)
+            Basis(self._response, self._middle + self._half * node, self._terms)
+            for node in np.cos(self._angles)
         ]
 
     def _off(self) -> float:
-        known = np.array([one.pressure(_PLACES) for one in self.bases])
+        values = np.array([basis.pressure(_PLACES) for basis in self.bases])
         off = 0.0
-        for share in np.cos(pi * np.arange(_LOOKED) / (_LOOKED - 1)):
+        for share in np.cos(pi * np.arange(_TESTED) / (_TESTED - 1)):
             g = self._middle + self._half * share
             exact = Basis(self._response, g, self._terms).pressure(_PLACES)
-            found = np.tensordot(self.shares(g), known, 1)
-            off = max(off, float(np.abs(found - exact).max() / np.abs(exact).max()))
+            interpolated = np.tensordot(self.shares(g), values, 1)
+            off = max(off, float(np.abs(interpolated - exact).max() / np.abs(exact).max()))
         return off
 
     def shares(self, g: ArrayLike) -> NDArray[np.float64]:
-        """Of each of the few in what there is at frictions (...,): (..., few)."""
+        """Weights of the few frictions in the interpolation at frictions g, (...,): (..., few)."""
         count = len(self._angles)
         x = np.clip((np.asarray(g) - self._middle) / max(self._half, _SAME), -1.0, 1.0)
         orders = np.arange(count)
-        known = np.cos(np.outer(self._angles, orders)) * np.where(orders == 0, 1.0, 2.0) / count
-        return np.asarray(np.cos(np.arccos(x)[..., None] * orders) @ known.T)
+        by_node = np.cos(np.outer(self._angles, orders)) * np.where(orders == 0, 1.0, 2.0) / count
+        return np.asarray(np.cos(np.arccos(x)[..., None] * orders) @ by_node.T)
 
 
-#: Steps for which what has been before is summed together.
+#: Steps for which the effect of earlier steps is summed together.
 _BLOCK = 16
 
 
 @dataclass(frozen=True)
 class Marched:
-    """What was found.
+    """Pressure and indentation over time.
 
     Attributes:
         between: pressures of a few frictions.
-        shares: of each polynomial of these in σ_YY at all stages, (steps, stages, few·terms).
-        begun: these before t = 0, (few·terms,).
+        shares: coefficients in σ_YY of the polynomials of these at all stages, (steps, stages,
+            few·terms).
+        begun: coefficients before t = 0, (few·terms,).
         a: coefficients of the pressure's polynomials after each step, (steps, terms).
         v0: indentation after each step, (steps,).
     """
@@ -191,7 +190,7 @@ def march(
     transformed: Transformed, scheme: Radau, between: Between,
     g: Callable[[NDArray], NDArray], load: Callable[[NDArray], NDArray], steady: bool,
 ) -> Marched:  # fmt: skip
-    """From t = 0 on, through all steps.
+    """Pressure and indentation from t = 0 on, step after step.
 
     Args:
         transformed: responses at the scheme's s.
@@ -199,15 +198,15 @@ def march(
         between: pressures of the frictions that occur.
         g: σ_XY/σ_YY at times.
         load: share of N at times.
-        steady: before t = 0 there was steady motion of what there is then, not rest.
+        steady: True for steady motion before t = 0 at the load and friction of t = 0; False for rest.
     """
     tests, h = between.middle.tests, _History(transformed, scheme, between)
     few, given = between.shares(g(scheme.times)), -2.0 * load(scheme.times)
-    forces = [one.pressure.integral for one in between.bases]
+    forces = [basis.pressure.integral for basis in between.bases]
     if steady:
         start = between.shares(g(np.zeros(())))
         h.begun[:, :: tests.terms] = start * (-2.0 * float(load(np.zeros(()))) / (start @ forces))
-    found, v0 = np.empty((len(few), tests.terms)), np.empty(len(few))
+    coefficients, v0 = np.empty((len(few), tests.terms)), np.empty(len(few))
     shape = STAGES, tests.terms + 1
     for n, share in enumerate(few):
         whole, right = np.zeros((*shape, *shape)), np.empty(shape)
@@ -216,36 +215,36 @@ def march(
         whole[range(STAGES), -1, range(STAGES), 0] = share @ forces
         right[:, :-1], right[:, -1] = -h.before(n), given[n]
         x = np.linalg.solve(whole.reshape(right.size, right.size), right.ravel()).reshape(shape)
-        h.known(n, share[:, :, None] * x[:, None, :-1])
-        found[n], v0[n] = x[-1, :-1], x[-1, -1]
-    return Marched(between, h.added + h.begun, h.begun[0], found, v0)
+        h.record(n, share[:, :, None] * x[:, None, :-1])
+        coefficients[n], v0[n] = x[-1, :-1], x[-1, -1]
+    return Marched(between, h.added + h.begun, h.begun[0], coefficients, v0)
 
 
 class _History:
-    """What has been, and what it does now.
+    """Coefficients of the pressure in all steps, and the displacements that they cause later.
 
     Attributes:
-        added: shares in σ_YY less those before t = 0, (steps, stages, few·terms).
-        begun: those before, (stages, few·terms), alike at all stages.
+        added: coefficients in σ_YY less those before t = 0, (steps, stages, few·terms).
+        begun: coefficients before t = 0, (stages, few·terms), equal at all stages.
     """
 
     def __init__(self, transformed: Transformed, scheme: Radau, between: Between) -> None:
         tests, few = between.middle.tests, len(between.bases)
         self._weights = np.empty((len(scheme.times), STAGES, tests.terms, STAGES, few, tests.terms))
-        for n, one in enumerate(between.bases):
-            of_one = scheme.weights(transformed.sinking(one, tests))
-            self._weights[..., n, :] = of_one.swapaxes(2, 3)
+        for n, basis in enumerate(between.bases):
+            weights = scheme.weights(transformed.sinking(basis, tests))
+            self._weights[..., n, :] = weights.swapaxes(2, 3)
         self._flat = self._weights.reshape(len(self._weights), STAGES * tests.terms, -1)
         self.added = np.zeros((len(self._weights), STAGES, few * tests.terms))
         self.begun = np.zeros((STAGES, few * tests.terms))
         self._ahead = np.zeros((len(self._weights), STAGES * tests.terms))
 
     def now(self, share: NDArray) -> NDArray[np.float64]:
-        """What the polynomials of a moment do at once, (stages, tests, stages, terms)."""
+        """Tested displacements by a step's own polynomials, (stages, tests, stages, terms)."""
         return np.asarray(np.einsum("itjfk,jf->itjk", self._weights[0], share))
 
     def before(self, n: int) -> NDArray[np.float64]:
-        """What has been before step n does there, (stages, tests)."""
+        """Tested displacements in step n by the pressure of earlier steps, (stages, tests)."""
         first = n - n % _BLOCK
         if n == first:
             self._look_ahead(first)
@@ -255,7 +254,7 @@ class _History:
         return np.asarray(whole.reshape(STAGES, -1))
 
     def _look_ahead(self, first: int) -> None:
-        """What has been before a block does in it; a weight serves many of its steps at once."""
+        """Add the displacements in a block by all steps before it; a weight serves many steps."""
         last = min(first + _BLOCK, len(self._flat))
         for lag in range(1, last):
             begin, end = max(0, first - lag), min(first, last - lag)
@@ -263,6 +262,6 @@ class _History:
                 been = self.added[begin:end].reshape(end - begin, -1)
                 self._ahead[begin + lag : end + lag] += been @ self._flat[lag].T
 
-    def known(self, n: int, whole: NDArray) -> None:
-        """σ_YY of a step, (stages, few, terms)."""
+    def record(self, n: int, whole: NDArray) -> None:
+        """Keep the coefficients in σ_YY of step n, (stages, few, terms)."""
         self.added[n] = whole.reshape(STAGES, -1) - self.begun

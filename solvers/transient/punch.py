@@ -1,17 +1,16 @@
 """A flat punch that is pressed on and slides from rest at constant speed: integral equation in time.
 
-What depends on time is a convolution, so that Laplace's transform of the response is all that is needed.
-Where friction is constant so is what a load makes of pressure and indentation; where it changes the
-convolution is marched through.
+The equation is a convolution in time, so that Laplace's transform of the response is all that is needed.
+Where friction is constant, so are pressure and indentation by a unit load at each s; where it changes the
+convolution is solved step after step.
 
-Strain along the surface, under a flat punch and beside it, by Laplace's transform in time.
-
-What a line load does at a distance is at small ones what it does in steady motion, and a logarithm::
+Strain along the surface, under the punch and beside it, is by Laplace's transform, too. At small
+distances from a line load it is that of steady motion and a logarithm::
 
     û,X = q σ̂_YY + (n₁₂ + g m) H[σ̂_YY] + ∫ rest(X - ξ) σ̂_YY(ξ) dξ
 
-The first two are known of the polynomials that the pressure is made of. The rest is tabulated for each s
-once, whatever the friction, and is smooth in each panel of distances but the one at 0.
+The first two terms are exact for the polynomials that the pressure is made of. The rest is tabulated for
+each s once, whatever the friction, and is smooth in each panel of distances but the one at 0.
 """
 
 from collections.abc import Callable
@@ -30,14 +29,14 @@ from .transform import Basis, Transformed, Weighted, at_any, divided
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.125, 10
-#: Steps and half-length of the double exponential rule along the contact, or what is on one side.
+#: Steps and half-length of the double exponential rule along the contact, or its part on one side.
 _STEPS, _LENGTH = 161, 3.4
-#: Points of the pressure as seen from beside the contact.
+#: Points of the pressure in its effect beside the contact.
 _FEW = 128
 
 
 class AlongSurface:
-    """Places on the surface, at one speed and for some s.
+    """Strain at places on the surface, at one speed and for given s.
 
     Args:
         response: of steady motion at that speed.
@@ -59,22 +58,23 @@ class AlongSurface:
         σ = np.zeros((len(X), pressure.terms))
         σ[under] = pressure(X[under])
         local = answer.q * σ + slope * _hilbert(X, pressure, σ)
-        found = np.repeat(local[None].astype(np.complex128), len(self._s), axis=0)
+        strains = np.repeat(local[None].astype(np.complex128), len(self._s), axis=0)
         pole = slope / (pi * self._x)
         for table, sign in zip(self._tables, (1.0, -1.0)):
             rest = table[:, 0] + sign * (g * table[:, 1] + pole)
-            found += (rest @ self._sums(sign, pressure).reshape(len(self._x), -1)).reshape(found.shape)
-        return found
+            sums = self._sums(sign, pressure).reshape(len(self._x), -1)
+            strains += (rest @ sums).reshape(strains.shape)
+        return strains
 
     def _sums(self, sign: float, pressure: Weighted) -> NDArray[np.float64]:
-        """What of each tabulated distance comes from polynomials there, (distances, places, terms).
+        """Weights of tabulated distances in the strain by polynomials, (distances, places, terms).
 
         Args:
             sign: 1 for places ahead of the loads, -1 for those behind.
             pressure: its polynomials.
         """
         α, β = (pressure.α, pressure.β) if sign > 0.0 else (pressure.β, pressure.α)
-        found = np.zeros((len(self._x), len(self._X), pressure.terms))
+        sums = np.zeros((len(self._x), len(self._X), pressure.terms))
         # As if ahead, in the mirror image: loads from -1 up to X or 1.
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
@@ -82,25 +82,25 @@ class AlongSurface:
                 near, far, w = _both_ends(last + 1.0)
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
-                found[:, n] = self._told(beyond + near).T @ (
+                sums[:, n] = self._interpolation(beyond + near).T @ (
                     w[:, None] * pressure.polynomials(sign * loads)
                 )
-        return found
+        return sums
 
-    def _told(self, x: NDArray) -> NDArray[np.float64]:
-        """Values at distances by those that are tabulated, (x, distances)."""
+    def _interpolation(self, x: NDArray) -> NDArray[np.float64]:
+        """Matrix from values at the tabulated distances to values at x, (x, distances)."""
         edges = self._edges
         panel = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
         t, _ = leggauss(_POINTS)
         local = 2.0 * (x - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
         by_point = np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(local, _POINTS - 1).T).T
-        found = np.zeros((len(x), len(edges) - 1, _POINTS))
-        found[np.arange(len(x)), panel] = by_point
-        return found.reshape(len(x), -1)
+        weights = np.zeros((len(x), len(edges) - 1, _POINTS))
+        weights[np.arange(len(x)), panel] = by_point
+        return weights.reshape(len(x), -1)
 
     @cached_property
     def _edges(self) -> NDArray[np.float64]:
-        """Of panels of distances."""
+        """Edges of panels of distances over a, growing from 0."""
         near = 2.0 ** -np.arange(_NEAR, 1, -1.0)
         last = 1.0 + float(np.abs(self._X).max())
         near = near[near < _EVEN]
@@ -123,38 +123,44 @@ class AlongSurface:
 
 
 def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]:
-    """(1/π) ⨍ of the polynomials with their weight over t - X, (n, terms); ``σ`` are these at X."""
-    found = np.empty_like(σ)
+    """Hilbert transform (1/π) ⨍ p(t)/(t - X) dt of the weighted polynomials p, (n, terms).
+
+    Args:
+        X: positions over a, (n,).
+        pressure: the polynomials and their weight.
+        σ: weighted polynomials at X, 0 beside the contact, (n, terms).
+    """
+    transform = np.empty_like(σ)
     under = np.abs(X) < 1.0
     t, w = pressure.rule(_FEW)
     P = w[:, None] * pressure.polynomials(t)
-    found[~under] = (1.0 / (t - X[~under, None])) @ P
-    # That of the weight is π cot(πα) times it; what is left is a polynomial.
+    transform[~under] = (1.0 / (t - X[~under, None])) @ P
+    # The weight's own transform is π cot(πα) times it; the rest is a polynomial.
     over = 1.0 / (t - X[under, None])
     rest = over @ P - (over @ w)[:, None] * pressure.polynomials(X[under])
-    found[under] = rest + pi / np.tan(pi * pressure.α) * σ[under]
-    return np.asarray(found / pi)
+    transform[under] = rest + pi / np.tan(pi * pressure.α) * σ[under]
+    return np.asarray(transform / pi)
 
 
 def _both_ends(length: float) -> tuple[NDArray, NDArray, NDArray]:
     """Double exponential rule: distances from the right and the left end, and weights, (steps,) each."""
     u = np.linspace(-_LENGTH, _LENGTH, _STEPS)
     grown = pi * np.sinh(u)
-    right, left = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
-    weights = (u[1] - u[0]) * pi * np.cosh(u) * right * left
-    return length * right, length * left, length * weights
+    from_right, from_left = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
+    weights = (u[1] - u[0]) * pi * np.cosh(u) * from_right * from_left
+    return length * from_right, length * from_left, length * weights
 
 
-#: Distance over a beyond the ends of the contact at which σ_XX is told: it is infinite at them.
+#: Distance over a beyond the ends of the contact at which σ_XX is computed: it is infinite at them.
 BESIDE = 0.05
-#: Places X over a under the punch at which the pressure is told, closer towards the ends.
+#: Places X over a under the punch at which the pressure is computed, closer towards the ends.
 PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
-#: Distances over a from the ends at which stresses beside the punch are told, and all places X over a.
+#: Distances over a from the ends of places beside the punch, and all places of stresses, X over a.
 _BEYOND = np.geomspace(0.01, 1.0, 24)
 ON_SURFACE = np.concatenate([-1.0 - _BEYOND[::-1], PLACES, 1.0 + _BEYOND])
 _UNDER = np.abs(ON_SURFACE) < 1.0
 
-#: What depends on time: values at times over a/c_s of any shape.
+#: Function of time: values at times over a/c_s of any shape.
 Law = Callable[[NDArray], NDArray]
 
 
@@ -166,22 +172,22 @@ def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Course:
-    """What happens over time; lengths over a, times over a/c_s, stresses over N/(2a).
+    """Motion of a flat punch over time; lengths over a, times over a/c_s, stresses over N/(2a).
 
     Attributes:
         t: times, (times,), > 0.
-        v0: indentation of the surface under the punch over N/(2μ), from when all was at rest.
-        load: over N.
-        centre: of the pressure over a.
+        v0: indentation of the surface under the punch over N/(2μ), 0 at rest.
+        load: load over N.
+        centre: centre of the pressure over a.
         K_left, K_right: normalised intensities of the pressure at X = -a and X = a, by the exponents of
             steady motion at the friction of each time, and over the final load.
         work_of_load: ∫ N dv₀ over N²/(4μ).
-        work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): what friction gives to
-            the motion of the solid besides being carried past the punch.
-        σ_YY: under the punch at ``PLACES``, (times, places).
+        work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): work of friction on
+            the solid besides that of carrying it past the punch.
+        σ_YY: contact stress at ``PLACES``, (times, places).
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
-        surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less what there was before
-            t = 0; None where it is not asked for.
+        surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less the stresses before
+            t = 0; None where they are not computed.
     """
 
     t: NDArray[np.float64]
@@ -199,15 +205,15 @@ class Course:
 
 
 class StartingPunch:
-    """All starts at one speed.
+    """A flat punch that starts at one speed, with any friction and load.
 
     Args:
-        response: of steady motion at that speed; tells the solid's stiffness and the exponents.
+        response: of steady motion at that speed, with the solid's stiffness and the exponents.
         rayleigh: speed of the wave along the surface over c_s.
         end: last time over a/c_s.
         steps: of the quadrature.
         terms: polynomials of the pressure.
-        surface: are stresses wanted along it?
+        surface: True to compute stresses at ``ON_SURFACE``.
         way: ±1, in which the punch moves along X.
     """
 
@@ -222,74 +228,78 @@ class StartingPunch:
         self._along = AlongSurface(response, rayleigh, s, ON_SURFACE, way) if surface else None
 
     def course(self, g: float, load: Law) -> Course:
-        """What happens where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
+        """Motion where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
         basis, n = self._transformed.basis(g), self._terms
         (answers,) = self._transformed.answers(basis)
         pressure = answers[:, :-1, None]
         dragged = self._transformed.dragging(basis, basis.pressure) @ pressure
         strains = self._strains(basis) @ pressure
-        found = self._scheme.convolved(np.hstack([answers, dragged[..., 0], strains[..., 0]]), load)
-        a, v0, u, u_X = np.split(found, [n, n + 1, 2 * n + 1], axis=1)
+        histories = self._scheme.convolved(np.hstack([answers, dragged[..., 0], strains[..., 0]]), load)
+        a, v0, u, u_X = np.split(histories, [n, n + 1, 2 * n + 1], axis=1)
         by_friction = _work(self._t, g * a, u, np.zeros(n))
-        return self._told([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
+        return self._course([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
 
     def _strains(self, basis: Basis) -> NDArray[np.complex128]:
-        """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if wanted, (s, places, terms)."""
+        """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if any, (s, places, terms)."""
         beside = self._transformed.strains(basis, BESIDE)
         return beside if self._along is None else np.hstack([beside, self._along.strains(basis)])
 
     def course_along(self, g: Law, load: Law, steady: bool = False) -> Course:
-        """What happens where friction changes, σ_XY = g(t) σ_YY, and N is there by the share ``load(t)``.
+        """Motion where friction changes, σ_XY = g(t) σ_YY, and N is present by the share ``load(t)``.
 
         Args:
-            g: at times over a/c_s.
-            load: at times; from rest load(0) = 0.
-            steady: before t = 0 there was steady motion of what there is then. The course tells v₀ and
-                works from then on, and what is added to σ_XX of then.
+            g: σ_XY/σ_YY at times over a/c_s.
+            load: share of N at times; from rest load(0) = 0.
+            steady: True for steady motion before t = 0 at the load and friction of t = 0. Indentation,
+                works and σ_XX are then differences from t = 0.
         """
         scheme, transformed = self._scheme, self._transformed
         ratios = g(scheme.times)
         occurring = np.append(ratios, g(np.zeros(())))
         between = Between(self._response, occurring.min(), occurring.max(), self._terms)
-        found = march(transformed, scheme, between, g, load, steady)
+        marched = march(transformed, scheme, between, g, load, steady)
         held = between.middle.pressure
-        rows = [np.hstack([transformed.dragging(one, held), self._strains(one)]) for one in between.bases]
-        moved = scheme.answered(np.concatenate(rows, axis=2), found.shares - found.begun)
+        rows = [np.hstack([transformed.dragging(of, held), self._strains(of)]) for of in between.bases]
+        moved = scheme.answered(np.concatenate(rows, axis=2), marched.shares - marched.begun)
         u, u_X = np.split(moved, [self._terms], axis=1)
-        shared = np.hstack([one.pressure.tested(held) for one in between.bases])
-        forces = ratios[:, -1:] * (found.shares[:, -1] @ shared.T)
-        by_friction = _work(self._t, forces, u, occurring[-1] * (shared @ found.begun))
+        shared = np.hstack([basis.pressure.tested(held) for basis in between.bases])
+        forces = ratios[:, -1:] * (marched.shares[:, -1] @ shared.T)
+        by_friction = _work(self._t, forces, u, occurring[-1] * (shared @ marched.begun))
         bases = [Basis(self._response, ratio, self._terms) for ratio in ratios[:, -1]]
-        begun = found.begun @ np.vstack([one.pressure(ON_SURFACE[_UNDER]).T for one in between.bases])
+        under = ON_SURFACE[_UNDER]
+        begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
         before = begun, occurring[-1] * begun
-        return self._told(bases, found.a, found.v0, load, by_friction, u_X, before)
+        return self._course(bases, marched.a, marched.v0, load, by_friction, u_X, before)
 
     @property
     def _t(self) -> NDArray[np.float64]:
         """Ends of the steps."""
         return self._scheme.times[:, -1]
 
-    def _told(
+    def _course(
         self, bases: list[Basis], a: NDArray, v0: NDArray, load: Law, by_friction: NDArray, u_X: NDArray,
         begun: tuple[ArrayLike, ArrayLike] = (0.0, 0.0),
     ) -> Course:  # fmt: skip
-        """All of the polynomials' coefficients, of strains, and of σ_YY and σ_XY before t = 0."""
+        """Motion from the polynomials' coefficients a (times, terms) and strains u,X (times, places).
+
+        ``begun`` are σ_YY and σ_XY before t = 0 at ``ON_SURFACE`` under the punch.
+        """
         t, beside, along = self._t, u_X[:, :2], u_X[:, 2:]
         σ_XX = self._response.σ_XX(beside, np.zeros_like(beside), np.zeros_like(beside))
         first = np.array([2.0 * float(load(np.zeros(())))])
         by_load = _work(t, 2.0 * load(t)[:, None], v0[:, None], first)
-        normal = np.array([one @ basis.moments for one, basis in zip(a, bases)])
+        normal = np.array([coefficients @ basis.moments for coefficients, basis in zip(a, bases)])
         ends = np.array([basis.ends for basis in bases])
-        # Inertia adds r log r to what the polynomials tell at a distance r from an end, so that their
-        # sum there converges with the square of their number; half of them say how.
+        # Inertia adds r log r to the polynomials at a distance r from an end, so that their sum there
+        # converges with the square of their number; half of them give the constant.
         whole, half = (
             np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (self._terms, self._terms // 2)
         )
-        left, right = -(whole + (whole - half) / 3.0) / 2.0
-        σ_YY = np.array([basis.pressure(PLACES) @ one for one, basis in zip(a, bases)])
+        K_left, K_right = -(whole + (whole - half) / 3.0) / 2.0
+        σ_YY = np.array([basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)])
         return Course(
-            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], left, right, by_load, by_friction,
-            σ_YY, σ_XX[:, 0], σ_XX[:, 1],
+            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], K_left, K_right,
+            by_load, by_friction, σ_YY, σ_XX[:, 0], σ_XX[:, 1],
             None if self._along is None else self._on_surface(bases, a, along, begun),
         )  # fmt: skip
 
@@ -298,8 +308,8 @@ class StartingPunch:
     ) -> NDArray[np.float64]:
         """σ_XX, σ_YY and σ_XY at ``ON_SURFACE`` less those before t = 0, (3, times, places)."""
         σ_YY, σ_XY = np.zeros((2, *u_X.shape))
-        for n, (one, basis) in enumerate(zip(a, bases)):
-            σ_YY[n, _UNDER] = basis.pressure(ON_SURFACE[_UNDER]) @ one
+        for n, (coefficients, basis) in enumerate(zip(a, bases)):
+            σ_YY[n, _UNDER] = basis.pressure(ON_SURFACE[_UNDER]) @ coefficients
             σ_XY[n] = basis.g * σ_YY[n]
         σ_YY[:, _UNDER] -= begun[0]
         σ_XY[:, _UNDER] -= begun[1]
@@ -307,7 +317,13 @@ class StartingPunch:
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:
-    """∫ Σ force d(way) up to each time, (times,); both (times, n), and ``first`` forces at t = 0."""
+    """Work ∫ Σ force d(way) up to each time, (times,).
+
+    Args:
+        t: times, (times,), > 0.
+        forces, ways: at these times, (times, n); ways are 0 at t = 0.
+        first: forces at t = 0, (n,).
+    """
     from scipy.interpolate import CubicSpline  # a slow import
 
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))

@@ -1,11 +1,9 @@
 """A flat punch on a half-plane by Laplace's transform in time: pressure and indentation at each s.
 
-What the pressure under a flat punch is made of, and what it is tested with.
-
-The pressure is (1 - X)^α (1 + X)^β Σ a_j P_j(X), its exponents those of steady motion at that friction,
-tested with the same of the mirror image.
-
-Panels of distances that hold waves: of many steps within a short time, they are short.
+The pressure is (1 - X)^α (1 + X)^β Σ a_j P_j(X), with the exponents of steady motion at that friction;
+the equation is tested with the weighted polynomials of the mirror image. Responses are integrated over
+distances in panels that are short enough for the waves at each s: the shorter the steps in time, the
+shorter the panels.
 """
 
 from functools import cached_property
@@ -20,8 +18,8 @@ from scipy.special import roots_jacobi
 from ..solids.solid import Response
 from .line_load import Side, both_sides
 
-#: Steps, for so many polynomials, and half-length of the double exponential rule along what two shifted
-#: contacts have in common.
+#: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
+#: shifted contacts.
 _STEPS, _FOR, _LENGTH = 121, 24, 3.4
 
 
@@ -38,11 +36,11 @@ class Weighted:
         self._norms = np.array([_norm(j, α, β) for j in range(terms)])
 
     def polynomials(self, X: NDArray) -> NDArray[np.float64]:
-        """Without the weight, their weighted squares 1, (..., terms)."""
+        """Polynomials without the weight, orthonormal with it, (..., terms)."""
         return _jacobi(np.asarray(X, dtype=float), self.α, self.β, self.terms) / self._norms
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
-        """With the weight, |X| < 1, (n, terms)."""
+        """Polynomials times their weight, |X| < 1, (n, terms)."""
         weight = (1.0 - X) ** self.α * (1.0 + X) ** self.β
         return np.asarray(weight[:, None] * self.polynomials(X))
 
@@ -55,23 +53,23 @@ class Weighted:
         return X, w
 
     def tested(self, others: "Weighted") -> NDArray[np.float64]:
-        """∫ of each with its weight, times others without, (others, terms)."""
+        """∫ w P_j P'_i dX of polynomials P_j with their weight w and others P'_i, (others, terms)."""
         X, w = self.rule(max(self.terms, others.terms))
         return np.asarray((w[:, None] * others.polynomials(X)).T @ self.polynomials(X))
 
     @property
     def integral(self) -> float:
-        """∫ of the first with its weight; that of the others is 0."""
+        """Integral of the first polynomial with its weight; that of the others is 0."""
         return float(self._norms[0])
 
 
 class Basis:
-    """Of the pressure where σ_XY = g σ_YY.
+    """Polynomials of the pressure where σ_XY = g σ_YY, and those that the equation is tested with.
 
     Attributes:
-        g: friction.
+        g: σ_XY/σ_YY.
         pressure: polynomials with the exponents of the pressure.
-        tests: with those of the mirror image.
+        tests: polynomials with the exponents of the mirror image.
     """
 
     def __init__(self, response: Response, g: float, terms: int) -> None:
@@ -83,7 +81,7 @@ class Basis:
 
     @cached_property
     def moments(self) -> NDArray[np.float64]:
-        """∫ and ∫ X of each polynomial with its weight, (terms, 2)."""
+        """Integrals of each polynomial with its weight, and of X times it, (terms, 2)."""
         X, w = self.pressure.rule(self.pressure.terms)
         P = self.pressure.polynomials(X)
         return np.array([w @ P, (w * X) @ P]).T
@@ -95,7 +93,7 @@ class Basis:
 
 
 def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]:
-    """∫ τ_i(X) σ_j(X - x) dX of both with their weights, at distances x > 0, and at -x.
+    """∫ τ_i(X) σ_j(X - x) dX of tests τ and trials σ with their weights, at distances x > 0 and at -x.
 
     Returns:
         (2, x, tests, trials).
@@ -103,17 +101,17 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
     terms = max(tests.terms, trials.terms)
     d, e, weights = _overlap(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
     x = x[:, None]
-    found = []
-    for right, left, other_right, other_left in (
+    products = []
+    for from_right, from_left, trial_from_right, trial_from_left in (
         (e, x + d, x + e, d), (x + e, d, e, x + d),
     ):  # fmt: skip
-        of_test = weights * right**tests.α * left**tests.β
-        of_trial = other_right**trials.α * other_left**trials.β
-        τ = tests.polynomials((left - right) / 2.0)
-        σ = trials.polynomials((other_left - other_right) / 2.0)
+        of_test = weights * from_right**tests.α * from_left**tests.β
+        of_trial = trial_from_right**trials.α * trial_from_left**trials.β
+        τ = tests.polynomials((from_left - from_right) / 2.0)
+        σ = trials.polynomials((trial_from_left - trial_from_right) / 2.0)
         product = (of_test * of_trial)[..., None] * τ
-        found.append(product.swapaxes(1, 2) @ σ)
-    return np.array(found)
+        products.append(product.swapaxes(1, 2) @ σ)
+    return np.array(products)
 
 
 def _jacobi(X: NDArray, α: float, β: float, terms: int) -> NDArray[np.float64]:
@@ -147,27 +145,27 @@ def _overlap(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
     return length[:, None] * d, length[:, None] * e, length[:, None] * weights
 
 
-#: Radians of the shortest wave in a panel, and decay after which nothing is left of it.
+#: Radians of the shortest wave in a panel, and decay after which it is negligible.
 _TURN, _GONE = 10.0, 20.0
 
 
 def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
-    """Edges of panels, those cut that are longer than waves let them be.
+    """Edges of panels, divided where they are too long for the waves.
 
-    A wave e^(-sζx) turns by Im s ζ where Re s ζ x leaves something of it.
+    A wave e^(-sζx) turns by Im s ζ per length as long as Re s ζ x has not damped it.
 
     Args:
         edges: distances over a, rising from 0.
         s: over c_s/a, Re s >= 0, (n,).
         slowest: slowness ζ of the slowest wave, seen from the load.
     """
-    found = [edges[:1]]
+    pieces = [edges[:1]]
     for near, far in pairwise(edges.tolist()):
         felt = _GONE / np.maximum(s.real * max(near, float(edges[1])), 1e-300)
         turn = float((np.abs(s.imag) * np.minimum(slowest, felt)).max())
         count = max(ceil((far - near) * turn / _TURN), 1)
-        found.append(np.linspace(near, far, count + 1)[1:])
-    return np.concatenate(found)
+        pieces.append(np.linspace(near, far, count + 1)[1:])
+    return np.concatenate(pieces)
 
 
 #: Octaves of panels towards distances 0 and 2 of points under the punch (so many fewer there), and
@@ -175,20 +173,20 @@ def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
 _NEAR, _FAR, _POINTS = 24, 5, 8
 #: Largest width of a panel.
 _EVEN = 0.125
-#: Points that tell the response within so much of distance 2, where panels are shorter for what tests and
-#: pressures share.
-_TOLD = 24
-#: Points of the pressure as seen from beside the contact.
+#: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
+#: pressures has shorter panels there.
+_SAMPLES = 24
+#: Points of the pressure in its effect beside the contact.
 _FEW = 96
 #: More polynomials than there are.
 _ALL = 10**6
 
 
 class Transformed:
-    """Every punch at one speed, for some s.
+    """A flat punch at one speed for given s, with any friction.
 
     Args:
-        response: of steady motion at that speed; tells the solid's stiffness and the exponents.
+        response: of steady motion at that speed, with the solid's stiffness and the exponents.
         rayleigh: speed of the wave along the surface over c_s.
         s: over c_s/a, Re s >= 0 but not 0, (n,).
         terms: polynomials of the pressure.
@@ -205,27 +203,27 @@ class Transformed:
         self._slowest = 1.0 / (rayleigh - response.c)
 
     def basis(self, g: float) -> Basis:
-        """Of the pressure where σ_XY = g σ_YY."""
+        """Polynomials of the pressure where σ_XY = g σ_YY."""
         return Basis(self._response, g, self._terms)
 
     def answers(
         self, basis: Basis, terms: tuple[int, ...] = (_ALL,)
     ) -> tuple[NDArray[np.complex128], ...]:
-        """What a load N̂ makes for every s, by all polynomials or by the first of them.
+        """Pressure and indentation by a load N̂ for every s, by all polynomials or the first of them.
 
         Returns:
             Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
         """
-        matrices, found = self.sinking(basis, basis.tests), []
-        for count in (min(one, self._terms) for one in terms):
+        matrices, solutions = self.sinking(basis, basis.tests), []
+        for count in (min(number, self._terms) for number in terms):
             whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
             whole[:, :-1, :-1] = matrices[:, :count, :count]
             whole[:, 0, -1] = basis.tests.integral
             whole[:, -1, 0] = basis.pressure.integral
             load = np.zeros((len(self.s), count + 1, 1))
             load[:, -1] = -2.0
-            found.append(np.asarray(np.linalg.solve(whole, load)[..., 0], dtype=complex))
-        return tuple(found)
+            solutions.append(np.asarray(np.linalg.solve(whole, load)[..., 0], dtype=complex))
+        return tuple(solutions)
 
     def sinking(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
         """Tested v̂ of each polynomial of the pressure for every s, (s, tests, terms)."""
@@ -242,7 +240,13 @@ class Transformed:
     def _summed(
         self, basis: Basis, tests: Weighted, ahead: NDArray, behind: NDArray
     ) -> NDArray[np.complex128]:
-        """A response by the distance, (s, distances), with what tests and polynomials share there."""
+        """Tested response of each polynomial, (s, tests, terms).
+
+        Args:
+            basis: of the pressure.
+            tests: weighted polynomials.
+            ahead, behind: response at each distance, (s, distances).
+        """
         both = shared(self._x, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, tests.terms, self._terms)
@@ -266,7 +270,10 @@ class Transformed:
         )  # fmt: skip
 
     def _slopes(self, beyond: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Of responses at points beside the contact to line loads under it, ahead and behind."""
+        """Slopes at both points beside the contact by line loads under it, (s, 4, loads) each.
+
+        Ahead of the contact first, then behind it.
+        """
         if beyond not in self._beside:
             X, _ = self._few.rule(_FEW)
             self._beside[beyond] = tuple(
@@ -278,12 +285,12 @@ class Transformed:
 
     @cached_property
     def _few(self) -> Weighted:
-        """Polynomials that hold what is seen from beside the contact."""
+        """Polynomials that represent the pressure in its effect beside the contact."""
         return Weighted(-0.5, -0.5, _FEW)
 
     @cached_property
     def _beside(self) -> dict[float, tuple[NDArray[np.complex128], ...]]:
-        """Slopes by distance, for all frictions."""
+        """Slopes beside the contact by the distance from it; they do not depend on friction."""
         return {}
 
     @cached_property
@@ -307,20 +314,20 @@ class Transformed:
     @cached_property
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
-        t, _ = leggauss(_TOLD)
-        order, middle, half = _TOLD - 1, 2.0 - _EVEN / 2.0, _EVEN / 2.0
+        t, _ = leggauss(_SAMPLES)
+        order, middle, half = _SAMPLES - 1, 2.0 - _EVEN / 2.0, _EVEN / 2.0
         short = self._x > 2.0 - 0.5 * _EVEN
         between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
-        x, found = np.append(self._x[~short], middle + half * t), []
+        x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
-            values = np.array([at_any(kernel, x, s) for s in self.s])
+            sampled = np.array([at_any(kernel, x, s) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
-            whole[..., ~short] = values[..., :-_TOLD]
-            whole[..., short] = values[..., -_TOLD:] @ between.T
-            found.append(whole)
-        return found[0], found[1]
+            whole[..., ~short] = sampled[..., :-_SAMPLES]
+            whole[..., short] = sampled[..., -_SAMPLES:] @ between.T
+            values.append(whole)
+        return values[0], values[1]
 
 
 def at_any(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-    """Where Im s < 0 the transform of what is real is the conjugate."""
+    """Response at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

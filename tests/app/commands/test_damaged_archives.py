@@ -3,6 +3,7 @@
 GALINX_THOROUGH=1 tries as many as a release does.
 """
 
+import errno
 import os
 import random
 
@@ -227,3 +228,21 @@ def test_a_crash_of_hdf5_is_that_of_another_process(older, map_run, capsys):
             data = archive.read(older)[0]
             for dataset in data:
                 np.testing.assert_array_equal(data[dataset], whole[0][dataset])
+
+
+def test_an_archive_that_may_not_be_read_is_bad_input(path, content, monkeypatch):
+    path.write_bytes(content)
+    own = type(path).open
+
+    def refused(self, *arguments, **options):
+        if self.name == path.name:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
+        return own(self, *arguments, **options)
+
+    monkeypatch.setattr(type(path), "open", refused)
+    for command, *options in COMMANDS:
+        done = here(command, path, *options, cwd=path.parent)
+        assert (done.returncode, done.stderr.splitlines()[-1]) == (
+            2,
+            f"error: cannot read {path}: Permission denied",
+        )

@@ -87,7 +87,7 @@ def test_a_workspace_that_was_too_small_is_enlarged_once(monkeypatch):
     monkeypatch.setattr(linear, "WORKSPACE", (-80, 400))
     np.testing.assert_allclose(small_punch().states(0.5).normal, expected, rtol=1e-9)
     monkeypatch.setattr(linear, "WORKSPACE", (-80, -80))
-    with pytest.raises(SolveError, match=r"status -9.*it wanted [0-9]+ MB a rank"):
+    with pytest.raises(SolveError, match=r"status -9.*it needs [0-9]+ MB a rank"):
         small_punch()
 
 

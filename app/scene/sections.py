@@ -283,7 +283,7 @@ class Depths:
 _KEYS = {
     "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives `kind` and constants", None,
+        Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
         "what is written beside it replaces the material's",
     ),
     "to": Key(
@@ -477,8 +477,8 @@ def _time(
 
 _SOLID_KEYS = {
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives `kind`, constants and, of metals, yield_strength",
-        None,
+        Choice(LIBRARY),
+        "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     ),
     "yield_strength": Key(
@@ -545,8 +545,8 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "what solves the contact", ("closed_form", "sie", "fem"),
-        "an empty list where only friction is asked for",
+        Choices(METHODS, at_least=0), "methods that solve the contact", ("closed_form", "sie", "fem"),
+        "an empty list for friction alone",
     ),
     "tolerance": Key(
         Number("", Range(at_least=1e-10, at_most=0.1)),

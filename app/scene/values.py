@@ -20,7 +20,7 @@ _NO_BOUNDS = Range()
 
 
 class Kind(Protocol):
-    """A kind of values; the docstring of each kind describes the values in a scene."""
+    """A kind of values; its docstring describes these in the documentation of scenes."""
 
     def __call__(self, value: Any) -> Any:
         """The checked value.
@@ -124,7 +124,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Choice:
-    """A text among ``options``."""
+    """A text."""
 
     options: Collection[str]
 
@@ -140,7 +140,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Choices:
-    """A list of names among ``options``."""
+    """A list of names."""
 
     options: Collection[str]
     at_least: int = 1
@@ -386,14 +386,11 @@ class Wrapped:
 
 @dataclass(frozen=True)
 class Variations:
-    """Tables, each with values, lists or ranges of parameters of the law.
+    """Tables, each with values, lists or ranges of parameters of the law."""
 
-    Attributes:
-        kinds: kinds of the law's parameters, by key.
-        every: keys of the parameters of all laws.
-    """
-
+    #: Kinds of the law's parameters, by key.
     kinds: Mapping[str, Kind]
+    #: Keys of the parameters of all laws.
     every: tuple[str, ...]
 
     def __call__(self, value: Any) -> tuple[dict[str, tuple[Any, ...]], ...]:

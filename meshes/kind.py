@@ -46,7 +46,7 @@ def moments(R: float, tolerance: float) -> int:
 
 
 def boundary_error(R: float, moments: int, margin: float) -> float:
-    """Estimated relative error of K_I by a boundary at a distance R over a that follows some moments.
+    """Estimated relative error of K_I by a boundary at a distance R over a that follows moments.
 
     Over |σ_XY/σ_YY| and a tenth: every other moment needs no friction. Measured on 60 solids, frictions
     to 5, speeds to 0.99 of the limit and 1 to 6 moments; it is 1 to 5 times the largest of these.

@@ -103,7 +103,7 @@ _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: End of that region over the farthest point, and over the last interface; growth of lines beyond it.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
 #: Apparent shift of the contact's edges, over the size of the innermost cells and over the
-#: degree's inverse square; measured on 22 stacks at degrees 4 to 12: 0.3 to 0.65.
+#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65.
 _MOVED = 0.8
 #: Number of moments over a solid that is graded from the surface on with which the innermost cells take
 #: their usual share of the tolerance: with more of them cells are smaller by the square of the ratio.

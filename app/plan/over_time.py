@@ -305,7 +305,7 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
     if not isinstance(scene.punch.profile, Flat):
         faults.append("a start from rest is computed for flat punches")
     if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
-        faults.append("strokes with a speed or a rest of their own are not followed in time")
+        faults.append("strokes with a speed or a rest of their own are not computed in time")
     if scene.solve.mode != "contact":
         faults.append('a start from rest needs solve.mode = "contact"')
     if faults:
@@ -647,7 +647,7 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
     if (many := sum(map(len, drives.values()))) > MOST:
         raise BadInput(
             f"time: the scene has {many} states of different speed or friction, expected at most "
-            f"{MOST}, each of which is followed in time: shorten its lists"
+            f"{MOST}, each of which is computed in time: shorten its lists"
         )
     limit = scene.solid.limit()
     if fast := [f"{speed:g}" for speed in drives if speed >= limit]:

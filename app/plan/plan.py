@@ -351,14 +351,14 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
-            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error asks "
-            "for; free ends are computed once for each speed"
+            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error "
+            "requires; free ends are computed once for each speed"
         ]
     if fem.mode == FOLLOWED:
         return [
             f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
             f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
-            "error asks for"
+            "error requires"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2

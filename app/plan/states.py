@@ -314,10 +314,10 @@ def _crossings(scene: Scene, lengths: NDArray, a: Any, c: NDArray) -> NDArray[np
 def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
     """Laws to compute at each speed over c_s; and of how many laws each stands for, None for itself."""
     friction = scene.friction
-    followed = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+    of_laws = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
     together = friction.law.broadcasts and friction.integrator == "exact"
     columns = friction.columns() if together else {}
-    for c in followed:
+    for c in of_laws:
         if together:
             for first in range(0, friction.count, _TOGETHER):
                 rows = slice(first, min(first + _TOGETHER, friction.count))

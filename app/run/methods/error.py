@@ -82,7 +82,7 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) 
     values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
     unresolved = pressure.unresolved
     if isinstance(pressure, StretchedPressure):
-        unresolved = left + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
+        unresolved = unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
     return Gauge(
         INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
     )

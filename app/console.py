@@ -334,7 +334,6 @@ def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool 
 
 def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
     """Print tables of an archive, its comparisons and its verdict."""
-
     console = new_console(colours=colours())
     for sheet in sheets:
         print_sheet(console, sheet)

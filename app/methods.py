@@ -1,6 +1,6 @@
-"""Methods that solve the contact, by the name that scenes use: what each is called, and what it refuses.
+"""Methods that solve the contact, by the name that scenes use: titles, and quantities they refuse.
 
-Scenes and plans know no more of methods than this; :mod:`galinx.app.run.methods` makes them.
+Scenes and plans need nothing else of methods; :mod:`galinx.app.run.methods` makes them.
 """
 
 from collections.abc import Callable
@@ -19,13 +19,13 @@ class MethodKind:
     """A method that scenes can name.
 
     Attributes:
-        about: what a plan calls it.
+        about: title in a plan.
         made: makes a :class:`galinx.app.run.methods.Method` for a plan, a progress and a clock; None for
-            those of galinx itself, which :func:`galinx.app.run.methods.make` knows.
-        refusal: why it does not give a quantity of a scene and a body, "" where it does; of the quantity
-            None: why it gives none at all.
-        loads: do its solvers know states under several loads? Each load has a solver of its own if not.
-        of_layers: is it for layered solids alone? Plans of others do not speak of it.
+            the methods of galinx itself, which :func:`galinx.app.run.methods.make` makes.
+        refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
+            quantity None the reason why it gives no quantity at all.
+        loads: True where its solvers take states under several loads; else each load has its own solver.
+        of_layers: True for a method of layered solids alone, which plans of uniform solids omit.
     """
 
     about: str
@@ -39,40 +39,42 @@ def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
     if not body.layered:
         return "the solid has no layers, and closed_form knows the solution"
     if body.pressure and quantity in _INTENSITIES_OF_LAYERS:
-        return "the pressure is given"
-    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+        return "the pressure is prescribed"
+    return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
-    """Why von Mises is not told."""
-    asked = any(quantity is invariants[-1] for invariants in stresses.INVARIANTS_INSIDE.values())
-    return "σ_ZZ is not known without solid.stiffness_Z" if asked and not body.solid.knows_σ_ZZ else ""
+    """Reason why there is no von Mises stress, "" where there is."""
+    needs_σ_ZZ = any(quantity is invariants[-1] for invariants in stresses.INVARIANTS_INSIDE.values())
+    return (
+        "σ_ZZ is not known without solid.stiffness_Z" if needs_σ_ZZ and not body.solid.knows_σ_ZZ else ""
+    )
 
 
-def _of_found_ends(body: Body, quantity: Quantity | None) -> str:
-    """Why a contact whose ends are found has no such quantity, "" where it has."""
+def _free_ends_refusal(body: Body, quantity: Quantity | None) -> str:
+    """Reason why a contact with free ends has no such quantity, "" where it has."""
     if not body.found or quantity is None:
         return ""
     if quantity.asked_by == stresses.YIELD and not body.finite:
         return "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
     if quantity in yielding.FIRST_LOAD.values() and not (exponent(body.profile) or 0.0) > 1.0:
         return "known where the height is a power of |X|: the contact grows with the load"
-    if quantity.mode == PUNCH or quantity in _OF_SHARP_EDGES:
-        return "the ends of the contact are found"
+    if quantity.mode == PUNCH or quantity in _SHARP_EDGES_ONLY:
+        return "the contact has free ends"
     return ""
 
 
-#: What is told of two sharp edges alone.
-_OF_SHARP_EDGES = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
+#: Quantities of contacts with two sharp edges alone.
+_SHARP_EDGES_ONLY = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
 
 
 def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
     if body.layered:
         return "the solid has layers, and no closed form"
     if body.found:
-        return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+        return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
     if body.pressure:
-        return "the pressure is given" if quantity in _INTENSITIES else ""
+        return "the pressure is prescribed" if quantity in _INTENSITIES else ""
     if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
         return "known below flat punches only"
     if quantity and not body.flat and quantity is states.K_I_BOTH:
@@ -82,7 +84,7 @@ def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> s
     return _without_σ_ZZ(body, quantity)
 
 
-#: What only a punch has.
+#: Quantities that a prescribed pressure has not.
 _INTENSITIES_OF_LAYERS = (*layers.K_I_LEFT.values(), *layers.K_I_RIGHT.values(), layers.ESTIMATE)
 _INTENSITIES = (
     states.RESIDUAL[CLOSED_FORM],
@@ -92,8 +94,8 @@ _INTENSITIES = (
 )
 
 
-def _of_layers(scene: Any, body: Body, quantity: Quantity | None) -> str:
-    """Why finite elements do not give a quantity of layers, "" where they do."""
+def _fem_layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    """Reason why finite elements do not give a quantity of layers, "" where they do."""
     if body.solid.nearly_incompressible:
         return "a solid is nearly incompressible; the integral equation takes such layers"
     if scene.solve.degree or scene.solve.mesh != "confocal":
@@ -112,23 +114,23 @@ def _of_layers(scene: Any, body: Body, quantity: Quantity | None) -> str:
         return "σ_YY itself is that of the nodal forces there"
     if not body.flat and quantity is states.SLOPE:
         return "the punch is not flat"
-    return _of_found_ends(body, quantity) or _without_σ_ZZ(body, quantity)
+    return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
 
 
 def _finite_elements_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
     if body.layered:
-        return _of_layers(scene, body, quantity)
+        return _fem_layers_refusal(scene, body, quantity)
     if body.found and not smooth(body.profile):
         if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
             return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
         if quantity is stresses.RAW_PRESSURE:
             return "σ_YY itself is that of the nodal forces there"
-    if why := _of_found_ends(body, quantity):
+    if why := _free_ends_refusal(body, quantity):
         return why
     if quantity is states.RESIDUAL[FEM] and scene.solve.mode == "traction":
-        return "the pressure is put in"
+        return "the pressure is prescribed"
     if quantity is states.SLOPE and (body.pressure or not body.flat):
-        return "the pressure is given" if body.pressure else "the punch is not flat"
+        return "the pressure is prescribed" if body.pressure else "the punch is not flat"
     return _without_σ_ZZ(body, quantity)
 
 
@@ -142,9 +144,9 @@ METHODS: Registry[MethodKind] = Registry(
     MethodKind,
 )
 
-#: What the finite elements may be given: a punch, or the pressure under it.
+#: Modes of the finite elements: a punch, or a prescribed pressure.
 MODES = ("contact", "traction")
 
-#: Assemblers of their matrices: element matrices by tensor products, or dolfinx's own.
+#: Assemblers of the finite elements' matrices: element matrices by tensor products, or dolfinx's own.
 TENSOR, DOLFINX = "tensor", "dolfinx"
 ASSEMBLERS = (TENSOR, DOLFINX)

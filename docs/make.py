@@ -364,6 +364,7 @@ def _limit(rule: Any) -> str:
 
 def _value(kind: Any) -> str:
     """What kind of value a key wants."""
+    kind = getattr(kind, "kind", kind)  # of a value that all laws share
     text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
     unit = getattr(kind, "unit", None)
     if unit is not None:

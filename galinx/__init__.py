@@ -15,10 +15,10 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-#: Where each public name comes from; imported when it is asked for.
+#: Module of each public name, which is imported when the name is used.
 _NAMES = {
     **dict.fromkeys(("Result", "compute", "load", "read_scene", "template"), "app.results.result"),
-    # What a model of one's own is made of, and where it is registered.
+    # Base classes of models, and the registries to which a model of one's own is added.
     **dict.fromkeys(("FrictionLaw", "LAWS"), "solvers.friction"),
     **dict.fromkeys(("SOLIDS", "Solid"), "solvers.solids"),
     **dict.fromkeys(("PROFILES", "Profile"), "solvers.profiles"),

@@ -10,7 +10,7 @@ from galinx.app.job import begin, refuse
 
 
 def main() -> None:
-    """Run the command line; a library that is missing is said, whichever it is, and so is a signal."""
+    """Run the command line; a missing library and a signal are reported."""
     try:
         begin()
         from galinx.app.cli import run_from_shell

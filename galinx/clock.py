@@ -9,13 +9,13 @@ from time import perf_counter
 
 
 class Clock(dict[str, float]):
-    """Seconds by name of the step; together they are all that went by.
+    """Seconds by name of the step; they add up to the time since the clock was made.
 
-    A step within another counts for itself only. What belongs to no step counts for ``rest``.
+    Time of a step within another counts for the inner one only. Time of no step counts for ``rest``.
 
     Args:
-        rest: its name.
-        seconds: of the rest that have gone by.
+        rest: name of the rest.
+        seconds: of the rest before the clock was made.
     """
 
     def __init__(self, rest: str = "other", seconds: float = 0.0) -> None:
@@ -41,10 +41,10 @@ class Clock(dict[str, float]):
 
 
 def age() -> float:
-    """Seconds since this process was started, before it became Python; 0 where nobody knows."""
+    """Seconds since this process was started, before it became Python; 0 where that is unknown."""
     try:
-        told = Path("/proc/self/stat").read_text(encoding="ascii", errors="replace")
-        started = int(told.rpartition(")")[2].split()[19]) / os.sysconf("SC_CLK_TCK")
+        fields = Path("/proc/self/stat").read_text(encoding="ascii", errors="replace")
+        started = int(fields.rpartition(")")[2].split()[19]) / os.sysconf("SC_CLK_TCK")
         return max(0.0, time.clock_gettime(time.CLOCK_BOOTTIME) - started)
     except (OSError, ValueError, AttributeError, IndexError):
         return 0.0

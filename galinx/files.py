@@ -9,11 +9,11 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-#: Names of what is open already: whoever started the program chose it, be it a pipe or a terminal.
+#: Names of open descriptors: whoever started the program chose them, be it a pipe or a terminal.
 _OPEN = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
-#: What file systems without hard links answer to a request for one.
+#: Errors of file systems without hard links when one is made.
 _NO_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS}
-#: Hidden names, and seconds after which what bears one is a ruin.
+#: Hidden names of files in the making, and seconds after which such a file is abandoned.
 _TEMPORARY, _DAY = re.compile(r"\.\d+-[0-9a-f]{8}\.partial"), 86400.0
 
 #: Hidden names of files in the making.
@@ -23,7 +23,7 @@ _unfinished: set[Path] = set()
 class NewFile:
     """A file in the making: it has a hidden name until :meth:`publish` gives it its own.
 
-    Use it as a context manager and write to ``temporary``; what is not published is removed.
+    Use it as a context manager and write to ``temporary``; a file that is not published is removed.
 
     Args:
         path: final name, not that of a link.
@@ -52,14 +52,14 @@ class NewFile:
         _unfinished.discard(self.temporary)
 
     def publish(self, replace: bool) -> None:
-        """Bring the file to the disk, then give it its name, at once; what killed ones left there goes.
+        """Bring the file to the disk, then give it its name, at once; abandoned files are removed there.
 
         Args:
             replace: a file of that name; its permissions are kept.
 
         Raises:
-            FileExistsError: there is something of that name, which ``replace`` does not allow to replace.
-            OSError: the file system refused; what was there before is still there.
+            FileExistsError: the name exists, and ``replace`` is false.
+            OSError: the file system refused; the file that was there before is still there.
         """
         if replace:
             with suppress(FileNotFoundError):
@@ -74,7 +74,7 @@ class NewFile:
         _sweep(self.path.parent)
 
     def _link(self) -> None:
-        """Take a name that is free: a rename would replace what appeared a moment ago."""
+        """Take a name that is free: a rename would replace a file that appeared a moment ago."""
         try:
             os.link(self.temporary, self.path)
         except OSError as error:
@@ -88,8 +88,8 @@ def write(path: Path, data: bytes, replace: bool = True) -> None:
     """Write a file beside its name, bring it to the disk, and give it its name at once.
 
     Raises:
-        FileExistsError: there is something of that name, and ``replace`` is false.
-        OSError: the file system refused; what was there before is still there, and nothing is left.
+        FileExistsError: the name exists, and ``replace`` is false.
+        OSError: the file system refused; the file that was there before is still there, and no other.
     """
     with NewFile(path) as new:
         new.temporary.write_bytes(data)
@@ -147,11 +147,11 @@ def open_file(path: Path, flags: int = os.O_RDONLY) -> int:
 
 
 def read(path: Path, most: int = -1) -> bytes:
-    """What a regular file holds, or standard input and other open descriptors by their names.
+    """Content of a regular file, or of standard input and other open descriptors by their names.
 
     Args:
         path: the file.
-        most: bytes that are read; all if negative.
+        most: largest number of bytes to read; all if negative.
 
     Raises:
         OSError: it cannot be read, or is a folder, FIFO, device or socket.
@@ -162,7 +162,7 @@ def read(path: Path, most: int = -1) -> bytes:
 
 
 def noun(mode: int) -> str:
-    """What ``st_mode`` says something is."""
+    """Noun with its article for a kind of file, by its ``st_mode``."""
     if stat.S_ISDIR(mode):
         return "a folder"
     if stat.S_ISFIFO(mode):
@@ -172,7 +172,8 @@ def noun(mode: int) -> str:
     return "a file" if stat.S_ISREG(mode) else "a device"
 
 
-def _expect_file(found: os.stat_result) -> None:
-    if not stat.S_ISREG(found.st_mode):
-        number = errno.EISDIR if stat.S_ISDIR(found.st_mode) else errno.EINVAL
-        raise OSError(number, f"it is {noun(found.st_mode)}, expected a file")
+def _expect_file(status: os.stat_result) -> None:
+    """Raise OSError unless the status is that of a regular file."""
+    if not stat.S_ISREG(status.st_mode):
+        number = errno.EISDIR if stat.S_ISDIR(status.st_mode) else errno.EINVAL
+        raise OSError(number, f"it is {noun(status.st_mode)}, expected a file")

@@ -12,7 +12,7 @@ class Registry(dict[str, Model]):
     """Models by name, to which anybody may add.
 
     Args:
-        noun: what a model is, for messages.
+        noun: of a model, for messages.
         models: the first ones.
         kind: the class that models are instances of, or the protocol that they, classes themselves,
             follow; anything is a model if not given.
@@ -41,7 +41,7 @@ class Registry(dict[str, Model]):
         return model
 
     def check(self, name: str, model: Any) -> None:
-        """Could a model be registered?
+        """Check that a model can be registered.
 
         Raises:
             TypeError: the name is no text, or the model not of the kind.
@@ -53,7 +53,7 @@ class Registry(dict[str, Model]):
 
 
 def _unlike(model: Any, kind: type) -> str:
-    """Why a model is not of a kind; "" where it is."""
+    """Reason why a model is not of a kind; "" where it is."""
     if not getattr(kind, "_is_protocol", False):
         expected = f"an instance of {kind.__name__}"
         return "" if isinstance(model, kind) else f"found {model!r:.80}, expected {expected}"

@@ -1,8 +1,8 @@
-"""Texts that can be archived and shown, none of whose characters acts; counts of things."""
+"""Texts that can be archived and shown, without control characters; counts of things in words."""
 
 import unicodedata
 
-#: Characters that turn the direction of others around.
+#: Characters that change the direction of writing.
 _DIRECTIONS = {0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)}
 #: Unicode's categories of control characters, separators of lines and halves of characters.
 _UNSEEN = {"Cc", "Zl", "Zp", "Cs"}
@@ -10,7 +10,7 @@ _UNSEEN = {"Cc", "Zl", "Zp", "Cs"}
 
 def unseen(text: str) -> str:
     """For a message, where a text has its first control character; "" if it has none."""
-    if text.isprintable():  # which none of these is; a start of the program looks at thousands of texts
+    if text.isprintable():  # none of these is; the program checks thousands of texts when it starts
         return ""
     for i, character in enumerate(text):
         if unicodedata.category(character) in _UNSEEN or ord(character) in _DIRECTIONS:

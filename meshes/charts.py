@@ -1,7 +1,7 @@
-"""The chart in which a mesh is drawn and its map to the physical half-plane.
+"""Charts in which meshes are drawn, with their maps to the physical half-plane.
 
-A chart hands the forms its gradient: in a conformal chart ∇u·Rᵀ with a rotation R and no Jacobian.
-What a chart offers is described by :class:`galinx.solvers.fem.cells.Chart`.
+A chart gives the weak forms its gradient: in a conformal chart ∇u·Rᵀ with a rotation R and no Jacobian.
+The protocol :class:`galinx.solvers.fem.cells.Chart` describes its members.
 """
 
 from dataclasses import dataclass
@@ -105,6 +105,6 @@ class Confocal:
         return x[1] + np.pi, -x[1]
 
     def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
-        # Both distances make π together: sin of either, with all digits next to both edges.
-        left, right = of.sin(from_left / 2.0), of.sin(from_right / 2.0)
-        return 2.0 * left**2, 2.0 * right**2, 2.0 * left * right
+        # The distances in η add up to π: the sine of half of either has all digits next to both edges.
+        s_left, s_right = of.sin(from_left / 2.0), of.sin(from_right / 2.0)
+        return 2.0 * s_left**2, 2.0 * s_right**2, 2.0 * s_left * s_right

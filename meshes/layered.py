@@ -1,11 +1,10 @@
-"""Meshes whose lines follow the interfaces of layers: straight cells in the physical half-plane.
+"""Meshes over layers: straight cells in the physical half-plane, whose lines follow the interfaces.
 
 Columns grow outwards from both edges of the punch, rows with depth, and an interface is always between
 two rows. Only inside a square around each edge, of at most half the uppermost layer's thickness, L-shaped
 rings go on towards it: their lines do not run through the whole mesh.
 
-Over which lengths fields change in layers under a punch: what rows and columns have to follow.
-
+Sizes of rows and columns follow the lengths over which fields change in layers, see :class:`Layers`.
 Fields of a solid are functions of X + pY. The punch's edges, where these are singular, are seen from a
 depth at the complex distance Σ p H of the solids that lie between; with S the least of its imaginary
 parts, fields change over S along X and over S/|p| along Y. From a place at the side an edge is at least
@@ -29,13 +28,13 @@ _HALVINGS = 25
 
 
 @dataclass(frozen=True)
-class Strata:
-    """Layers on a substrate.
+class Layers:
+    """Layers on a substrate, with the lengths over which fields change in them; lengths over a.
 
     Attributes:
         depths: of the interfaces, rising.
         roots: p of every solid from the top down, those of the substrate last.
-        changes: length over which each layer's own constants change, infinite where it is uniform; none
+        changes: length over which each layer's own constants change, infinite where it is uniform; empty
             where all are.
     """
 
@@ -45,11 +44,11 @@ class Strata:
 
     @property
     def aside(self) -> float:
-        """Least distance of an edge over how far aside it is."""
+        """Least distance of an edge from a point, over the offset of the point along X."""
         return min(p.imag / abs(p) for roots in self.roots for p in roots)
 
     def length(self, depth: float) -> float:
-        """Over which fields change along Y just below a depth."""
+        """Length over which fields change along Y just below a depth."""
         S, top = 0.0, 0.0
         changes = (*(self.changes or (np.inf,) * len(self.depths)), np.inf)
         for bottom, roots, change in zip((*self.depths, np.inf), self.roots, changes):
@@ -60,7 +59,7 @@ class Strata:
         return S
 
     def rows(self, first: float, last: float, share: float) -> NDArray[np.float64]:
-        """Depths from the first to before the last: rows no higher than a share of the length there."""
+        """Depths of rows from first to before last, none higher than a share of :meth:`length`."""
         lines = [first, *(depth for depth in self.depths if first * (1.0 + 1e-9) < depth < last), last]
         return np.concatenate([fitted(self.length, *ends, share) for ends in pairwise(lines)])
 
@@ -68,7 +67,7 @@ class Strata:
 def fitted(
     length: Callable[[float], float], first: float, last: float, share: float
 ) -> NDArray[np.float64]:
-    """From the first to before the last, in as few steps as the share of a length there allows."""
+    """Positions from first to before last, in the fewest steps that a share of ``length`` allows."""
     count = len(_marched(length, first, last, share))
     low, high = 0.0, share
     for _ in range(_HALVINGS):
@@ -80,60 +79,60 @@ def fitted(
 
 
 def _marched(length: Callable[[float], float], first: float, last: float, share: float) -> list[float]:
-    found = [first]
-    while (following := found[-1] + share * length(found[-1])) < last * (1.0 - 1e-9):
-        found.append(following)
-    return found
+    positions = [first]
+    while (following := positions[-1] + share * length(positions[-1])) < last * (1.0 - 1e-9):
+        positions.append(following)
+    return positions
 
 
 def between(low: float, high: float, growth: float) -> NDArray[np.float64]:
-    """From low to below high, by a factor."""
+    """Positions from low to below high, each ``growth`` times the one before or less."""
     count = max(ceil(log(high / low) / log(growth) - 1e-9), 1) if high > low else 0
     return low * (high / low) ** (np.arange(count) / max(count, 1))
 
 
 #: Distance of a line over that of the one before, from an edge and from the surface.
 _GROWTH = 4.0
-#: The same under the punch, where facets have to follow what the pressure is read off by.
+#: That growth under the punch, where facets resolve the functions that recover the pressure.
 _UNDER = 1.8
-#: The same over an uppermost layer that is thinner than so many a.
+#: That growth over a thin uppermost layer, and the thickness over a below which it is thin.
 _GENTLE_GROWTH, _THIN = 2.5, 0.4
-#: Where stresses are wanted: size of a cell over the length on which fields change there, at 1e-6, and
+#: For stresses: size of a cell over the length on which fields change there, at a tolerance of 1e-6, and
 #: how much less it is for each digit more.
 _RESOLVED, _A_DIGIT = 1.2, 0.15
-#: How much beyond the last place, or the last interface, that holds; then lines grow by a factor.
+#: End of that region over the farthest point, and over the last interface; growth of lines beyond it.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
-#: By how much the edges of the contact seem off, over the size of the innermost cells and over the
-#: degree's inverse square; measured on 22 stacks at degrees 4 to 12: 0.3 to 0.65.
+#: Apparent shift of the contact's edges, over the size of the innermost cells and over the
+#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65.
 _MOVED = 0.8
-#: Functions by which the pressure over a solid that is graded from the surface on is read off with the
-#: share of the tolerance that the innermost cells take otherwise: that share falls with their square.
+#: Number of moments over a solid that is graded from the surface on with which the innermost cells take
+#: their usual share of the tolerance: with more of them cells are smaller by the square of the ratio.
 _FUNCTIONS = 6.0
-#: Share of the tolerance of stresses that the innermost cells take half of.
+#: Tolerance of the innermost cells over that of stresses.
 _OF_INNERMOST = 0.3
-#: Tolerance of stresses below which one degree more is always asked for.
+#: Tolerance of stresses below which the degree is one more from the first.
 _TIGHT = 1e-5
-#: The least growth of columns: beside solids along whose planes fields go far aside there is no end.
+#: Least growth of columns: beside solids along whose planes fields go far aside they would never end.
 _LEAST_GROWTH = 1.25
-#: Size of a ring over that of the one outside it, and where stresses are wanted beside it.
+#: Size of a ring over that of the one outside it, and where stresses are output beside it.
 _RATIO, _NEAR_RATIO = 0.45, 0.5
-#: Cells along a leg of an L by how far apart the planes are in which fields live.
+#: Additional cells along a leg of an L over the spread of the planes of the fields.
 _LEGS = 0.5
-#: How far from squares what is round an edge may be.
+#: Largest ratio of sides of the rectangle around an edge.
 _WIDEST = 4.0
-#: Moments of the pressure over the logarithm of the tolerance: of any, and of how thin the layer is.
+#: Number of moments of the pressure over the logarithm of the tolerance, and its growth over thin layers.
 _MOMENTS = 0.27, 0.54
-#: Fewest, two degrees below the first.
+#: Fewest moments, two degrees below the first.
 _FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
 #: own moment moves there, and over the cube of the layers' length over it, less where that is so long
-#: that what is left of the displacement there strains little. The first grows as the inverse of how far
+#: that the remaining displacement there strains little. The first grows as the inverse of how far
 #: the speed is from that of a wave along the substrate, the second as its root, beside what the length
-#: grows by; measured, with a factor of 2. The share of the tolerance that is left to each.
+#: grows by; measured, with a factor of 2. The last is the share of the tolerance for each.
 _MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
-#: How much smaller that has to be for stresses.
+#: Factor by which that share is smaller for stresses.
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
@@ -141,16 +140,17 @@ _FARTHEST = 2e5
 
 @dataclass(frozen=True)
 class OnLayers(MeshKind):
-    """A mesh for layers.
+    """A kind of meshes for layers.
 
     Attributes:
         depths: of the interfaces over a.
-        drawn_together: smallest Im p of the uppermost solid: its fields see depths so much smaller.
-        wide: Im p midway between both: width over height of what its fields take for a square.
-        far_length: over which the layers are seen from far, over a.
+        drawn_together: smallest Im p of the uppermost solid, factor of depths in its fields.
+        wide: geometric mean Im p of the uppermost solid, width over height of a rectangle that its fields
+            see as a square.
+        far_length: length over a of the layers' effect far away.
         left: 1 at rest, 0 where a wave runs along the substrate with the load.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
-        changes: of :class:`galinx.meshes.layered.Strata`.
+        changes: of :class:`Layers`.
         places: positions over a towards which cells are graded, rising from -1 to 1.
     """
 
@@ -163,25 +163,27 @@ class OnLayers(MeshKind):
     changes: tuple[float, ...] = ()
     places: tuple[float, ...] = (-1.0, 1.0)
 
-    def radius(self, wanted: Wanted) -> float:
+    def radius(self, required: Wanted) -> float:
         """Half the width of the mesh, and its depth, over a."""
-        left = _OF_FAR * wanted.tolerance
-        if wanted.nearest is not None:
-            # Stresses far away are small beside what the boundary adds.
-            left /= _SMALLER * max(1.0, min(self.depths[-1], wanted.farthest))
-        far = max((self._moment / left) ** 0.5, self.far_length * (self._cubed / left) ** (1.0 / 3.0))
-        return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * wanted.farthest)
+        allowed = _OF_FAR * required.tolerance
+        if required.nearest is not None:
+            # Stresses far away are small beside the error by the boundary.
+            allowed /= _SMALLER * max(1.0, min(self.depths[-1], required.farthest))
+        far = max(
+            (self._moment / allowed) ** 0.5, self.far_length * (self._cubed / allowed) ** (1.0 / 3.0)
+        )
+        return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * required.farthest)
 
-    def reach(self, wanted: Wanted) -> float:
-        return self.radius(wanted)
+    def reach(self, required: Wanted) -> float:
+        return self.radius(required)
 
-    def truncation(self, wanted: Wanted, margin: float = 1.0) -> float:
-        """Relative error of K_I by the far boundary, which moves as far below line loads."""
-        R = self.radius(wanted)
+    def truncation(self, required: Wanted, margin: float = 1.0) -> float:
+        """Estimated relative error of K_I by the far boundary, which moves as that below line loads."""
+        R = self.radius(required)
         return self._moment / R**2 + self._cubed * (self.far_length / R) ** 3
 
-    def terms(self, wanted: Wanted) -> int:
-        """Of the resultants alone it is known what layers do to their fields."""
+    def terms(self, required: Wanted) -> int:
+        """One moment, the resultant: of others the far field over layers is not computed."""
         return 1
 
     @property
@@ -195,74 +197,73 @@ class OnLayers(MeshKind):
 
     @property
     def length(self) -> float:
-        """Over which the pressure changes next to the edges: their mirror image in the interface."""
+        """Length over which the pressure changes next to the edges: to their image in the interface."""
         return 2.0 * self.depths[0] * self.drawn_together
 
-    def moments(self, wanted: Wanted) -> int:
-        """Of the pressure, that tell it to a tenth of the tolerance; measured on thirty stacks."""
+    def moments(self, required: Wanted) -> int:
+        """Number of moments that give the pressure to a tenth of the tolerance; measured on 30 solids."""
         share, of_length = _MOMENTS
-        count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / wanted.tolerance)
-        return max(ceil(count), _FEWEST) + 2 * self._one_more(wanted)
+        count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / required.tolerance)
+        return max(ceil(count), _FEWEST) + 2 * self._one_more(required)
 
     @property
     def graded(self) -> bool:
-        """Is the solid graded from the surface on?"""
+        """True where the solid is graded from the surface on."""
         return bool(self.changes) and isfinite(self.changes[0])
 
-    def innermost_size(self, wanted: Wanted) -> float:
-        """Of the cells at the edges, over a."""
-        size = self._innermost(wanted) ** 2
+    def innermost_size(self, required: Wanted) -> float:
+        """Size over a of the cells at the edges."""
+        size = self._innermost(required) ** 2
         if self.graded:
-            # What the pressure is read off by is steep at the ends there.
-            size *= (_FUNCTIONS / self.moments(wanted)) ** 2
+            # The functions that recover the pressure are steep at the ends there.
+            size *= (_FUNCTIONS / self.moments(required)) ** 2
         return max(size, 1e-11)
 
-    def _innermost(self, wanted: Wanted) -> float:
-        if wanted.nearest is None:
-            return super()._innermost(wanted)
-        # What these cells spoil beside them no degree mends.
-        return super()._innermost(replace(wanted, tolerance=_OF_INNERMOST * wanted.tolerance))
+    def _innermost(self, required: Wanted) -> float:
+        if required.nearest is None:
+            return super()._innermost(required)
+        # The error of these cells in stresses beside them does not fall with the degree.
+        return super()._innermost(replace(required, tolerance=_OF_INNERMOST * required.tolerance))
 
-    def unseen(self, wanted: Wanted, degree: int, cuts: int, margin: float) -> float:
-        return 0.3 * self.innermost_size(wanted) / margin**0.4
+    def unseen(self, required: Wanted, degree: int, cuts: int, margin: float) -> float:
+        return 0.3 * self.innermost_size(required) / margin**0.4
 
-    def moved_edges(self, wanted: Wanted, degree: int, margin: float) -> float:
-        """Distance over a by which the edges of the contact seem off: what the innermost cells make of
-        the singularity.
+    def moved_edges(self, required: Wanted, degree: int, margin: float) -> float:
+        """Apparent shift over a of the contact's edges, by the singularity in the innermost cells.
 
         Args:
-            wanted: what the mesh is for.
+            required: requirements on the mesh.
             degree: of the cells.
             margin: of the solid's response.
         """
-        return _MOVED * self.innermost_size(wanted) / (degree**2 * margin**0.4)
+        return _MOVED * self.innermost_size(required) / (degree**2 * margin**0.4)
 
-    def degree(self, wanted: Wanted, margin: float) -> int:
-        """One less than usual for K_I alone: the measured error asks for more where it is needed."""
-        degree = super().degree(wanted, margin)
-        if wanted.nearest is None:
+    def degree(self, required: Wanted, margin: float) -> int:
+        """Degree, one less than usual for K_I alone: the measured error raises it where needed."""
+        degree = super().degree(required, margin)
+        if required.nearest is None:
             return max(degree - 1, DEGREES[0] + 1)
-        return min(degree + self._one_more(wanted), DEGREES[1])
+        return min(degree + self._one_more(required), DEGREES[1])
 
-    def _one_more(self, wanted: Wanted) -> bool:
-        """Is a degree more asked for from the first, with its moments?"""
-        return wanted.nearest is not None and wanted.tolerance < _TIGHT
+    def _one_more(self, required: Wanted) -> bool:
+        """True where the degree is one more from the first, with its moments."""
+        return required.nearest is not None and required.tolerance < _TIGHT
 
-    def drawn(self, wanted: Wanted) -> QuadMesh:
+    def drawn(self, required: Wanted) -> QuadMesh:
         """The mesh."""
         gaps = np.diff(self.places)
         square = _SQUARE * min(gaps) / 2.0 / max(self.wide, 1.0)
-        b, R = min(_SHARE * self.depths[0], square), self.radius(wanted)
-        near = wanted.nearest is not None and wanted.nearest < b
-        legs = (2 if near else 1) + ceil(_LEGS * wanted.spread - 0.5)
+        b, R = min(_SHARE * self.depths[0], square), self.radius(required)
+        near = required.nearest is not None and required.nearest < b
+        legs = (2 if near else 1) + ceil(_LEGS * required.spread - 0.5)
         wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
-        beside, below, growth = self._lines(wanted, b)
+        beside, below, growth = self._lines(required, b)
         X = [np.array(self.places), 1.0 + self.wide * in_square, 1.0 + beside]
         X += [-beyond for beyond in X[1:]]
-        for left, right in pairwise(self.places):
-            half = (right - left) / 2.0
+        for X_left, X_right in pairwise(self.places):
+            half = (X_right - X_left) / 2.0
             inner = np.concatenate([self.wide * in_square, between(wide, half, growth)])
-            X += [left + inner, np.array([left + half]), right - inner]
+            X += [X_left + inner, np.array([X_left + half]), X_right - inner]
         columns = np.unique(np.concatenate(X))
         rows = -np.concatenate([[0.0], in_square, below, [R]])
         cells = [
@@ -271,7 +272,7 @@ class OnLayers(MeshKind):
             for y1, y0 in pairwise(rows.tolist())
             if y0 < -b or min(abs((x0 + x1) / 2.0 - place) for place in self.places) > wide
         ]
-        ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(wanted) / b
+        ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(required) / b
         squares = [
             _rings(place, (side * wide, b), legs, ratio, last)
             for place in self.places
@@ -279,31 +280,35 @@ class OnLayers(MeshKind):
         ]
         return tagged(np.concatenate([np.array(cells), *squares]), 1.0 + R)
 
-    def _lines(self, wanted: Wanted, b: float) -> tuple[NDArray, NDArray, float]:
-        """Distances of columns from an edge beside the punch; depths of rows below b; and by what factor
-        columns grow under it."""
-        R, wide = self.radius(wanted), self.wide * b
-        if wanted.nearest is None:
+    def _lines(self, required: Wanted, b: float) -> tuple[NDArray, NDArray, float]:
+        """Lines of columns and rows outside the squares around the edges.
+
+        Returns:
+            Distances over a of columns from an edge beside the punch, depths over a of rows below b, and
+            the growth of columns under the punch.
+        """
+        R, wide = self.radius(required), self.wide * b
+        if required.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
             beside = between(wide, R, growth)
             fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
             below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
         else:
             roots = self.roots or ((1j,),) * (len(self.depths) + 1)
-            strata = Strata(self.depths, roots, self.changes)
-            share = _RESOLVED + _A_DIGIT * (6.0 + log10(wanted.tolerance))
-            growth = max(1.0 + share * strata.aside, _LEAST_GROWTH)
-            far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * wanted.farthest), R)
+            layers = Layers(self.depths, roots, self.changes)
+            share = _RESOLVED + _A_DIGIT * (6.0 + log10(required.tolerance))
+            growth = max(1.0 + share * layers.aside, _LEAST_GROWTH)
+            far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * required.farthest), R)
             beyond = between(far, R, _FAR_GROWTH)
             beside = np.append(between(wide, far, growth), beyond)
-            below = np.append(strata.rows(b, far, share), beyond)
+            below = np.append(layers.rows(b, far, share), beyond)
         return np.append(beside, R), below, min(_UNDER, growth)
 
 
 def _rings(
     edge: float, size: tuple[float, float], legs: int, ratio: float, innermost: float
 ) -> NDArray[np.float64]:
-    """L-shaped rings in a rectangle beside an edge, and what fills what is left, (cells, 4, 2).
+    """Cells of L-shaped rings in a rectangle beside an edge, and of the square within, (cells, 4, 2).
 
     Args:
         edge: X of the edge.
@@ -327,8 +332,8 @@ def _rings(
     for x0, x1 in pairwise(last * t):
         cells += [[(x0, -y0), (x1, -y0), (x1, -y1), (x0, -y1)] for y0, y1 in pairwise(last * t)]
     # Clockwise as they are.
-    found = np.array(cells) * size + [edge, 0.0]
-    return found[:, ::-1] if size[0] > 0.0 else found
+    placed = np.array(cells) * size + [edge, 0.0]
+    return placed[:, ::-1] if size[0] > 0.0 else placed
 
 
 def on_layers(

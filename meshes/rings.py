@@ -5,10 +5,9 @@ In elliptic coordinates X + iY = a cosh(ξ + iη) the half-plane Y < 0 is the re
 the punch, ξ = Ξ is far away. Quadrilaterals lie in L-shaped rings around the punch edges (0, 0) and
 (0, -π), and in columns outwards.
 
-Every cell of a pattern cut into n x n, in pieces: ranks make theirs without asking one another.
-
-Vertices are numbered those of the pattern first, then those along its edges, then those inside its
-cells; so a number alone tells where a vertex is.
+Every cell of the pattern may be cut into n x n. The cut mesh is made in pieces, so that each rank makes
+its own without communication. Vertices of the pattern are numbered first, then those along its edges,
+then those inside its cells; so a number alone gives the position of a vertex.
 """
 
 from dataclasses import dataclass
@@ -27,14 +26,14 @@ TAGS = {"contact": CONTACT, "free surface": FREE, "far": FAR}
 
 @dataclass(frozen=True)
 class Refinement:
-    """How fine a mesh is.
+    """Refinement of the pattern.
 
     Attributes:
         levels: L-shaped rings around each punch edge.
         ratio: size of a ring over that of the ring outside it, in (0, 1).
         sectors: cells along each of the two legs of an L, so 2·sectors columns of cells in angle.
         columns: widths in ξ of the columns outside the rings.
-        pieces: of the outermost ring, of equal width.
+        pieces: number of parts of equal width into which the outermost ring is cut.
         crowding: of the sectors towards both ends of a leg: 0 for equal ones, 1 as Chebyshev's points.
     """
 
@@ -47,7 +46,7 @@ class Refinement:
 
     @property
     def legs(self) -> NDArray[np.float64]:
-        """Where sectors begin and end along a leg, from 0 to 1."""
+        """Ends of sectors along a leg, from 0 to 1, (sectors + 1,)."""
         even = np.linspace(0.0, 1.0, self.sectors + 1)
         return even + self.crowding * ((1.0 - np.cos(np.pi * even)) / 2.0 - even)
 
@@ -78,7 +77,7 @@ class QuadMesh:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Quadrilaterals and how they go on growing where they are cut.
+    """Quadrilaterals with the grading of their cuts.
 
     Attributes:
         mesh: the quadrilaterals.
@@ -94,10 +93,10 @@ def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
     """The graded rectangle in the (ξ, η) plane.
 
     Args:
-        refinement: how fine.
-        fan: what fills the innermost square of a corner. A grid suits the rectangle; a fan of
-            quadrilaterals that meet in the corner suits its image in the physical plane, where the
-            corner's right angle opens to a straight line.
+        refinement: of the pattern.
+        fan: False fills the innermost square of a corner with a grid, True with a fan. A grid suits the
+            rectangle; a fan of quadrilaterals that meet in the corner suits its image in the physical
+            plane, where the corner's right angle opens to a straight line.
     """
     half = np.pi / 2.0
     right, growth = corner(half, refinement, fan)
@@ -188,6 +187,7 @@ def _mirrored(quads: NDArray[np.float64]) -> NDArray[np.float64]:
 def tagged_edges(
     points: NDArray[np.float64], cells: NDArray[np.int64], Ξ: float
 ) -> dict[int, NDArray[np.int64]]:
+    """Boundary edges of a mesh of the rectangle up to ξ = Ξ by tag, each (k, 2)."""
     edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
     middle_ξ, middle_η = points[edges].mean(axis=1).T
     return {
@@ -203,7 +203,7 @@ def cut(pattern: Pattern, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
     Args:
         pattern: few quadrilaterals, the same for every part.
         n: cuts of every edge, at least 1.
-        part, parts: which of how many pieces; pieces have about the same number of cells.
+        part, parts: number of the piece, from 0, and of all pieces, each with about as many cells.
 
     Returns:
         Cells and tagged edges of the piece, with the vertices' numbers in the whole; and of the whole's
@@ -219,11 +219,12 @@ def cut(pattern: Pattern, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
 
 
 def _share(count: int, part: int, parts: int) -> NDArray[np.int64]:
+    """Numbers below ``count`` that belong to a part."""
     return np.arange(count * part // parts, count * (part + 1) // parts)
 
 
 def _graded(growth: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where a part of the cuts of an edge ends, over its length; the cuts grow by ``growth`` in all."""
+    """End of a part of an edge's cuts, over its length; the cuts grow by ``growth`` in all."""
     even = growth == 1.0
     q = np.where(even, 2.0, growth)
     return np.where(even, part, (q**part - 1.0) / (q - 1.0))
@@ -231,7 +232,7 @@ def _graded(growth: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[n
 
 @dataclass(frozen=True)
 class _Cut:
-    """Numbers and places of the vertices of a cut pattern."""
+    """Numbers and positions of the vertices of a cut pattern."""
 
     pattern: Pattern
     n: int
@@ -262,7 +263,7 @@ class _Cut:
         return self._first[1] + len(self._mesh.cells) * (self.n - 1) ** 2
 
     def positions(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Where the vertices with these numbers are, (len(numbers), 2); numbers are sorted."""
+        """Positions of the vertices with these numbers, (len(numbers), 2); numbers are sorted."""
         points, inner = self._mesh.points, self.n - 1
         old, beside, inside = np.split(numbers, np.searchsorted(numbers, self._first))
         edge, step = np.divmod(beside - self._first[0], max(inner, 1))
@@ -278,7 +279,7 @@ class _Cut:
         return np.concatenate([points[old], on_edges, in_cells])
 
     def cells(self, coarse: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Cells that these of the pattern are cut into, counterclockwise, (n² coarse, 4)."""
+        """Cells into which some cells of the pattern are cut, counterclockwise, (n² coarse, 4)."""
         n, corners = self.n, self._mesh.cells[coarse]
         lattice = np.empty((len(coarse), n + 1, n + 1), dtype=np.int64)
         sides = (lattice[:, :, 0], lattice[:, n, :], lattice[:, ::-1, n], lattice[:, 0, ::-1])
@@ -290,7 +291,7 @@ class _Cut:
         return np.stack(around, axis=-1).reshape(-1, 4)
 
     def along(self, ends: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Edges that these of the pattern (m, 2) are cut into, (n m, 2)."""
+        """Edges into which some edges of the pattern, (m, 2), are cut, (n m, 2)."""
         numbers = self._numbers(ends)
         return np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
 

@@ -1,7 +1,4 @@
-"""Meshes of earlier runs, kept in the user's cache folder.
-
-The one place that meets gmsh.
-"""
+"""Meshes by gmsh, and those of earlier runs, kept in the user's cache folder."""
 
 import hashlib
 import os
@@ -25,7 +22,7 @@ def through_gmsh(mesh: QuadMesh) -> QuadMesh:
 
     The model is built of discrete cells, so every gmsh version gives the same mesh.
     """
-    import gmsh  # a slow import, for nothing if the mesh is kept
+    import gmsh  # a slow import, not needed if the mesh is kept
 
     gmsh.initialize()
     try:
@@ -70,7 +67,7 @@ def _read(model: Any) -> QuadMesh:
     return QuadMesh(points, np.concatenate(cells), edges)
 
 
-#: Part of every key; raised when what is kept, or how it is made, changes.
+#: Part of every key; raised when the content of files, or the way to make it, changes.
 _FORMAT = 3
 
 
@@ -88,7 +85,7 @@ def _path(key: str) -> Path:
 
 
 def is_kept(pattern: QuadMesh) -> bool:
-    """Was a mesh of this pattern made before, and is it whole?"""
+    """True where a mesh of this pattern was made before, and its file is whole."""
     return _load(_key(pattern)) is not None
 
 
@@ -97,7 +94,7 @@ def obtain(pattern: QuadMesh, say: Callable[[str], None] = lambda _: None) -> Qu
 
     Args:
         pattern: cells and tagged edges.
-        say: is told what the user should know: that a kept mesh was damaged.
+        say: called with a message to the user where a kept mesh is damaged.
     """
     key = _key(pattern)
     if kept := _load(key):
@@ -111,9 +108,9 @@ def obtain(pattern: QuadMesh, say: Callable[[str], None] = lambda _: None) -> Qu
 
 
 def _load(key: str) -> QuadMesh | None:
-    """The mesh of that key; None if there is none, or it is damaged or another's."""
-    told, arrays = sealed.read(_path(key)) or (None, {})
-    if told != key:
+    """The mesh of a key; None if there is none, or its file is damaged or of another key."""
+    stored_key, arrays = sealed.read(_path(key)) or (None, {})
+    if stored_key != key:
         return None
     points, cells = arrays.pop("points"), arrays.pop("cells")
     return QuadMesh(points, cells, {int(tag): edges for tag, edges in arrays.items()})

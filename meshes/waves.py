@@ -1,9 +1,10 @@
-"""Meshes for waves: straight cells that grow outwards, as far as waves come that are back in time.
+"""Meshes for waves: straight cells that grow outwards, as far as waves reach that are back in time.
 
-What waves do farther away nobody under the punch will know before the end, so that the far boundary may
-be held there. Those that are too short for the cells out there have to be damped.
+Waves that go farther do not come back to the punch before the end, so that the far boundary may be held
+there. Waves that are too short for the cells out there have to be damped.
 
-Even meshes for waves of given tractions: squares of one size, with nothing to refine for.
+:class:`Even` meshes are for waves of prescribed tractions, whose fields have no singularity: squares of
+one size.
 """
 
 from dataclasses import dataclass
@@ -17,21 +18,21 @@ from .rings import QuadMesh, Refinement, corner, tagged
 
 #: Largest half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
 _SQUARE = 1.0
-#: How many times as far as one line the next is where only a steady field has to be held.
+#: Distance of a line over that of the one before, where only a steady field is resolved.
 _BEYOND = 2.5
 
 
 @dataclass(frozen=True)
 class Reached:
-    """A rectangle below the surface.
+    """A rectangle below the surface, graded towards both edges of the punch.
 
     Attributes:
         half_width, depth: over a, at least 3 and 2.
-        size: side over a of the cells that are next to those under the punch.
-        growth: by which a cell further out is longer, over its distance from them.
+        size: side over a of the cells next to the rings around the edges.
+        growth: additional length of a cell farther out, over its distance from these.
         innermost: size of the cells at the edges of the punch over a.
-        beyond: half-width and depth of all cells over a, where a steady field is held; 0 for no more than
-            waves need.
+        beyond: half-width and depth over a of the whole mesh where a steady field is held there; 0 for
+            no more than waves need.
         ratio: size of a ring at the edges over that of the ring outside it.
         depths: of interfaces over a, rising, which lines of cells follow.
     """
@@ -65,21 +66,21 @@ class Reached:
         return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
 
     def _downwards(self, first: float) -> NDArray[np.float64]:
-        """Lines from the first depth to the last one."""
+        """Depths of rows from the first one on, through all interfaces."""
         between = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
         lines = [self._lines(*ends, ends[0] - first)[:-1] for ends in pairwise(between)]
         last = max(self.depth, between[-1] + self.size)
         return np.concatenate([*lines, self._outwards(between[-1], last, between[-1] - first)])
 
     def _lines(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
-        """From the first distance to the last one, the first so far from the innermost cells."""
+        """Lines from the first distance to the last; the first is ``before`` from the small cells."""
         x = [0.0]
         while x[-1] < last - first:
             x.append(x[-1] + self.size + self.growth * (before + x[-1]))
         return first + np.array(x) * ((last - first) / x[-1])
 
     def _outwards(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
-        """The same, and on to where a steady field is held."""
+        """Lines from the first distance to the last, and on to where a steady field is held."""
         lines = self._lines(first, last, before)
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
         return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
@@ -104,9 +105,9 @@ class Even:
         beside = _even(1.0, self.half_width, self.size)
         X = np.concatenate([-beside[:0:-1], under, beside[1:]])
         Y = _even(-self.depth, 0.0, self.size)
-        left, low = (grid.ravel() for grid in np.meshgrid(X[:-1], Y[:-1]))
-        right, high = (grid.ravel() for grid in np.meshgrid(X[1:], Y[1:]))
-        quads = np.array([[left, low], [right, low], [right, high], [left, high]])
+        X0, Y0 = (grid.ravel() for grid in np.meshgrid(X[:-1], Y[:-1]))
+        X1, Y1 = (grid.ravel() for grid in np.meshgrid(X[1:], Y[1:]))
+        quads = np.array([[X0, Y0], [X1, Y0], [X1, Y1], [X0, Y1]])
         return tagged(np.moveaxis(quads, 2, 0), float(X[-1]))
 
 

@@ -1,1 +1,1 @@
-"""What a scene needs: states, tasks, sizes and cost, decided before any work is done."""
+"""Plans of scenes: states, tasks, sizes and cost, decided before any work is done."""

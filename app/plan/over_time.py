@@ -1,12 +1,9 @@
-"""Motions in time: which there are, and meshes, degrees and steps that reach a tolerance.
+"""Plan of motions in time: loads, ways and friction over time, meshes, degrees and steps for a tolerance.
 
-What is done to a punch over time: how its load comes on, which way it goes, what its friction is.
-
-Of which scenes motions in time are known.
-
-Which motions in time a scene asks for.
-
-Rules by which motions in time are judged.
+:class:`Load`, :class:`Way` and :class:`Drive` are the history of a punch: its load, its direction and
+σ_XY/σ_YY under it. :func:`check_in_time` refuses scenes that motions in time do not cover. :func:`starts`
+lists the motions of a scene, and :class:`Starts` plans their finite elements. :func:`rules` names the
+rules by which their results are checked.
 """
 
 from collections.abc import Callable
@@ -39,11 +36,11 @@ from ..errors import BadInput
 from ..scene.scene import Scene
 from .states import States
 
-#: Places of a stroke between which friction is interpolated; steps of a stroke at least.
+#: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
 _PLACES, _OF_STROKE = 801, 12
-#: Points of the rule that tells work in a step.
+#: Points of the quadrature of work in a step.
 _RULE = 4
-#: Steps instead of one after a turn.
+#: Number of short steps in place of one after a turn.
 _FINELY = 8
 
 
@@ -52,34 +49,34 @@ class Load:
     """The load over time, smooth from each point to the next.
 
     Attributes:
-        points: time over a/c_s and share of N, from t = 0 on.
+        points: times over a/c_s and loads over N, from t = 0 on.
     """
 
     points: tuple[tuple[float, float], ...]
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Share of N at times t."""
+        """Load over N at times t over a/c_s, in the shape of t."""
         t = np.asarray(t, dtype=float)
-        found = np.full(t.shape, self.points[0][1])
+        share = np.full(t.shape, self.points[0][1])
         for (before, low), (after, high) in pairwise(self.points):
-            found = found + (high - low) * smooth(t - before, after - before)
-        return found
+            share = share + (high - low) * smooth(t - before, after - before)
+        return share
 
     @property
     def shortest(self) -> float:
-        """Shortest time within which it changes, infinite if it does not."""
+        """Shortest time over a/c_s from a point to the next, infinite where the load is constant."""
         return min((after[0] - before[0] for before, after in pairwise(self.points)), default=np.inf)
 
 
 @dataclass(frozen=True)
 class Way:
-    """Strokes in one direction, or what there is time for of them.
+    """Strokes in one direction from one turn to the next, as far as the motion lasts.
 
     Attributes:
         direction: 1 as the first of all strokes, -1 the other way.
         duration: over a/c_s.
-        steps: of the finite elements, an even number.
-        part_of: duration of the whole where this is a part of it, else 0.
+        steps: number of steps of the finite elements, even.
+        part_of: duration over a/c_s of the whole way where this is a part of it, else 0.
     """
 
     direction: int
@@ -89,14 +86,14 @@ class Way:
 
     @property
     def stroke(self) -> float:
-        """Duration of the whole."""
+        """Duration of the whole way over a/c_s."""
         return self.part_of or self.duration
 
     @property
     def begun_finely(self) -> "tuple[Way, ...]":
-        """In two parts, the first two steps in shorter ones.
+        """The way in two parts, with shorter steps in place of the first two.
 
-        Where the punch has turned round the pressure changes with the root of time.
+        After a turn of the punch the pressure changes with the root of time.
         """
         if self.steps <= 2:
             return (self,)
@@ -109,12 +106,12 @@ class Way:
 
 @dataclass(frozen=True)
 class Drive:
-    """Which way a punch goes, and σ_XY/σ_YY under it over time.
+    """Direction of a punch, and σ_XY/σ_YY under it over time.
 
     Attributes:
-        way: ±1, in which the first stroke goes along X.
+        way: ±1, direction of the first stroke along X.
         starts: times at which strokes begin over a/c_s.
-        along: σ_XY/σ_YY of each stroke, by the time since then.
+        along: σ_XY/σ_YY of each stroke, by the time since its beginning over a/c_s.
     """
 
     way: int
@@ -128,17 +125,15 @@ class Drive:
 
     @cached_property
     def constant(self) -> float | None:
-        """Its value, None where it changes."""
+        """σ_XY/σ_YY where it is constant, None where it changes."""
         return self.along[0](0.0) if isinstance(self.along[0], _Constant) else None
 
     @cached_property
     def shortest(self) -> float:
-        """Time over a/c_s in which it would change by 1 where it changes fastest."""
+        """Inverse of the largest rate of σ_XY/σ_YY, a time over a/c_s; infinite where it is constant."""
         from scipy.interpolate import PchipInterpolator  # a slow import
 
-        slopes = [
-            float(np.abs(one(one.x, 1)).max()) for one in self.along if isinstance(one, PchipInterpolator)
-        ]
+        slopes = [float(np.abs(g(g.x, 1)).max()) for g in self.along if isinstance(g, PchipInterpolator)]
         return 1.0 / max(*slopes, 0.0) if any(slopes) else np.inf
 
 
@@ -151,24 +146,24 @@ class _Constant:
 
 
 def constant(way: int, g: float) -> Drive:
-    """One way under friction that does not change."""
+    """Drive in one direction under constant friction."""
     return Drive(way, (0.0,), (_Constant(g),))
 
 
 def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
-    """Ways ±1 along X in which strokes go.
+    """Directions ±1 of strokes along X.
 
-    By the study's Eq 25 friction under a forward stroke is that of a punch that goes towards -X.
+    By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X.
 
     Args:
-        scene: says which sign friction has.
+        scene: gives the sign of friction.
         directions: of the strokes, 1 forward, -1 backward.
     """
     return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
 
 
 def load_of(scene: Scene) -> Load:
-    """The load that a scene asks for."""
+    """The load of a scene over time."""
     assert scene.time
     if scene.time.load:
         return Load(scene.time.load)
@@ -176,10 +171,15 @@ def load_of(scene: Scene) -> Load:
 
 
 def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
-    """From one turn to the next at a speed until the end, in steps of at most so much.
+    """Ways of the punch from turn to turn at a speed, until the motion's end.
+
+    Args:
+        scene: the scene.
+        c: speed over c_s.
+        largest: longest step over a/c_s.
 
     Raises:
-        BadInput: they are over before.
+        BadInput: the strokes are over before the end.
     """
     assert scene.time
     end = scene.time.end
@@ -191,12 +191,12 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     for direction, legs in groupby(scene.legs, lambda leg: leg.s):
         durations = [leg.length * _whole(scene) / c for leg in legs]
         # A step less than a millionth of a stroke is rounding.
-        if (left := min(sum(durations), end - t)) > 1e-6 * durations[0]:
+        if (duration := min(sum(durations), end - t)) > 1e-6 * durations[0]:
             way = _way(
-                direction * first, left, _dividing(scene, min(largest, min(durations) / _OF_STROKE))
+                direction * first, duration, _dividing(scene, min(largest, min(durations) / _OF_STROKE))
             )
             ways += way.begun_finely if ways else (way,)
-            t += left
+            t += duration
     if end - t > 1e-6 * end:
         raise BadInput(
             f"time.end = {end:g} a/c_s: the strokes are over at {t:.6g} a/c_s at c = {c:g}, expected no "
@@ -206,7 +206,7 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
 
 
 def _dividing(scene: Scene, largest: float) -> float:
-    """A step of which an even number is the time from one look at the surface to the next, if any."""
+    """Longest step over a/c_s of which an even number is the time between outputs of the surface."""
     assert scene.time
     if scene.time.every is None or scene.time.step:
         return largest
@@ -223,7 +223,7 @@ def _whole(scene: Scene) -> float:
 
 
 def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
-    """Drives under each law of a scene along its strokes at a speed, from rest at X = 0.
+    """Drives under each law of a scene along its strokes at a speed over c_s, from rest at X = 0.
 
     Raises:
         BadInput: the law refuses its parameters.
@@ -236,7 +236,7 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
     durations = np.array([leg.length * _whole(scene) / c for leg in scene.legs])
     starts = (0.0, *np.cumsum(durations)[:-1].tolist())
     (way,) = headings(scene, [scene.legs[0].s]).tolist()
-    found = []
+    drives = []
     try:
         for law in friction.laws():
             strokes = follow(law, scene.legs, length, places, V, INTEGRATORS[friction.integrator])
@@ -244,47 +244,47 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
                 PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
                 for stroke, duration in zip(strokes, durations)
             ]
-            found.append(Drive(way, starts, tuple(along)))
+            drives.append(Drive(way, starts, tuple(along)))
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
-    return tuple(found)
+    return tuple(drives)
 
 
-def taken(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray[np.float64]:
-    """∫ -σ_XY/σ_YY ±N dt after each step over N a/c_s, + towards +X: what friction takes at unit speed.
+def work_of_friction(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray[np.float64]:
+    """Work ∫ -σ_XY/σ_YY ±N dt that friction takes at unit speed, over N a/c_s, + towards +X; (steps,).
 
     Args:
         ways: of the punch.
-        load: share of N.
+        load: of the punch over time.
         drive: of the punch.
     """
     x, w = leggauss(_RULE)
-    found, t0 = [], 0.0
+    work, t0 = [], 0.0
     for way in ways:
         h = way.duration / way.steps
         for n in range(way.steps):
             t = t0 + h * (n + (1.0 + x) / 2.0)
             power = drive.way * way.direction * -np.array(list(map(drive, t))) * load(t)
-            found.append(h / 2.0 * float(w @ power))
+            work.append(h / 2.0 * float(w @ power))
         t0 += way.duration
-    return np.cumsum(found)
+    return np.cumsum(work)
 
 
-#: Tolerances that can be reached.
+#: Tightest and loosest tolerance of motions in time.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
-#: Least thickness of a layer over a.
+#: Least thickness over a of a layer under motions in time.
 _THINNEST = 0.1
 
 
 def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
-    """Refuse scenes whose motions are not known.
+    """Refuse scenes whose motions in time cannot be computed.
 
     Args:
         scene: the scene.
-        methods: those of its methods that follow motions in time.
+        methods: the scene's methods that compute motions in time.
 
     Raises:
-        BadInput: it says why.
+        BadInput: the message lists all reasons.
     """
     solid, tolerance = scene.solid, scene.solve.tolerance
     faults = []
@@ -297,13 +297,15 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
     if isinstance(solid, Layered):
         faults += _of_layers(scene, solid)
     elif not isinstance(solid.response(0.0), InPlane):
-        faults.append("a start from rest is known of galinx's own solids, not of your own")
+        faults.append("a start from rest is computed for galinx's own solids, not for your own")
     if solid.nearly_incompressible:
-        faults.append("a start from rest is known where ν is not near 1/2: pressure waves are too fast")
+        faults.append(
+            "a start from rest is computed where ν is not near 1/2: pressure waves are too fast"
+        )
     if not isinstance(scene.punch.profile, Flat):
-        faults.append("a start from rest is known of flat punches")
+        faults.append("a start from rest is computed for flat punches")
     if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
-        faults.append("strokes with a speed or a rest of their own are not followed in time")
+        faults.append("strokes with a speed or a rest of their own are not computed in time")
     if scene.solve.mode != "contact":
         faults.append('a start from rest needs solve.mode = "contact"')
     if faults:
@@ -311,7 +313,7 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
 
 
 def _of_layers(scene: Scene, solid: Layered) -> list[str]:
-    """What of layers is not known."""
+    """Reasons why motions in time over these layers cannot be computed."""
     faults = []
     if any(layer.bottom for layer in solid.layers):
         faults.append("layers: found a graded one, expected uniform ones for motions in time")
@@ -321,70 +323,71 @@ def _of_layers(scene: Scene, solid: Layered) -> list[str]:
             f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a, the "
             "punch's half-width, for motions in time"
         )
-    if not all(isinstance(one.response(0.0), InPlane) for one in solid.solids):
+    if not all(isinstance(part.response(0.0), InPlane) for part in solid.solids):
         faults.append("layers: found a solid of your own, expected galinx's for motions in time")
     if scene.time and scene.time.steady:
         faults.append('time.start: found "steady" over layers, expected "rest"')
     return faults
 
 
-#: All of them.
+#: Names of all rules of motions in time.
 IN_TIME = frozenset({BOTH, OF_FEM, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
 
 
 def rules(both: bool, steady: bool, surface: bool, sharp: bool) -> frozenset[str]:
-    """Names of those for finite elements.
+    """Names of the rules that apply to finite elements in time.
 
     Args:
-        both: does the integral equation follow these motions, too?
-        steady: do they begin in steady motion?
-        surface: is the surface looked at?
-        sharp: are there waves that no cell holds? Of these the estimate is told, and nothing promised.
+        both: True where the integral equation computes the motions, too.
+        steady: True where motions begin in steady motion.
+        surface: True where the surface is output.
+        sharp: True where waves are too sharp for cells; their estimate is output without a bound.
     """
-    found = {OF_FEM, *(BOTH,) * both, *(WORKS, AT_ENDS) * (both and not steady)}
+    names = {OF_FEM, *(BOTH,) * both, *(WORKS, AT_ENDS) * (both and not steady)}
     if surface:
-        found |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * (not sharp)}
-    return frozenset(found)
+        names |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * (not sharp)}
+    return frozenset(names)
 
 
-#: Shortest time over a/c_s of friction that changes along a stroke for which steps and cells are made.
+#: Shortest time over a/c_s of changing friction for which steps and cells are made.
 _QUICK = 1.0
 #: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
 _SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
-#: Lowest degree that tells the moments from which K_I is read, highest one, and largest innermost cell
-#: over a.
+#: Lowest degree that resolves the moments from which K_I is recovered, highest degree, and largest
+#: innermost cell over a.
 _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
-#: Time over a/c_s within which waves cross the contact.
+#: Time over a/c_s in which waves cross the contact.
 _CROSSED = 2.0
-#: Distance over a times tolerance at which steady motion is held.
+#: Distance over a, times the tolerance, of the boundary at which steady motion is held.
 _HELD = 5.0
 #: Size of a ring of cells at the edges over that of the ring outside it; where waves are sharp.
 _RATIO, _SHARP_RATIO = 0.25, 0.5
-#: Distance over a from the punch along the surface, and depth, up to which it may be looked at.
+#: Largest distance over a from the punch along the surface, and depth over a, of outputs.
 _SEEN = 2.0, 2.0
-#: Side of cells over a then: waves ahead of the punch are short.
+#: Side of cells over a where the surface is output: waves ahead of the punch are short.
 _SEEN_SIZE = 2.0 / 3.0
-#: The same over the uppermost layer's thickness at most.
+#: Largest side of cells over the uppermost layer's thickness.
 _OF_LAYER = 2.0
-#: Steps by which the end is later for waves.
+#: Steps by which the mesh's end is later than the motion's, for implicit steps.
 _EARLIER = 8
 #: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
 #: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
 _GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
-#: Side of cells next to the punch over a where things change within so many a/c_s, at a tolerance of
-#: 1e-3, and so many more at each tenth of it; how much slower than the Rayleigh wave a punch has to be
-#: for that: the wave ahead of a faster one is shorter. Within the last of these a degree more is taken.
+#: Side of cells next to the punch over a; shortest time of changes over a/c_s for it at a tolerance of
+#: 1e-3, and by how much longer at each tenth of that; distance over c_s below the Rayleigh speed that a
+#: punch has to keep for it, since the wave ahead of a faster one is shorter. Within the last of these
+#: distances a degree more is taken.
 _SIZE, _LONG, _LONGER, _SLOW, _SHORT = 2.0, 2.0, 1.5, 0.25, 0.15
 
 
 @dataclass(frozen=True)
 class Level:
-    """What a solution in time is computed with.
+    """Discretisation of a solution in time.
 
     Attributes:
-        mesh: as far as waves come that are back at the end, if they are not too short for its cells.
+        mesh: reaches as far as waves that are back at the end, if they are not too short for its cells.
         degree: polynomial degree.
-        every: how many steps of the finest level are one of this one.
+        every: number of steps of the finest level in one of this level.
     """
 
     mesh: Reached
@@ -393,22 +396,22 @@ class Level:
 
     @property
     def unknowns(self) -> int:
-        """About as many as there are."""
+        """Estimated number of unknowns."""
         return 2 * self.degree**2 * len(self.mesh.drawn().cells)
 
 
 @dataclass(frozen=True)
 class Starts:
-    """All starts of a scene.
+    """All motions in time of a scene.
 
     Attributes:
         drives: of the punch by speed over c_s.
-        methods: that follow them.
-        ways: from one turn to the next; the integral equation follows the first.
+        methods: names of the methods that compute them.
+        ways: of the punch from turn to turn; the integral equation computes the first.
         load: over time.
-        steady: do they begin in steady motion?
-        tolerance: wanted, relative to the largest.
-        every: time between those at which the surface is told over a/c_s, None for none.
+        steady: True where they begin in steady motion, False where they begin at rest.
+        tolerance: accuracy, relative to the largest value over time.
+        every: time over a/c_s from one output of the surface to the next, None for none.
         a: half-width of the punch [m].
     """
 
@@ -423,7 +426,7 @@ class Starts:
 
     @property
     def steps(self) -> int:
-        """Steps of the finite elements, an even number."""
+        """Number of steps of the finite elements, even."""
         return sum(way.steps for way in self.ways)
 
     @property
@@ -432,70 +435,70 @@ class Starts:
         return sum(way.duration for way in self.ways)
 
     def times(self, every: int = 1) -> NDArray[np.float64]:
-        """Ends of the finite elements' steps over a/c_s, or of so many together."""
+        """Ends over a/c_s of the finite elements' steps, or of every ``every`` steps together."""
         h = [np.full(way.steps // every, every * way.duration / way.steps) for way in self.ways]
         return np.asarray(np.cumsum(np.concatenate(h)))
 
     @property
     def outputs(self) -> NDArray[np.int64]:
-        """How many steps are done when the surface is told, an even number each."""
-        wanted = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
-        return np.unique(2 * np.abs(np.subtract.outer(wanted, self.times(2))).argmin(axis=1) + 2)
+        """Numbers of steps that precede each output of the surface, all even; (outputs,)."""
+        times = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
+        return np.unique(2 * np.abs(np.subtract.outer(times, self.times(2))).argmin(axis=1) + 2)
 
     def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
-        """∫ f V N dt after each step over N a: what friction takes, but for its second order."""
-        return taken(self.ways, self.load, drive) * c
+        """Work ∫ f V N dt of friction after each step over N a, but for its second order; (steps,)."""
+        return work_of_friction(self.ways, self.load, drive) * c
 
     def directions(self, drive: Drive) -> NDArray[np.float64]:
-        """Ways ±1 along X in which the punch goes in each step, (steps,)."""
+        """Direction ±1 of the punch along X in each step, (steps,)."""
         return drive.way * np.repeat(
             [float(way.direction) for way in self.ways], [way.steps for way in self.ways]
         )
 
     @property
     def shortest(self) -> float:
-        """Shortest time within which something changes over a/c_s."""
+        """Shortest time over a/c_s within which load, direction or friction changes."""
         ways = [way.stroke for way in self.ways if self.changing]
-        frictions = [max(one.shortest, _QUICK) for many in self.drives.values() for one in many]
+        frictions = [max(drive.shortest, _QUICK) for drives in self.drives.values() for drive in drives]
         return min(self.load.shortest, *ways, *frictions)
 
     @property
     def changing(self) -> bool:
-        """Does friction change?"""
-        return any(one.constant is None for many in self.drives.values() for one in many)
+        """True where the friction of a drive changes over time."""
+        return any(drive.constant is None for drives in self.drives.values() for drive in drives)
 
     @property
     def turns(self) -> bool:
-        """Does the punch turn round?"""
+        """True where the punch turns round."""
         return len({way.direction for way in self.ways}) > 1
 
     @property
     def sharp(self) -> bool:
-        """Are there waves that no cell holds? They begin at the edges, suddenly."""
+        """True where waves are too sharp for cells: they begin at the edges, suddenly."""
         return self.turns or not self.tells_K_I
 
     @property
     def tells_K_I(self) -> bool:
-        """Is the pressure smooth enough but for its exponents?
+        """True where the pressure is smooth enough for K_I, but for its exponents at the edges.
 
-        What begins at an edge of the punch, suddenly, has to have crossed the contact before.
+        A wave that begins at an edge of the punch, suddenly, has to cross the contact before.
         """
         return not self.changing or self.shortest >= _CROSSED
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of motions."""
         return sum(map(len, self.drives.values()))
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which what is found is judged."""
+        """Names of the rules by which results of finite elements are checked."""
         if FEM not in self.methods:
             return frozenset()
         return rules(SIE in self.methods, self.steady, bool(self.every), self.sharp)
 
     def words(self, solid: Solid) -> list[str]:
-        """What is done, one line a method."""
+        """Plan in words, one line for each method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
         turns = "" if len(self.ways) == 1 else (
@@ -516,7 +519,7 @@ class Starts:
         return lines
 
     def seconds(self, solid: Solid) -> float:
-        """About how long all of it takes."""
+        """Estimated time [s] of all motions."""
         total = 0.0
         for c, of_speed in self.drives.items():
             if FEM in self.methods:
@@ -530,14 +533,14 @@ class Starts:
         return total
 
     def response(self, solid: Solid, c: float) -> Response:
-        """Of a half-plane at a speed over c_s; of layers with lengths over a."""
+        """Response of the solid at a speed over c_s; of layers with lengths over a."""
         return LayersInCells(solid, c, self.a) if isinstance(solid, Layered) else solid.response(c)
 
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
-        """A coarser level, which tells the error, and that which is archived.
+        """Two levels: a coarser one, which measures the error, and the one that is archived.
 
         The coarser one has half as many steps, a degree less, and cells that grow faster, so that
-        waves are taken for too short at little more than half the distance.
+        waves are too short for cells from little more than half the distance on.
         """
         digits, gap = -log10(self.tolerance), solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
@@ -562,10 +565,10 @@ class Starts:
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
 
     def _reach(self, fast: float, c: float) -> tuple[float, float]:
-        """Half-width and depth from which the fastest wave is not back before the end.
+        """Half-width and depth over a from which the fastest wave is not back before the end.
 
-        It comes back to a punch that has moved, or to what is looked at round it. Implicit steps let it
-        be felt a little earlier.
+        It comes back to a punch that has moved, or to the output places around it. With implicit steps
+        it arrives a little earlier.
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
         beside, below = _SEEN if self.every else (0.0, 0.0)
@@ -573,24 +576,28 @@ class Starts:
             farthest = c * max(way.stroke for way in self.ways)
             return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
-        # On the way down and up the punch goes ahead by c T, but for what is looked at.
+        # On the way down and up the punch goes ahead by c T, but for the places of outputs.
         down = sqrt((fast * T) ** 2 - max(c * T - 2.0 - 2.0 * beside, 0.0) ** 2) / 2.0
         return ahead + beside, down + below / 2.0
 
 
-#: Starts of a scene at most, and unknowns of a mesh.
+#: Most motions in time of a scene, and most unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
-#: Largest step at a tolerance of 1e-3, of order four; and steps within which the load comes on.
+#: Longest step over a/c_s at a tolerance of 1e-3, of order four; fewest steps of a load's ramp.
 _STEP, _OF_RAMP = 0.4, 8
-#: Over layers steps are so much shorter: what echoes do to the centre of the pressure.
+#: Factor by which steps are shorter over layers, whose echoes move the centre of the pressure.
 _OF_LAYERS = 3.5
 
 
 def starts(scene: Scene, states: States) -> Starts | None:
-    """The starts of a scene by its friction states, None where it asks for none.
+    """The motions in time of a scene, None without section [time].
+
+    Args:
+        scene: the scene.
+        states: its friction.
 
     Raises:
-        BadInput: they are known of other scenes only.
+        BadInput: motions in time of this scene cannot be computed.
     """
     if scene.time is None:
         return None
@@ -604,27 +611,27 @@ def starts(scene: Scene, states: States) -> Starts | None:
     ways = ways_at(scene, next(iter(drives)), step)
     if methods == (SIE,) and len(ways) > 1:
         raise BadInput(
-            f"solve.methods: found sie only, which knows no way back, and the punch turns round at "
+            f"solve.methods: found sie only, which computes no way back, and the punch turns round at "
             f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
         )
-    found = Starts(
+    planned = Starts(
         drives, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
         scene.body.half_width,
     )  # fmt: skip
     if FEM in methods:
-        _check_size(found, scene)
-    return found
+        _check_size(planned, scene)
+    return planned
 
 
 def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
-    """Drives of all starts by speed.
+    """Drives of all motions by speed over c_s.
 
     Raises:
-        BadInput: there are too many, or their speed has no answer.
+        BadInput: there are too many, or a speed is not below the Rayleigh speed.
     """
     assert scene.time
     c = states.columns["c"]
-    found: dict[float, tuple[Drive, ...]] = {}
+    drives: dict[float, tuple[Drive, ...]] = {}
     if scene.time.by_law:
         speeds = np.unique(c).tolist()
         if len(speeds) > 1 or speeds[0] == 0.0:
@@ -632,30 +639,35 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
                 f'time.friction = "law": found {len(speeds)} speeds, the first {speeds[0]:g} over c_s; '
                 "expected one that is not 0, for strokes of another take another time"
             )
-        found[speeds[0]] = drives_at(scene, speeds[0])
+        drives[speeds[0]] = drives_at(scene, speeds[0])
     else:
         different = np.unique(np.column_stack([c, states.g, headings(scene, states.directions)]), axis=0)
         for speed, ratio, way in different.tolist():
-            found[speed] = (*found.get(speed, ()), constant(round(way), ratio))
-    if (many := sum(map(len, found.values()))) > MOST:
+            drives[speed] = (*drives.get(speed, ()), constant(round(way), ratio))
+    if (many := sum(map(len, drives.values()))) > MOST:
         raise BadInput(
             f"time: the scene has {many} states of different speed or friction, expected at most "
-            f"{MOST}, each of which is followed in time: shorten its lists"
+            f"{MOST}, each of which is computed in time: shorten its lists"
         )
     limit = scene.solid.limit()
-    if fast := [f"{speed:g}" for speed in found if speed >= limit]:
+    if fast := [f"{speed:g}" for speed in drives if speed >= limit]:
         raise BadInput(
             f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)"
         )
-    return found
+    return drives
 
 
-def _check_size(found: Starts, scene: Scene) -> None:
-    for c in found.drives:
-        _, level = found.levels(scene.solid, c)
+def _check_size(planned: Starts, scene: Scene) -> None:
+    """Refuse meshes with too many unknowns.
+
+    Raises:
+        BadInput: a mesh has more than ``LARGEST``.
+    """
+    for c in planned.drives:
+        _, level = planned.levels(scene.solid, c)
         if level.unknowns > LARGEST:
             raise BadInput(
-                f"time.end = {found.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
+                f"time.end = {planned.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
                 f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
                 "end, a larger solve.tolerance, or a smaller Poisson's ratio"
             )

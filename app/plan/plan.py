@@ -1,8 +1,8 @@
-"""Which work a scene needs, derived from the outputs it asks for.
+"""Plan of a scene's work, derived from the outputs that the scene names.
 
-Where a scene asks for what has no answer, or for one that will cost accuracy.
-
-A plan in words: its steps with their sizes, and what they will cost.
+:func:`make_plan` chooses methods and quantities. Checks refuse scenes whose outputs have no answer, and
+warn where an answer costs accuracy. :func:`lines` are the plan's steps in words, with their sizes, and
+:func:`expense` its time, memory and archive.
 """
 
 import json
@@ -54,26 +54,27 @@ from .over_time import starts
 from .states import enumerate_states, laws_followed, order, seconds_to_integrate
 from .task import CHUNK_NUMBERS, Plan, Tasks
 
-#: Share of the distance of walls up to which points inside are asked for; and distance over a up to which
-#: meshes without walls reach.
+#: Largest distance of points inside over that of walls, and over a for meshes without walls.
 _INNER, _OUTERMOST = 0.6, 1e6
 
-#: Knots of a pressure over layers at most, and how near to one another, over a.
+#: Most knots of a prescribed pressure over layers, and their least distance over a.
 _KNOTS, _APART = 12, 0.02
 
-#: Narrowest piece of a pressure, over a, within which positions have digits enough.
+#: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
 _NARROWEST = 1e-9
 
 
 def check_size(body: Body, methods: Collection[str]) -> None:
-    """Are stresses, strains and displacements numbers that a computer can hold?
+    """Check that floating-point numbers can hold stresses, strains and displacements.
 
     Raises:
-        BadInput: one is not.
+        BadInput: one of them is too small or too large.
     """
     least, most = np.finfo(float).tiny, np.finfo(float).max
-    told = {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement} if methods else {}
-    if wrong := [f"{value:g} {unit}" for unit, value in told.items() if not least <= value <= most]:
+    magnitudes = (
+        {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement} if methods else {}
+    )
+    if wrong := [f"{value:g} {unit}" for unit, value in magnitudes.items() if not least <= value <= most]:
         raise BadInput(
             f"punch: load {body.load:g} N/m on the half-width {body.half_width:g} m makes "
             f"{listed(wrong)}, expected numbers from {least:.0e} to {most:.0e}"
@@ -81,19 +82,24 @@ def check_size(body: Body, methods: Collection[str]) -> None:
 
 
 def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
-    """Warnings about speeds.
+    """Warnings about speeds near or above the Rayleigh speed.
+
+    Args:
+        scene: the scene.
+        speeds: over c_s.
+        fem: True where finite elements solve the contact.
 
     Raises:
-        BadInput: finite elements are asked for where their form is indefinite, or any solution where a
-            wave in the solid is not faster.
+        BadInput: the form of finite elements is indefinite at a speed, or a wave inside the solid is not
+            faster than the punch.
     """
-    # Beyond its limit a solid stays: of a million speeds some twenty are looked at.
+    # All speeds above a limit are beyond it: of a million speeds some twenty are evaluated.
     ordered = sorted(speeds)
     first = bisect_left(ordered, True, key=lambda c: _margin(scene, c) <= 0.0)
     almost = bisect_left(ordered[:first], True, key=lambda c: _margin(scene, c / 0.99) <= 0.0)
     formal = bisect_left(ordered, True, lo=first, key=lambda c: _margin(scene, c) == -inf)
     near, beyond, none = (
-        [f"{c:g}" for c in some] for some in (ordered[almost:first], ordered[first:], ordered[formal:])
+        [f"{c:g}" for c in part] for part in (ordered[almost:first], ordered[first:], ordered[formal:])
     )
     c_R = scene.solid.limit() if beyond or near else 0.0
     name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
@@ -125,7 +131,7 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
 
 
 def _margin(scene: Scene, c: float) -> float:
-    """Of the response at a speed; minus infinity where a wave in the solid is not faster."""
+    """Margin of the response at a speed over c_s; -∞ where a wave in the solid is not faster."""
     try:
         return scene.solid.response(c).margin
     except ValueError:
@@ -133,10 +139,10 @@ def _margin(scene: Scene, c: float) -> float:
 
 
 def check_states(states: int) -> None:
-    """Is there room for the friction of all states?
+    """Check that memory holds the friction of all states.
 
     Raises:
-        BadInput: there is none.
+        BadInput: it does not.
     """
     needed, free = cost.bytes_of_states(states), cost.free_memory()
     if needed > free:
@@ -148,10 +154,10 @@ def check_states(states: int) -> None:
 
 
 def check_mode(scene: Scene, body: Body) -> None:
-    """Is there a pressure that could be put in?
+    """Check that the mode "traction" has a pressure to prescribe.
 
     Raises:
-        BadInput: there is none.
+        BadInput: the scene gives none, and the punch has none in closed form.
     """
     if scene.solve.mode == "traction" and not scene.solve.own_pressure and not body.flat:
         raise BadInput(
@@ -160,11 +166,11 @@ def check_mode(scene: Scene, body: Body) -> None:
         )
 
 
-def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
-    """Can anything find the ends of the contact?
+def check_free_ends(scene: Scene, body: Body, methods: Collection[str]) -> None:
+    """Check that a method computes the free ends of the contact.
 
     Raises:
-        BadInput: nothing can, or a pressure is given that would need them.
+        BadInput: none does, or the scene prescribes a pressure, which would need the ends.
     """
     if not body.found:
         return
@@ -179,15 +185,17 @@ def check_found(scene: Scene, body: Body, methods: Collection[str]) -> None:
 
 
 def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
-    """Is what is asked of layers known?
+    """Check that the scene's outputs and methods can be computed over layers.
 
     Raises:
-        BadInput: something is not; the message has all of it.
+        BadInput: they cannot; the message lists all reasons.
     """
     if not body.layered:
         return
-    known = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
-    faults = [f'output.quantities has "{word}"' for word in scene.output.quantities if word not in known]
+    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
+    faults = [
+        f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
+    ]
     if scene.solve.mode == "traction" and not scene.solve.own_pressure:
         faults.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
@@ -199,14 +207,14 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
     if faults:
         raise BadInput(
-            f"layer: found layers, and {'; '.join(faults)}. Known of layered solids are all "
-            'punches by methods = ["sie"], those with two sharp edges, parabolas and other smooth ones '
-            'by ["fem"] too, with the quantities friction, sif, surface, interior and interfaces'
+            f"layer: found layers, and {'; '.join(faults)}. Over layers methods = "
+            '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
+            "ones, with the quantities friction, sif, surface, interior and interfaces"
         )
 
 
 def _of_meshes(scene: Scene) -> Iterator[str]:
-    """Keys that say how a half-plane's mesh is, of which layers have their own."""
+    """Faults of keys that set the mesh or degree of a half-plane: layers have their own."""
     keys = {"mesh": (scene.solve.mesh, "confocal"), "degree": (scene.solve.degree, None)}
     for key, (value, default) in keys.items():
         if value != default:
@@ -214,7 +222,7 @@ def _of_meshes(scene: Scene) -> Iterator[str]:
 
 
 def check_pressure(scene: Scene, body: Body) -> None:
-    """Can finite elements put in a pressure of the user's own?
+    """Check that finite elements can be loaded by the prescribed pressure.
 
     Raises:
         BadInput: they cannot.
@@ -227,13 +235,13 @@ def check_pressure(scene: Scene, body: Body) -> None:
     kind = MESHES[scene.solve.mesh]
     if kind.walls or not kind.rings:
         raise BadInput(
-            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own, expected "confocal" or '
+            f'solve.mesh: found "{scene.solve.mesh}" with a prescribed pressure, expected "confocal" or '
             '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
             "and has no walls"
         )
     if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
         raise BadInput(
-            f'solve.mesh: found "{scene.solve.mesh}" with a pressure of your own and '
+            f'solve.mesh: found "{scene.solve.mesh}" with a prescribed pressure and '
             f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
             "differ so much in size that with an unknown pressure rounding spoils the matrix"
         )
@@ -246,7 +254,7 @@ def check_pressure(scene: Scene, body: Body) -> None:
 
 
 def _check_knots(knots: NDArray) -> None:
-    """Can cells along interfaces be graded towards all of them?"""
+    """Check that cells along interfaces can be graded towards all knots X/a of a pressure."""
     width = float(np.diff(knots).min())
     if len(knots) > _KNOTS or width < _APART:
         raise BadInput(
@@ -257,16 +265,16 @@ def _check_knots(knots: NDArray) -> None:
 
 
 def check_places(scene: Scene, places: Places) -> None:
-    """Can finite elements tell the stresses inside there?
+    """Check that finite elements can compute stresses at all points inside.
 
     Raises:
         BadInput: they cannot.
     """
-    asked = np.concatenate([places.points, places.around])
-    if not len(asked):
+    points = np.concatenate([places.points, places.around])
+    if not len(points):
         return
     key = "output.points" if len(places.points) else "output.quantities"
-    far = float(np.abs(asked).max())
+    far = float(np.abs(points).max())
     limit = inner(scene)
     if far > limit:
         raise BadInput(
@@ -281,13 +289,13 @@ def check_places(scene: Scene, places: Places) -> None:
 
 
 def inner(scene: Scene) -> float:
-    """Distance over a up to which finite elements tell fields inside: well inside walls, if there are."""
+    """Largest distance over a of fields inside from finite elements: well inside walls, if any."""
     walls = MESHES[scene.solve.mesh].walls
     return _INNER * walls if walls else _OUTERMOST
 
 
 def warnings_of_size(numbers: int) -> Iterator[str]:
-    """What does not fit into memory, of the numbers of the states that are treated together."""
+    """Warning where memory does not hold the numbers of the states that are computed together."""
     needed, free = cost.bytes_of_chunk(numbers), cost.free_memory()
     if needed > free:
         yield (
@@ -297,7 +305,7 @@ def warnings_of_size(numbers: int) -> Iterator[str]:
 
 
 def warnings_of(fem: FemPlan) -> Iterator[str]:
-    """What finite elements will not reach, or not fit into."""
+    """Warnings where finite elements do not reach the tolerance, or do not fit into memory."""
     cut_off = fem.kind.truncation(fem.wanted)
     if cut_off > fem.tolerance:
         yield (
@@ -312,9 +320,9 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
         )
 
 
-#: Seconds of a state that has a mesh of its own, and of a speed at which the ends of all are found.
+#: Seconds of a state that has a mesh of its own, and of the free ends of all states at a speed.
 _SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
-#: Ladders that finding the ends of a contact over layers takes, with that of the contact itself.
+#: Ladders of levels for a contact with free ends over layers, that of the contact itself among them.
 _MESHES_A_CONTACT = 3.0
 
 
@@ -343,14 +351,14 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
-            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error asks "
-            "for; where their contacts end is found once a speed"
+            f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error "
+            "requires; free ends are computed once for each speed"
         ]
     if fem.mode == FOLLOWED:
         return [
             f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
             f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
-            "error asks for"
+            "error requires"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
@@ -367,15 +375,15 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
         result.append(
             f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
             f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; so many are "
-            f"solved as a fit needs to tell the others, {LADDERS + BESIDES} or so; at each of these "
+            f"solved as a fit needs to give the others, {LADDERS + BESIDES} or so; at each of these "
             f"{solver} serves all states, at {LADDERS} {others} its error"
         )
         speeds = {}
     result += [
-        f"finite elements at c = {listed(some)} (over c_s): degree {degree}, "
+        f"finite elements at c = {listed(c)} (over c_s): degree {degree}, "
         f"{unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; at each speed {solver} serves "
         f"all states, {others} its error"
-        for degree, some in speeds.items()
+        for degree, c in speeds.items()
     ]
     if ranks.size() > 1:
         how = "each takes whole speeds" if fem.shared_speeds else "together on one mesh"
@@ -412,13 +420,13 @@ def expense(plan: Plan) -> str:
         "stresses inside": inside,
         "integral equations": _equations(plan),
     }
-    told = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
+    by_part = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
     total = sum(parts.values())
-    return f"about {total:.2g} s ({told}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+    return f"about {total:.2g} s ({by_part}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
 
 
 def _in_time(plan: Plan) -> float:
-    """Seconds of starts from rest."""
+    """Seconds of motions in time."""
     return plan.starts.seconds(plan.body.solid) if plan.starts else 0.0  # type: ignore[arg-type]
 
 
@@ -429,24 +437,24 @@ def _equations(plan: Plan) -> float:
         return 0.0
     kinked = bool(len(kinks(body.profile)))
     if not kinked and body.free:
-        return 0.0  # of a few frictions, which tell all others
+        return 0.0  # solved for a few frictions, between which others are interpolated
     graded = body.solid.layers[0].bottom is not None
     return cost.seconds_of_equations(plan.states, kinked, graded)
 
 
 def _inside(plan: Plan) -> float:
-    """Seconds for stresses inside, those to archive them among them."""
+    """Seconds to compute and archive stresses inside."""
     shape = len(plan.places.points), len(plan.tasks), plan.different
     pieces = len(plan.body.pressure.knots) - 1 if plan.body.pressure else 0
     by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
     seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)
     if not plan.fem:
-        return seconds  # the law for states knows of all their numbers
+        return seconds  # the law for states counts all their numbers
     return seconds + cost.seconds_to_archive(plan.states * plan.numbers_inside)
 
 
 def _levels(fem: FemPlan) -> list[tuple[int, int]]:
-    """Degrees and cuts that speeds are solved with, all that are."""
+    """Degrees and cuts of all solutions, speed by speed."""
     if fem.sweep:
         degree = max(fem.degrees)
         ladder = levels(degree, fem.cuts, fem.fixed)
@@ -455,26 +463,26 @@ def _levels(fem: FemPlan) -> list[tuple[int, int]]:
 
 
 def _seconds_of_levels(fem: FemPlan, states: int) -> float:
-    """Seconds of the levels of every speed, one after the other."""
+    """Seconds of the levels of all speeds, one after the other."""
     mesh, direct = fem.pattern, fem.solver == "direct"
     if fem.mode == OWN_MESHES:
         return _SECONDS_OF_OWN_MESH * states + _SECONDS_OF_ENDS * len(fem.degrees)
-    found = sum(
+    seconds = sum(
         cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
         for p, k in _levels(fem)
     )
-    return found * (_MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FOLLOWED else 1.0)
+    return seconds * (_MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FOLLOWED else 1.0)
 
 
 def _size(count: float) -> str:
-    """Bytes for a reader."""
+    """A number of bytes in words, as ``1.2 GB``."""
     for unit, size in (("GB", 1e9), ("MB", 1e6)):
         if count >= 0.1 * size:
             return f"{count / size:.2g} {unit}"
     return f"{count / 1e3:.2g} kB"
 
 
-#: What words of output.quantities ask for, where a plan says so.
+#: Descriptions of names in output.quantities, for a plan in words.
 _PLACES = {
     stresses.ON_SURFACE: "stresses on the surface",
     stresses.BELOW: "stresses inside",
@@ -483,30 +491,30 @@ _PLACES = {
 
 
 def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> Plan:
-    """Plan the work; looks at the scene only, and does none of it but friction where that is needed.
+    """Plan of a scene's work; none of it is done yet but friction, where the plan depends on that.
 
     Args:
         scene: the scene.
-        done: is told how many laws are followed, and of how many, where friction is.
+        done: called with the number of laws whose friction is computed, and with that of all laws.
 
     Raises:
-        BadInput: finite elements are asked for where they have no answer.
+        BadInput: an output of the scene has no answer by the scene's methods.
     """
-    known = order(scene)
-    check_states(len(known))
+    states = order(scene)
+    check_states(len(states))
     check_sliders(scene)
     pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
     body = replace(scene.body, pressure=pressure)
     methods = _methods(scene, body)
-    for load in {min(known.loads), max(known.loads)}:
+    for load in {min(states.loads), max(states.loads)}:
         check_size(body.loaded(load), methods)
     check_layers(scene, body, methods)
-    check_found(scene, body, methods)
+    check_free_ends(scene, body, methods)
     check_assembler(scene)
     around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
-    warnings = [*oddities(scene), *check_speeds(scene, known.speeds, "fem" in methods)]
+    warnings = [*oddities(scene), *check_speeds(scene, states.speeds, "fem" in methods)]
     warnings += _left_out(scene, body, methods)
     friction = enumerate_states(scene, done) if "fem" in methods or scene.time else None
     fem = None
@@ -515,15 +523,15 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
         check_mode(scene, body)
         check_pressure(scene, body)
         check_places(scene, places)
-        responses = [body.response(c) for c in known.speeds]
-        fem = plan_fem(scene, responses, _asked(scene, places), friction.g)
+        responses = [body.response(c) for c in states.speeds]
+        fem = plan_fem(scene, responses, _output_places(scene, places), friction.g)
         warnings += warnings_of(fem)
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
     skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, known), tolerance=scene.solve.tolerance,
+        tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
         strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
         warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
         starts=starts(scene, friction) if friction else None, friction=friction,
@@ -533,12 +541,12 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
 
 
 def _contact(scene: Scene) -> bool:
-    """Does anything ask for contact mechanics?"""
+    """True where an output needs contact mechanics."""
     return bool(set(scene.output.quantities) - FRICTIONS)
 
 
-def _asked(scene: Scene, places: Places) -> Places:
-    """Those places whose stresses are asked for."""
+def _output_places(scene: Scene, places: Places) -> Places:
+    """Places at which finite elements output stresses, those along interfaces among the points inside."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
     X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
     if layers.AT_INTERFACES in scene.output.quantities and len(places.along):
@@ -548,15 +556,15 @@ def _asked(scene: Scene, places: Places) -> Places:
 
 
 def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
-    """Methods that solve the contact, if anything asks for it."""
+    """Methods that solve the contact; none where no output needs it."""
     if not _contact(scene):
         return ()
-    wanted = dict.fromkeys(scene.solve.methods)
-    return tuple(name for name in wanted if not METHODS[name].refusal(scene, body, None))
+    names = dict.fromkeys(scene.solve.methods)
+    return tuple(name for name in names if not METHODS[name].refusal(scene, body, None))
 
 
 def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[str]:
-    """Methods that the scene names and that do not solve it; the others' answers stand alone."""
+    """Warnings about methods that the scene names and that do not solve it."""
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
         if name not in methods and (body.layered or not kind.of_layers):
@@ -566,33 +574,37 @@ def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[st
 def _quantities(
     scene: Scene, body: Body, methods: tuple[str, ...], modes: tuple[str, ...]
 ) -> tuple[tuple[Quantity, ...], list[str]]:
-    """What is read off the solutions, and what a method cannot give, with the reason."""
-    asked: dict[str, Quantity] = {}
+    """Quantities that are evaluated, and messages about those that a method cannot give."""
+    computed: dict[str, Quantity] = {}
     refused = []
-    # What is known of a punch's edges says nothing of a pressure of the user's own.
+    # Fields next to the edges of a punch are not those of a prescribed pressure.
     sources = methods if body.pressure else (*methods, LOCAL)
-    # What is computed from others comes after them, wherever it stands in the table.
+    # Quantities that are computed from others come after them, wherever they stand in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
-        wanted = (
+        applies = (
             bool(methods)
             and quantity.solved
             and quantity.method in sources
             and quantity.mode in modes
             and quantity.asked_by in ("", *scene.output.quantities)
-            and all(need in asked for need in quantity.needs)
+            and all(need in computed for need in quantity.needs)
         )
         kind = METHODS.get(quantity.method)
-        if wanted and kind and (why := kind.refusal(scene, body, quantity)):
+        if applies and kind and (why := kind.refusal(scene, body, quantity)):
             refused.append(f"{path}: {why}")
-        elif wanted:
-            asked[path] = quantity
-    return tuple(asked.values()), refused
+        elif applies:
+            computed[path] = quantity
+    return tuple(computed.values()), refused
 
 
 def _skipped(
-    scene: Scene, body: Body, methods: tuple[str, ...], fem: FemPlan | None, asked: Iterable[Quantity]
+    scene: Scene,
+    body: Body,
+    methods: tuple[str, ...],
+    fem: FemPlan | None,
+    quantities: Iterable[Quantity],
 ) -> list[str]:
-    """What is not done, and why."""
+    """Messages about work that is not done, with the reason."""
     if not _contact(scene):
         if scene.time:
             return ["contact mechanics of steady motion: only friction and time are asked for"]
@@ -604,7 +616,7 @@ def _skipped(
     ]
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")
-    words = {quantity.asked_by for quantity in asked}
+    words = {quantity.asked_by for quantity in quantities}
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
@@ -625,13 +637,16 @@ def surface_grid() -> np.ndarray:
     return np.unique(np.concatenate([-right, right]))
 
 
-#: Distance over a to which interfaces are looked at, and beyond which stresses only fall.
+#: Least distance over a up to which stresses along interfaces are output; beyond it they only fall.
 _FARTHEST = 40.0
 
 
 def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """Depths of interfaces over a, and positions along them: as fine at the edges as these are near, and
-    so far that a largest stress behind the punch is among them."""
+    """Depths of interfaces over a, (interfaces,), and positions X/a along them, (places,).
+
+    Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
+    the punch is among them.
+    """
     if not isinstance(body.solid, Layered):
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width

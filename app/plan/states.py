@@ -1,6 +1,7 @@
-"""The states a scene asks for: every combination of its lists, in the order they are archived.
+"""The states of a scene: every combination of its lists, in the order of archives, and their friction.
 
-Which state is which: the product of speeds, loads, laws and places, in the order of archives.
+An :class:`Order` is the product of speeds, loads, laws and places on the strokes. :class:`States` hold
+the friction of every state, which :func:`enumerate_states` computes along the strokes.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -30,10 +31,10 @@ class Order:
     """States by speed, load, law and place on the strokes, the last fastest.
 
     Attributes:
-        given: speeds over c_s that strokes have which have none of their own.
+        given: the scene's speeds over c_s, for strokes without a speed of their own.
         loads: [N/m].
-        laws: their number.
-        own: speeds over c_s of the states along all strokes, NaN where that is the given one, (places,).
+        laws: number of laws.
+        own: speeds over c_s of the states along all strokes, NaN for the scene's speeds, (places,).
     """
 
     given: tuple[float, ...]
@@ -46,7 +47,7 @@ class Order:
 
     @property
     def states(self) -> int:
-        """At each given speed."""
+        """Number of states at each of the scene's speeds."""
         return len(self.loads) * self.laws * len(self.own)
 
     @property
@@ -62,7 +63,7 @@ class Order:
 
     @cached_property
     def speeds(self) -> tuple[float, ...]:
-        """All speeds over c_s, each once, as states meet them first."""
+        """All speeds over c_s, each once, in the order of the first state with it."""
         if self._given_alone:
             return self.given
         met = np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
@@ -73,12 +74,12 @@ class Order:
         return bool(np.isnan(self.own).all())
 
     def runs(self) -> Iterator[tuple[slice, ...]]:
-        """Numbers of the states of every speed, as runs of states that follow one another."""
+        """Rows of the states of every speed, as runs of consecutive states."""
         if self._given_alone:
             for i in range(len(self.given)):
                 yield (slice(i * self.states, (i + 1) * self.states),)
             return
-        # A state's speed is the same under every load and law: few places tell all.
+        # A state's speed is the same under every load and law: it changes at few rows.
         c = self.c
         first = np.flatnonzero(np.diff(c, prepend=np.nan))
         by_speed: dict[float, list[slice]] = {}
@@ -88,16 +89,16 @@ class Order:
             yield tuple(by_speed[speed])
 
     def load(self, rows: slice) -> NDArray[np.float64]:
-        """Load of some states [N/m]."""
+        """Load of the states of these rows [N/m], (rows,)."""
         per_load = self.laws * len(self.own)
         return np.array(self.loads)[np.arange(rows.start, rows.stop) // per_load % len(self.loads)]
 
 
-#: Positions on a stroke at which loops are archived, and the most loops that are.
+#: Positions on a stroke at which loops are archived, and most loops that are archived.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000
-#: The most of laws that have to be integrated, which takes some tenths of a second a loop.
+#: Most loops of laws that are integrated, which takes some tenths of a second a loop.
 INTEGRATED_LOOPS = 100
-#: Laws that are followed together, and from word to word of how many are done.
+#: Number of laws that are computed together, and from one report of progress to the next.
 _TOGETHER = 500
 
 
@@ -108,14 +109,14 @@ class States:
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
             speed), the load in N/m where there are several, the law's parameters, the speed and that of
-            a wave along the surface in m/s, flutter thresholds of both signs of g, how often a wave
-            crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
+            a wave along the surface in m/s, flutter thresholds of both signs of g, number of times that a
+            wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
         inner: inner state of the law at each state, (states, n).
         directions: of the strokes, 1 forward, -1 backward, (states,).
-        loop: row of ``loops`` of each state, -1 for none, (states,).
+        loop: row of each state in ``loops``, -1 for none, (states,).
         travel: positions X/L along all strokes in the order of travel, (steps,).
-        loops: friction coefficient there, (loops, steps).
-        works: what strokes take, as archived, by path, (loops, strokes) and (loops,).
+        loops: friction coefficient at these, (loops, steps).
+        works: work and stiffness of strokes as archived, by path, (loops, strokes) and (loops,).
     """
 
     columns: dict[str, NDArray]
@@ -136,7 +137,7 @@ class States:
 
     @property
     def datasets(self) -> dict[str, NDArray]:
-        """All as archived, by path."""
+        """All arrays as archived, by path."""
         return {column(name): values for name, values in self.columns.items()} | {
             INNER_STATE.path: self.inner,
             runs.LOOP_OF_STATE.path: self.loop,
@@ -147,7 +148,7 @@ class States:
 
 
 def speeds(scene: Scene) -> tuple[float, ...]:
-    """Speeds over the wave speed.
+    """The scene's speeds over c_s.
 
     Raises:
         BadInput: a speed given in m/s is not subsonic.
@@ -159,7 +160,7 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     c_s = scene.solid.c_s
     if fast := [f"{speed:g}" for speed in scene.motion.speed or () if speed >= c_s]:
         limit = f"the shear wave speed {c_s:.6g} m/s"
-        if "fem" in scene.solve.methods:  # the one that is met first
+        if "fem" in scene.solve.methods:  # the lower limit
             limit = (
                 f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s (by closed_form alone, {limit})"
             )
@@ -171,7 +172,7 @@ def speeds(scene: Scene) -> tuple[float, ...]:
 
 
 def order(scene: Scene) -> Order:
-    """Which state is which.
+    """Order of the states of a scene.
 
     Raises:
         BadInput: a speed given in m/s is not subsonic.
@@ -182,12 +183,12 @@ def order(scene: Scene) -> Order:
 
 
 def laws_followed(scene: Scene) -> int:
-    """Number of laws that are followed: once, or once a speed where they depend on that."""
+    """Number of laws whose friction is computed: each once, or at each speed if it depends on that."""
     return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
 
 
 def seconds_to_integrate(scene: Scene) -> float:
-    """Time that laws without a formula take, 0 for others.
+    """Time [s] to integrate laws that have no formula, 0 for others.
 
     Raises:
         BadInput: the law refuses its parameters.
@@ -206,17 +207,17 @@ def _has_formula(law: FrictionLaw) -> bool:
 
 
 def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> States:
-    """Friction of every state; what is held at once is that and nothing else.
+    """Friction of every state.
 
     Args:
         scene: the scene.
-        done: is told now and then how many laws are followed, and of how many.
+        done: called now and then with the number of laws that are computed, and with that of all laws.
 
     Raises:
         BadInput: the integrator refuses the parameters.
     """
-    friction, known, count = scene.friction, order(scene), laws_followed(scene)
-    f, found, at = np.empty((count, len(known.own))), _Found(), 0
+    friction, order_, count = scene.friction, order(scene), laws_followed(scene)
+    f, loops, at = np.empty((count, len(order_.own))), _Loops(), 0
     inner: NDArray | None = None
     advance = INTEGRATORS[friction.integrator]
     try:
@@ -230,7 +231,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
             inner[at : at + n] = z
             most = LOOPS if laws or _has_formula(law) else INTEGRATED_LOOPS
             if at < most:
-                found.add(*_loops(scene, law, c, laws), n, min(n, most - at))
+                loops.add(*_loops(scene, law, c, laws), n, min(n, most - at))
             at += n
             if at % _TOGETHER == 0:
                 done(at, count)
@@ -238,40 +239,40 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         raise BadInput(f"friction: {error}") from None
     assert inner is not None
     loop = np.arange(count)
-    loop[len(found.f) :] = -1
-    columns = _columns(scene, known, _of_all(known, f))
+    loop[len(loops.f) :] = -1
+    columns = _columns(scene, order_, _of_all(order_, f))
     travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
     along = np.repeat([leg.s for leg in scene.legs], [len(X) for X in scene.places])
     return States(
-        columns, _of_all(known, inner), _of_all(known, np.tile(along, (count, 1))),
-        _of_all(known, np.tile(loop[:, None], f.shape[1])), travel, np.array(found.f),
-        found.archived(scene),
+        columns, _of_all(order_, inner), _of_all(order_, np.tile(along, (count, 1))),
+        _of_all(order_, np.tile(loop[:, None], f.shape[1])), travel, np.array(loops.f),
+        loops.archived(scene),
     )  # fmt: skip
 
 
-def _of_all(known: Order, values: NDArray) -> NDArray:
-    """Values of all states, (states, …): under every load alike, at every speed where laws know none.
+def _of_all(order: Order, values: NDArray) -> NDArray:
+    """Values of all states, (states, …), the same under every load, and at every speed if laws have none.
 
     Args:
-        known: which state is which.
-        values: of the laws that are followed, (laws and speeds, places, …).
+        order: of the states.
+        values: of the laws that are computed, (laws and speeds, places, …).
     """
-    *several, laws, places = known.shape
+    *several, laws, places = order.shape
     rest = values.shape[2:]
     by_speed = values.reshape(-1, 1, laws, places, *rest)
     return np.broadcast_to(by_speed, (*several, laws, places, *rest)).reshape(-1, *rest)
 
 
-def _columns(scene: Scene, known: Order, f: NDArray) -> dict[str, NDArray]:
-    """One entry a state in every array; ``f`` is (states,)."""
-    friction, (all_speeds, loads, laws, per_law) = scene.friction, known.shape
-    each, followed, c = [len(X) for X in scene.places], all_speeds * loads * laws, known.c
+def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
+    """Columns of all states by name as archived, each (states,); ``f`` is (states,), too."""
+    friction, (all_speeds, loads, laws, per_law) = scene.friction, order.shape
+    each, followed, c = [len(X) for X in scene.places], all_speeds * loads * laws, order.c
     values = {
-        key: np.tile(np.repeat(one, per_law), all_speeds * loads)
-        for key, one in friction.columns().items()
+        key: np.tile(np.repeat(column, per_law), all_speeds * loads)
+        for key, column in friction.columns().items()
     }
-    of_load = np.tile(np.repeat(known.loads, laws * per_law), all_speeds)
-    given = np.repeat(np.multiply(known.given, scene.solid.c_s), known.states)
+    of_load = np.tile(np.repeat(order.loads, laws * per_law), all_speeds)
+    given = np.repeat(np.multiply(order.given, scene.solid.c_s), order.states)
     own = [np.nan if leg.speed is None else leg.speed for leg in scene.legs]
     speed = np.tile(np.repeat(own, each), followed)
     lengths = np.tile(np.repeat([leg.length for leg in scene.legs], each), followed)
@@ -284,43 +285,43 @@ def _columns(scene: Scene, known: Order, f: NDArray) -> dict[str, NDArray]:
         "speed": np.where(np.isnan(speed), given, speed),
         **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": _crossings(scene, lengths, _half_widths(scene, known), c),
+        "wave_crossings": _crossings(scene, lengths, _half_widths(scene, order), c),
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }
 
 
 def _flutter(solid: Solid) -> list[float]:
-    """Thresholds of both signs of σ_XY/σ_YY; NaN for none, and of a user's own solid that tells none."""
+    """Flutter thresholds of both signs of σ_XY/σ_YY; NaN for none, or of a solid without ``flutter``."""
     return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
 
 
-def _half_widths(scene: Scene, known: Order) -> Any:
-    """Of a contact at rest without friction under the load of each state [m], or of all."""
-    if len(known.loads) == 1 or not scene.body.found:
+def _half_widths(scene: Scene, order: Order) -> Any:
+    """Half-width [m] of the contact at rest without friction, under each state's load, or one for all."""
+    if len(order.loads) == 1 or not scene.body.found:
         return scene.body.half_width
-    of_loads = scene.body.loaded(np.array(known.loads)).half_width
-    return np.tile(np.repeat(of_loads, known.laws * len(known.own)), len(known.given))
+    of_loads = scene.body.loaded(np.array(order.loads)).half_width
+    return np.tile(np.repeat(of_loads, order.laws * len(order.own)), len(order.given))
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: Any, c: NDArray) -> NDArray[np.float64]:
-    """How often a wave of the speed c_s crosses the contact in a stroke: L/(2 a c), NaN at rest."""
+    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c), NaN at rest."""
     with np.errstate(divide="ignore", invalid="ignore"):
         often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
     return np.where(c > 0.0, often, np.nan)
 
 
 def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
-    """What is followed at a speed: a law, or one that stands for so many."""
+    """Laws to compute at each speed over c_s; and of how many laws each stands for, None for itself."""
     friction = scene.friction
-    followed = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+    of_laws = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
     together = friction.law.broadcasts and friction.integrator == "exact"
     columns = friction.columns() if together else {}
-    for c in followed:
+    for c in of_laws:
         if together:
             for first in range(0, friction.count, _TOGETHER):
-                some = slice(first, min(first + _TOGETHER, friction.count))
-                yield c, friction.together(columns, some), some.stop - some.start
+                rows = slice(first, min(first + _TOGETHER, friction.count))
+                yield c, friction.together(columns, rows), rows.stop - rows.start
         else:
             for law in friction.laws():
                 yield c, law, None
@@ -334,7 +335,7 @@ def _strokes(
 
 
 def _loops(scene: Scene, law: FrictionLaw, c: float, laws: int | None) -> tuple[list[Stroke], list[Work]]:
-    """Friction along every stroke, and what these take."""
+    """Friction along every stroke at the positions of loops, and work and stiffness of every stroke."""
     friction, V = scene.friction, c * scene.solid.c_s
     fine = [leg.start + (leg.end - leg.start) * FINE for leg in scene.legs]
     advance = closely if friction.integrator == "exact" else INTEGRATORS[friction.integrator]
@@ -343,30 +344,30 @@ def _loops(scene: Scene, law: FrictionLaw, c: float, laws: int | None) -> tuple[
     return drawn, taken
 
 
-class _Found:
-    """Loops, and what their strokes take, as they are found.
+class _Loops:
+    """Loops and the work of their strokes, in the order in which they are computed.
 
     Attributes:
         f: friction coefficient along each loop.
-        taken: by name of :class:`Work`, a row of strokes a loop.
+        taken: work and stiffness by name of :class:`Work`, a row of strokes for each loop.
     """
 
     def __init__(self) -> None:
         self.f: list[NDArray] = []
         self.taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
 
-    def add(self, drawn: list[Stroke], taken: list[Work], laws: int, wanted: int) -> None:
-        """The loops of so many laws, of which some are wanted."""
+    def add(self, drawn: list[Stroke], taken: list[Work], laws: int, kept: int) -> None:
+        """Append the loops of the first ``kept`` of so many laws."""
         f = _joined([np.broadcast_to(stroke.f, (laws, len(FINE))) for stroke in drawn])
-        self.f += list(f[:wanted])
+        self.f += list(f[:kept])
         for name, rows in self.taken.items():
             columns = [np.broadcast_to(getattr(stroke, name), (laws,)) for stroke in taken]
-            rows += list(np.stack(columns, axis=-1)[:wanted])
+            rows += list(np.stack(columns, axis=-1)[:kept])
 
     def archived(self, scene: Scene) -> dict[str, NDArray]:
-        """What strokes take, by path, times the load."""
+        """Work and stiffness of strokes as archived, by path; those of unit load times the load."""
         N = scene.punch.load
-        with np.errstate(over="ignore"):  # friction of 1e308 is somebody's
+        with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
             dissipated, breakaway, slope = (N * np.array(rows) for rows in self.taken.values())
         first = last_cycle(scene.legs)
         cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)

@@ -1,4 +1,4 @@
-"""A plan: what is to be done, speed by speed."""
+"""A plan and its tasks, speed by speed."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,23 +17,23 @@ from .fem import FOLLOWED, OWN_MESHES, FemPlan
 from .over_time import Starts
 from .states import Order, States
 
-#: Floating-point numbers that the states of a chunk may have at once.
+#: Most floating-point numbers that the states of a chunk hold at once.
 CHUNK_NUMBERS = 1_200_000
 
-#: States whose own meshes are held at once.
+#: Most states whose own meshes are held at once.
 OWN_MESHES_KEPT = 32
 
 
 @dataclass(frozen=True)
 class Task:
-    """One speed: what every method is asked.
+    """States of one speed, for every method to solve.
 
     Attributes:
         number: of the speed, from 0.
-        body: what slides over what, under the first of its loads.
+        body: contact of punch and solid, under the first of the loads.
         response: of the half-plane at that speed.
-        places: where stresses are wanted.
-        runs: rows of the states at that speed, those that follow one another together.
+        places: points where stresses are output.
+        runs: rows of the states at that speed, as runs of consecutive states.
         loads: of these states [N/m], each once.
     """
 
@@ -45,7 +45,7 @@ class Task:
     loads: tuple[float, ...]
 
     def of(self, values: NDArray) -> NDArray:
-        """Those of its states, of values of all."""
+        """Rows of the task's states, of values of all states, (states, …)."""
         return np.concatenate([values[run] for run in self.runs])
 
 
@@ -54,8 +54,8 @@ class Tasks:
     """All tasks, each made when it is its turn: there may be a million.
 
     Attributes:
-        body: what slides over what, under the first of its loads.
-        places: where stresses are wanted.
+        body: contact of punch and solid, under the first of the loads.
+        places: points where stresses are output.
         order: of the states.
     """
 
@@ -74,22 +74,22 @@ class Tasks:
 
 @dataclass(frozen=True)
 class Plan:
-    """Work of a scene.
+    """Plan of the work of a scene.
 
     Attributes:
-        body: what slides over what, under the first of its loads.
-        places: where stresses are wanted.
-        methods: names of those that solve, none where only friction is asked for.
-        quantities: read off their solutions, in the order of the table.
+        body: contact of punch and solid, under the first of the loads.
+        places: points where stresses are output.
+        methods: names of the methods that solve the contact, none for friction alone.
+        quantities: evaluated from their solutions, in the order of the table.
         tasks: one a speed.
-        tolerance: wanted relative accuracy.
-        strokes: number of strokes along which friction laws are followed.
-        integrated: seconds that laws without a formula take for that.
-        starts: from rest that are followed in time, None for none.
-        friction: of all states, None where nothing has asked for it so far.
-        fem: finite element work, None without.
-        skipped: what is not done, and why.
-        warnings: what the user should know before starting.
+        tolerance: relative accuracy to reach.
+        strokes: number of strokes along which friction laws are computed.
+        integrated: seconds to integrate laws without a formula.
+        starts: motions in time, None for none.
+        friction: of all states, None where the plan does not depend on it.
+        fem: plan of the finite elements, None without.
+        skipped: messages about work that is not done, with the reason.
+        warnings: messages to the user before the work starts.
     """
 
     body: Body
@@ -113,42 +113,42 @@ class Plan:
 
     @property
     def different(self) -> int:
-        """Number of states that differ by more than their load, where contacts of all loads are alike."""
+        """Number of states that are solved: one for all loads where contacts are similar under them."""
         return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
 
     @property
     def shared(self) -> bool:
-        """Is there something that several ranks do together?"""
+        """True where several ranks work on the same solution."""
         return self.fem is not None or self.starts is not None
 
     def asks(self, word: str, method: str = "") -> bool:
-        """Is a quantity computed, by a method or by any, that this word of output.quantities asks for?"""
+        """True where a quantity of this name in output.quantities is computed, by a method or by any."""
         return any(
             quantity.asked_by == word and method in ("", quantity.method) for quantity in self.quantities
         )
 
     @property
     def positions(self) -> dict[str, NDArray]:
-        """Datasets of where stresses are archived, by path."""
-        found = {}
+        """Datasets of the positions of archived stresses, by path."""
+        datasets = {}
         if self.asks(stresses.ON_SURFACE):
-            found[stresses.SURFACE_X.path] = self.places.X
+            datasets[stresses.SURFACE_X.path] = self.places.X
         if self.asks(stresses.BELOW):
             X, Y = self.places.points.T
-            found |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+            datasets |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
         if self.asks(layers.AT_INTERFACES):
             if self.body.found:
-                found[layers.INTERFACE_DEPTH_IN_M.path] = self.body.solid.depths  # type: ignore[attr-defined]
+                datasets[layers.INTERFACE_DEPTH_IN_M.path] = self.body.solid.depths  # type: ignore[attr-defined]
             else:
-                found[layers.INTERFACE_DEPTH.path] = self.places.interfaces
-            found[layers.ALONG_X.path] = self.places.along
-        return found
+                datasets[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            datasets[layers.ALONG_X.path] = self.places.along
+        return datasets
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which what is computed is compared.
+        """Names of the rules by which computed quantities are compared.
 
-        A pressure of the user's own is held against its own exact solution: it need not carry the load.
+        A prescribed pressure is compared with its own exact solution: it need not carry the load.
         """
         names = {FINITE, *(rule for quantity in self.quantities for rule in quantity.compared)}
         own = self.body.pressure is not None
@@ -156,7 +156,7 @@ class Plan:
         return in_time | frozenset(name for name in names if RULES[name].own_pressure or not own)
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
-        """Shape of a state's entry."""
+        """Shape of a quantity of one state."""
         sizes = {
             POINT: len(self.places.X), INSIDE: len(self.places.points),
             INTERFACE: len(self.places.interfaces), ALONG: len(self.places.along),
@@ -165,25 +165,25 @@ class Plan:
 
     @cached_property
     def chunk(self) -> int:
-        """States treated at once: what they hold in memory is bounded."""
+        """Number of states that are computed at once, which bounds their memory."""
         own_meshes = self.fem is not None and self.fem.mode in (FOLLOWED, OWN_MESHES)
         most = OWN_MESHES_KEPT if own_meshes else 1000
         return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, most))
 
     @property
     def numbers(self) -> int:
-        """Numbers of a state that methods give, or look at."""
-        looked_at = 3 * len(self.places.around)
-        return looked_at + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
+        """Number of floating-point numbers of a state that methods give or evaluate."""
+        around = 3 * len(self.places.around)
+        return around + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
     @property
     def numbers_inside(self) -> int:
-        """Those of them at points inside."""
+        """Number of floating-point numbers of a state at points inside."""
         inside = (quantity for quantity in self.quantities if INSIDE in quantity.over)
         return sum(int(np.prod(self.shape(quantity))) for quantity in inside)
 
     def chunks(self, task: Task) -> list[slice]:
-        """A task's rows, so many at a time."""
+        """Rows of a task's states, at most :attr:`chunk` at a time."""
         return [
             slice(first, min(first + self.chunk, run.stop))
             for run in task.runs
@@ -191,5 +191,5 @@ class Plan:
         ]
 
     def load(self, rows: slice) -> NDArray[np.float64]:
-        """Load of some states [N/m]."""
+        """Load of the states of these rows [N/m], (rows,)."""
         return self.tasks.order.load(rows)

@@ -1,14 +1,9 @@
-"""Run a scene: plan, solve, judge, archive.
+"""Run of a scene: plan, solve, judge, archive.
 
-Who takes results where they go.
-
-What every archive tells of its scene, in SI.
-
-What a result was computed with.
-
-Where results go.
-
-The verdict on a run.
+:func:`compute` is the run as a program. Its parts: the attributes of an archive, in SI, that describe the
+scene and the versions with which results were computed (:func:`of_scene`, :func:`libraries`); sinks, the
+destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and the collector, which
+judges finished parts and writes them (:class:`Collector`).
 """
 
 import json
@@ -52,15 +47,15 @@ from .solve import Work
 def of_scene(scene: Scene) -> dict[str, Any]:
     """Attributes of an archive's root that say what slides over what."""
     half_plane, solid = scene.half_plane, scene.solid
-    known = _solid(half_plane.solid)
+    solid_words = _solid(half_plane.solid)
     if half_plane.yield_strength:
-        known["yield_strength"] = half_plane.yield_strength
+        solid_words["yield_strength"] = half_plane.yield_strength
     if scene.layers:
-        known |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
+        solid_words |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
     return {
         "title": scene.title,
         "material": half_plane.material or "",
-        "solid": json.dumps(known, ensure_ascii=False),
+        "solid": json.dumps(solid_words, ensure_ascii=False),
         "half_width": scene.body.half_width,
         "load": scene.punch.load,
         "c_s": solid.c_s,
@@ -69,44 +64,44 @@ def of_scene(scene: Scene) -> dict[str, Any]:
 
 
 def _solid(solid: Solid) -> dict[str, Any]:
-    kind = next((name for name, known in SOLIDS.items() if known is type(solid)), "")
+    kind = next((name for name, law in SOLIDS.items() if law is type(solid)), "")
     return {"kind": kind, **constants(solid)}
 
 
-#: Libraries that numbers depend on, by the module that knows the version.
+#: Libraries that numbers depend on, by the module that holds the version.
 _LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "gmsh", "h5py")
 
 
 def libraries() -> dict[str, str]:
-    """Versions of Python and of the libraries that were used so far: nothing is imported for this."""
-    found = {"Python": platform.python_version()}
+    """Versions of Python and of the libraries imported so far; nothing is imported for this."""
+    versions = {"Python": platform.python_version()}
     for name in _LIBRARIES:
         version = getattr(sys.modules.get(name), "__version__", None)
         if version:
-            found[name] = str(version)
-    return found
+            versions[name] = str(version)
+    return versions
 
 
 def machine() -> str:
-    """System and number of ranks."""
+    """Operating system, architecture and number of ranks."""
     count = ranks.size()
     return f"{platform.system()} {platform.machine()}, {count} rank{'s' * (count > 1)}"
 
 
 class Sink(Protocol):
-    """Where results go: an archive in the making, or memory.
+    """Destination of results: an archive in the making, or memory.
 
-    Every path has to be in the table of quantities; an unknown one raises KeyError.
+    Every path has to be in the table of quantities; any other raises KeyError.
     """
 
     def put(self, name: str, value: Any) -> None:
-        """A whole dataset."""
+        """Take a whole dataset."""
 
     def reserve(self, name: str, shape: tuple[int, ...]) -> None:
-        """Room for a dataset that comes by rows."""
+        """Make room for a dataset that comes by rows."""
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
-        """Rows of a reserved dataset."""
+        """Take rows of a reserved dataset."""
 
 
 class Memory(dict[str, Any]):
@@ -123,7 +118,7 @@ class Memory(dict[str, Any]):
 
 
 class Nowhere:
-    """The sink of ranks other than 0."""
+    """Sink of ranks other than 0, which keeps nothing."""
 
     def put(self, name: str, value: Any) -> None:
         declared(name)
@@ -135,28 +130,28 @@ class Nowhere:
         pass
 
 
-#: Speeds that could not be solved of which a verdict says why, at most.
+#: Largest number of unsolved speeds whose reasons a verdict gives.
 _FAILURES = 10
 
 
 def limits(scene: Scene, names: Iterable[str]) -> dict[str, float]:
-    """Largest values of a PASS by the names of rules; what is only told is not among them."""
+    """Largest values of a PASS by the names of rules; rules that are only reported are not among them."""
     rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
     allowed = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
     return {name: limit for name, limit in allowed.items() if limit is not None}
 
 
 class Judge:
-    """Watches parts of results and says PASS or FAIL; keeps the worst of every comparison.
+    """Verdict on parts of results, PASS or FAIL, with the worst value of every comparison.
 
     Args:
         scene: sets the tolerance.
-        names: of the rules by which results are compared.
+        names: names of the rules by which results are compared.
 
     Attributes:
         worst: largest value by the comparison's text, dimensionless.
-        failures: what could not be solved, and why.
-        validity: watches where what was solved does not hold.
+        failures: speeds that could not be solved, with the reasons.
+        validity: collects states for which the theory does not hold.
     """
 
     def __init__(self, scene: Scene, names: Iterable[str]) -> None:
@@ -168,11 +163,11 @@ class Judge:
 
     def see(self, comparisons: list[Comparison]) -> None:
         """Take a part's comparisons into account; NaN is worse than any number."""
-        for found in comparisons:
-            value = float(np.max([self.worst.get(found.text, 0.0), found.value]))
-            self.worst[found.text] = value
-            if found.name in self._limits:
-                self._judged[found.text] = self._limits[found.name]
+        for comparison in comparisons:
+            value = float(np.max([self.worst.get(comparison.text, 0.0), comparison.value]))
+            self.worst[comparison.text] = value
+            if comparison.name in self._limits:
+                self._judged[comparison.text] = self._limits[comparison.name]
 
     def verdict(self) -> tuple[str, list[str]]:
         """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
@@ -188,7 +183,10 @@ class Judge:
 
 
 def _steady(scene: Scene) -> Steady | None:
-    """Known of flat punches on uniform solids, below the speed of the wave along the surface."""
+    """Time until starts are steady, for flat punches on uniform solids; None for all others.
+
+    It is infinite from the speed of the wave along the surface on.
+    """
     solid = scene.solid
     if scene.layers or not isinstance(scene.punch.profile, Flat):
         return None
@@ -201,23 +199,23 @@ def _steady(scene: Scene) -> Steady | None:
     return Steady(within, scene.body.half_width / solid.c_s)
 
 
-#: Seconds after which small parts wait no longer for others: so much is lost at most.
+#: Seconds after which small parts wait no longer for others: the most that a killed run loses.
 _PATIENCE = 1.0
 
-#: What the time is told as.
+#: Clock's step of the time spent on the archive.
 _STEP = "archive"
 
 
 class Collector:
-    """Takes finished parts in: judges, writes and keeps them.
+    """Collector of finished parts: it judges, writes and keeps them.
 
     Args:
-        sink: where results go.
-        judge: is shown the comparisons.
-        progress: is told what is done.
+        sink: destination of results.
+        judge: takes comparisons into account.
+        progress: shows the states done.
         journal: keeps parts; None for no journal.
-        plan: the plan that is followed.
-        clock: takes the time spent here.
+        plan: the plan of the run.
+        clock: takes wall time by step.
     """
 
     def __init__(
@@ -238,14 +236,14 @@ class Collector:
             sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
 
     def earlier(self) -> NDArray[np.bool_]:
-        """Take in what the journal has; which states those are, (states,)."""
-        found = np.zeros(self._plan.states, dtype=bool)
+        """Take in the journal's parts; True for the states they hold, (states,)."""
+        finished = np.zeros(self._plan.states, dtype=bool)
         if self._journal and self._journal.damaged:
             self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
         for part in self._journal.parts() if self._journal else ():
-            found[part.rows] = True
+            finished[part.rows] = True
             self._take(part)
-        return found
+        return finished
 
     def take(self, part: Part) -> None:
         """Take in a part that was just computed; a failure is tried again by a run that goes on."""
@@ -297,7 +295,7 @@ class Collector:
         failures = [
             f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
         ]
-        if len(failures) == len(self._plan.tasks) and not any(one.get("solved") for one in records):
+        if len(failures) == len(self._plan.tasks) and not any(record.get("solved") for record in records):
             raise SolveError(failures[0])
         self._judge.failures = failures
         if self._plan.fem or failures:
@@ -320,22 +318,22 @@ def compute(
     journal: Journal | None = None,
     clock: Clock | None = None,
 ) -> dict[str, Any]:
-    """Compute what a scene asks for, into ``sink``.
+    """Compute the results of a scene, into ``sink``.
 
     Under MPI this is collective; results reach the sink of rank 0.
 
     Args:
-        scene: what is asked for.
+        scene: the scene.
         sink: takes the datasets.
-        progress: is told what is being done.
-        journal: keeps finished parts; what it already has is not computed again.
+        progress: shows the work under way.
+        journal: keeps finished parts; parts it already has are not computed again.
         clock: takes wall time by step.
 
     Returns:
         Root attributes of the archive, verdict among them.
 
     Raises:
-        BadInput: the scene asks for what has no answer.
+        BadInput: the scene has a quantity without an answer.
         SolveError: no speed could be solved.
     """
     if sink is None or not ranks.is_root():
@@ -376,14 +374,14 @@ def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
 
 
 def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
-    """Starts from rest."""
+    """Compute, archive and judge starts from rest; collective."""
     assert plan.starts
     progress.say("starts from rest")
-    found = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
-    for path, values in found.items():
+    datasets = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
+    for path, values in datasets.items():
         sink.put(path, values)
     if ranks.is_root():
-        judge.see(comparisons(found, plan.body.load, plan.rules))
+        judge.see(comparisons(datasets, plan.body.load, plan.rules))
 
 
 def _parts(

@@ -1,8 +1,7 @@
-"""Motions in time of a scene: both methods, one speed after the other.
+"""Motions in time of a scene: both methods, speed by speed.
 
-What there were at once in steady motion of the same friction, beside which motions are seen.
-
-What finite elements in time tell besides the contact: works, energies, and stresses on the surface.
+Beside each motion stands the steady motion with the friction of every moment (:class:`QuasiSteady`).
+Finite elements in time are in a module of their own, so that nothing else imports dolfinx.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,42 +12,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
-from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.postprocess import over_time, surface_over_time
-from galinx.postprocess.over_time import TOLD, contact_numbers, largest_change
-from galinx.postprocess.quantities import over_time as beside
-from galinx.postprocess.quantities import over_time as energy
+from galinx.postprocess.over_time import TOLD, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.surface_over_time import named
-from galinx.solvers.fem.dynamic import Energies, Motion
-from galinx.solvers.fem.in_time import Steps, SurfaceInTime, Watch
 from galinx.solvers.layers.contact import Pressure, Speed
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.late_time import approach
-from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
+from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
 
 from .. import ranks
 from ..errors import finite_elements_installed
-from ..plan.over_time import Drive, Level, Starts
+from ..plan.over_time import Drive, Starts
 
-#: Length over a of the rule by which a pressure over layers is integrated.
+#: Length over a of the quadrature rule for a pressure over layers.
 _FINEST = 0.5
-#: Accuracy over that of a scene.
+#: Accuracy of steady motion over layers, over the scene's tolerance.
 _OF_TOLERANCE = 0.1
 
 
 @dataclass(frozen=True)
-class AtOnce:
+class QuasiSteady:
     """Steady motion under a flat punch at a speed.
 
     Args:
-        starts: what is asked for.
+        starts: the motions and the datasets requested.
         solid: the solid.
         c: speed over c_s.
     """
@@ -63,13 +55,13 @@ class AtOnce:
         response = self.starts.response(self.solid, self.c)
         if isinstance(response, LayersInCells):
             stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
-            found, _ = Speed(response.surface, stack, np.zeros_like, accuracy).solved(different)
-            return np.asarray((found.at(different) @ found.read(_centre))[which])
+            nodes, _ = Speed(response.surface, stack, np.zeros_like, accuracy).solved(different)
+            return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
         punches = [FlatPunch(response, ratio) for ratio in different]
-        return np.array([one.β - one.α for one in punches])[which]
+        return np.array([punch.β - punch.α for punch in punches])[which]
 
     def K_I(self, ratio: float) -> float:
-        """That of both ends; NaN over layers, where they differ."""
+        """K_I of both ends as :attr:`FlatPunch.K_I`, dimensionless; NaN over layers: they differ."""
         response = self.starts.response(self.solid, self.c)
         return np.nan if isinstance(response, LayersInCells) else FlatPunch(response, ratio).K_I
 
@@ -79,70 +71,7 @@ def _centre(pressure: Pressure) -> NDArray[np.float64]:
     return np.array(forces @ t / forces.sum())
 
 
-_Found = dict[str, NDArray[np.float64]]
-
-
-class Seen:
-    """What is watched of all motions at a speed.
-
-    Args:
-        starts: what is asked for.
-        level: with which it is computed.
-        motion: the equations.
-    """
-
-    def __init__(self, starts: Starts, level: Level, motion: Motion) -> None:
-        self._starts, self._level, self._motion = starts, level, motion
-        self._ends = SurfaceInTime(motion, np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
-        self._along = SurfaceInTime(motion, ON_SURFACE) if starts.every else None
-        self._energies = Energies(motion) if starts.every and level.every == 1 else None
-
-    @property
-    def watching(self) -> tuple[Watch, ...]:
-        """What looks at each step."""
-        found: list[Watch] = [lambda u, w, way: self._ends.strain(u)]
-        if (along := self._along) is not None:
-            found.append(lambda u, w, way: along.strain(u))
-        return (*found, *filter(None, [self._energies]))
-
-    def told(self, run: Steps, g: Drive) -> _Found:
-        """Datasets of a motion by path."""
-        ends, *rest = run.watched
-        σ = self._motion.response.σ_XX(ends[1:], np.zeros_like(ends[1:]), np.zeros_like(ends[1:]))
-        found = {
-            rows.WORK.path: run.work, rows.ENERGY.path: run.energy, rows.ABSORBED.path: run.absorbed,
-            beside.OF_LOAD[FEM].path: run.work_of_load,
-            beside.OF_FRICTION[FEM].path: run.work_of_friction,
-            beside.LEFT[FEM].path: σ[:, 0], beside.RIGHT[FEM].path: σ[:, 1],
-        }  # fmt: skip
-        if self._along is not None:
-            found |= self._on_surface(rest[0], run, g)
-        if self._energies is not None:
-            found |= self._of_energies(rest[1], run, g)
-        return found
-
-    def _on_surface(self, strains: NDArray, run: Steps, g: Drive) -> _Found:
-        assert self._along is not None
-        σ_YY, ratios = [], []
-        for n in (at := self._starts.outputs // self._level.every):
-            steady = FlatPunch(self._motion.response, ratio := g(float(run.t[n - 1])))
-            σ_YY.append(self._along.pressure(run.forces[n - 1], steady.α, steady.β))
-            ratios.append(ratio)
-        pressure = np.array(σ_YY)
-        shear = np.array(ratios)[:, None] * pressure
-        σ_XX = self._motion.response.σ_XX(strains[at], pressure, shear)
-        return named(FEM, np.array([σ_XX, pressure, shear]))
-
-    def _of_energies(self, watched: NDArray, run: Steps, g: Drive) -> _Found:
-        """By changes since t = 0; what is carried along while the punch goes one way."""
-        ways = self._starts.directions(g)
-        strain, kinetic, all_strain, all_kinetic, momentum = (watched - watched[0])[1:].T
-        steps = np.diff(momentum, prepend=0.0)
-        return {
-            energy.CARRIED.path: np.cumsum(self._motion.response.c * ways * steps),
-            energy.STRAIN.path: strain, energy.KINETIC.path: kinetic,
-            energy.RADIATED.path: all_strain - strain + all_kinetic - kinetic + run.absorbed,
-        }  # fmt: skip
+_Datasets = dict[str, NDArray[np.float64]]
 
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
@@ -155,10 +84,10 @@ _Job = tuple[str, float]
 
 def follow(
     starts: Starts, solid: Solid, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
-) -> _Found:
-    """What happens over time in each start: datasets by path.
+) -> _Datasets:
+    """Motions of all starts over time: datasets by path.
 
-    Under MPI this is collective, speeds and methods are shared out, and rank 0 alone has what is found.
+    Under MPI this is collective, speeds and methods are shared out, and rank 0 alone has the datasets.
 
     Raises:
         SolveError: finite elements could not be solved.
@@ -169,23 +98,23 @@ def follow(
     jobs = [
         (name, c) for name in (FEM, SIE) if name in starts.methods for c in sorted(starts.drives)[::-1]
     ]
-    found: dict[_Job, list[_Found]] = {}
+    by_job: dict[_Job, list[_Datasets]] = {}
     of = len(starts.methods) * starts.count
     for job, courses in _computed(jobs, lambda job: _courses(job, starts, solid, clock)):
-        found[job] = courses
-        done(sum(map(len, found.values())), of)
-    return _joined(starts, solid, found) if ranks.is_root() else {}
+        by_job[job] = courses
+        done(sum(map(len, by_job.values())), of)
+    return _joined(starts, solid, by_job) if ranks.is_root() else {}
 
 
-def _courses(job: _Job, starts: Starts, solid: Solid, clock: Clock) -> list[_Found]:
+def _courses(job: _Job, starts: Starts, solid: Solid, clock: Clock) -> list[_Datasets]:
     method, c = job
     return (_finite_elements if method == FEM else _integral_equation)(starts, solid, c, clock)
 
 
 def _computed(
-    jobs: list[_Job], solve: Callable[[_Job], list[_Found]]
-) -> Iterator[tuple[_Job, list[_Found]]]:
-    """What each job gives, on rank 0."""
+    jobs: list[_Job], solve: Callable[[_Job], list[_Datasets]]
+) -> Iterator[tuple[_Job, list[_Datasets]]]:
+    """Results of each job, on rank 0."""
     if ranks.size() == 1:
         return ((job, solve(job)) for job in jobs)
     from .share import shared_out
@@ -193,44 +122,44 @@ def _computed(
     return shared_out(jobs, lambda job: iter([(job, solve(job))]))
 
 
-def _joined(starts: Starts, solid: Solid, found: dict[_Job, list[_Found]]) -> _Found:
-    """Each start a row."""
+def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
+    """Datasets by path, one row for each start."""
     t = starts.times()
     every = []
     for c, of_speed in starts.drives.items():
         for i, drive in enumerate(of_speed):
             g = np.array([drive(at) for at in t])
-            at_once = AtOnce(starts, solid, c)
-            centres = at_once.centres(g)
-            one = {
+            quasi_steady = QuasiSteady(starts, solid, c)
+            centres = quasi_steady.centres(g)
+            datasets = {
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: centres[-1],
-                rows.STEADY_K_I.path: np.array(at_once.K_I(g[-1])),
+                rows.STEADY_K_I.path: np.array(quasi_steady.K_I(g[-1])),
                 rows.CENTRES.path: centres,
                 APPROACH.path: np.array(_within(solid, c, g[-1])),
-                energy.DISSIPATED.path: starts.dissipated(c, drive),
+                rows.DISSIPATED.path: starts.dissipated(c, drive),
                 rows.DIRECTION.path: starts.directions(drive),
             }  # fmt: skip
             for method in (SIE, FEM):
-                one |= found[method, c][i] if method in starts.methods else {}
-            every.append(one)
-    joined = {path: np.array([one[path] for one in every]) for path in every[0]}
+                datasets |= by_job[method, c][i] if method in starts.methods else {}
+            every.append(datasets)
+    joined = {path: np.array([datasets[path] for datasets in every]) for path in every[0]}
     whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)} | joined
     if starts.every:
         whole |= surface_over_time.where(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
-        whole[beside.PLACES.path] = PLACES
+        whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= over_time.distances_from_steady(whole, name)
     return whole
 
 
 def _within(solid: Solid, c: float, g: float) -> float:
-    """Time from which on a start is within 1 % of steady motion, by a formula for uniform solids."""
+    """Time over a/c_s from which on a start is within 1 % of steady motion; NaN over layers."""
     return np.nan if isinstance(solid, Layered) else approach(solid, c, g).within(0.01)
 
 
-def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
+def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
     first, response = starts.ways[0], starts.response(solid, c)
     shortest = min(starts.shortest, *(drive.shortest for drive in starts.drives[c]))
     largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
@@ -242,7 +171,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
             way: StartingPunch(response, solid.limit(), first.duration, steps, terms, whole, way)
             for way in {drive.way for drive in starts.drives[c]}
         }
-        found = []
+        motions = []
         for drive in starts.drives[c]:
             punch = punches[drive.way]
             if drive.constant is None:
@@ -253,48 +182,51 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                 course, values = _of_constant(drive.constant, starts, punch, response)
             if not starts.tells_K_I:
                 values = (*values[:2], *np.full((2, len(course.t)), np.nan))
-            one = _named(SIE, values)
+            datasets = _named(SIE, values)
             if not starts.steady:
                 works = (
                     course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
                     course.σ_XX_right,
                 )  # fmt: skip
-                one |= {row.path: value for row, value in zip(beside.ALL, works)}
-            one = {path: _until_the_end(value[finer - 1 :: finer], starts) for path, value in one.items()}
+                datasets |= {row.path: value for row, value in zip(rows.ALL, works)}
+            datasets = {
+                path: _until_the_end(value[finer - 1 :: finer], starts)
+                for path, value in datasets.items()
+            }
             if starts.every:
-                one |= surface_over_time.named(
+                datasets |= surface_over_time.named(
                     SIE, _along_surface(course, finer, response, drive, starts)
                 )
-            found.append(one)
-    return found
+            motions.append(datasets)
+    return motions
 
 
 def _along_surface(
     course: Course, finer: int, response: Response, drive: Drive, starts: Starts
 ) -> NDArray[np.float64]:
-    """σ_XX, σ_YY and σ_XY when the surface is told, (3, times, places); NaN after a turn."""
+    """σ_XX, σ_YY and σ_XY along the surface at the outputs, (3, times, places); NaN after a turn."""
     assert course.surface is not None
     steady, first = FlatPunch(response, drive(0.0)), float(starts.load(0.0))
     σ_YY = steady.σ_YY(ON_SURFACE)
     before = np.array([steady.σ_XX(ON_SURFACE), σ_YY, steady.g * σ_YY])
     added = np.moveaxis(course.surface[:, finer - 1 :: finer], 0, 1)
-    told = _until_the_end(added, starts)[starts.outputs - 1] + first * before
-    return np.moveaxis(told, 0, 1)
+    stresses = _until_the_end(added, starts)[starts.outputs - 1] + first * before
+    return np.moveaxis(stresses, 0, 1)
 
 
 def _until_the_end(values: NDArray, starts: Starts) -> NDArray[np.float64]:
-    """NaN from where the punch turns round."""
-    known = np.full((starts.steps, *values.shape[1:]), np.nan)
-    known[: len(values)] = values
-    return known
+    """Values padded to the number of steps by NaN, from where the punch turns round."""
+    padded = np.full((starts.steps, *values.shape[1:]), np.nan)
+    padded[: len(values)] = values
+    return padded
 
 
 def _of_constant(
     g: float, starts: Starts, punch: StartingPunch, response: Response
 ) -> tuple[Course, tuple[NDArray, ...]]:
-    """Friction that does not change; v₀, centre, and K_I at both ends.
+    """Course under a constant friction, and its v₀, centre and K_I at both ends.
 
-    A load adds its course from rest to steady motion under a first share of it.
+    The load after t = 0 adds its course from rest to the steady motion under the load at t = 0.
     """
     first, steady = float(starts.load(0.0)), FlatPunch(response, g)
     course = punch.course(g, lambda t: starts.load(t) - first)
@@ -305,73 +237,34 @@ def _of_constant(
     return course, (course.v0, centre, K + course.K_left, K + course.K_right)
 
 
-def _named(method: str, values: Any) -> _Found:
+def _named(method: str, values: Any) -> _Datasets:
     return {row[method].path: value for row, value in zip(TOLD, values)}
 
 
-def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Found]:
-    coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
+def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
+    from .time_fem import at_level
+
+    coarse, fine = (at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = starts.load(starts.times(2))
-    found = []
-    for drive, (before, seen_before), (values, seen) in zip(starts.drives[c], coarse, fine):
+    motions = []
+    for drive, (before, probed_before), (values, probed) in zip(starts.drives[c], coarse, fine):
         every_other = [value[1::2] for value in values]
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = np.zeros(1)
         if starts.changing:
-            lean = AtOnce(starts, solid, c).centres(np.array([drive(at) for at in starts.times()]))
-        found.append(
+            lean = QuasiSteady(starts, solid, c).centres(np.array([drive(at) for at in starts.times()]))
+        motions.append(
             _named(FEM, values)
             | {
                 rows.ESTIMATE.path: np.array(largest_change(before, every_other, load, lean)),
-                **seen,
-                **surface_over_time.estimated(seen_before, seen),
+                **probed,
+                **surface_over_time.estimated(probed_before, probed),
             }
         )  # fmt: skip
-    return found
+    return motions
 
 
 def _import(clock: Clock) -> None:
-    """On every rank, for PETSc begins on all of them or waits for the others for ever."""
+    """Import dolfinx on every rank: PETSc begins on all of them, or waits for the others for ever."""
     with clock("import of dolfinx"), finite_elements_installed():
-        import galinx.solvers.fem.in_time  # noqa: F401
-
-
-def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
-    """Values, and datasets of what else is seen, of each friction at a speed."""
-    from mpi4py import MPI
-
-    from galinx.solvers.fem.dynamic import Motion
-    from galinx.solvers.fem.in_time import Phase, SlidingInTime
-    from galinx.solvers.fem.space import Space, distribute
-
-    response = starts.response(solid, c)
-    with clock("mesh"):
-        mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)
-    motion = Motion(space, response, starts.sharp)
-    solver, seen = SlidingInTime(motion, clock), Seen(starts, level, motion)
-    found = []
-    with clock("steps in time"):
-        for g in starts.drives[c]:
-            phases = [
-                Phase(g.way * way.direction, way.duration, way.steps // level.every)
-                for way in starts.ways
-            ]
-            run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady, seen.watching)
-            values = _read(run, g, motion, level.degree, starts.tells_K_I)
-            found.append((values, seen.told(run, g)))
-    solver.destroy()
-    return found
-
-
-def _read(run: Any, g: Drive, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
-    """v₀, centre, and K_I at both ends, by the exponents of the friction at each time, NaN for untold."""
-    ratios = np.array([g(t) for t in run.t])
-    read = np.empty((3, len(ratios)))
-    for ratio in np.unique(ratios):
-        at, steady = ratios == ratio, FlatPunch(motion.response, ratio)
-        one = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, degree)
-        read[:, at] = one.centre, one.K_left, one.K_right
-    if not tells_K_I:
-        read[1:] = np.nan
-    return run.v0, *read
+        from . import time_fem  # noqa: F401

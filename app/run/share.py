@@ -1,7 +1,4 @@
-"""Tasks shared out over the ranks: who is free takes the next.
-
-A counter that all ranks share: who is free takes the next number.
-"""
+"""Tasks shared out over the ranks: a free rank takes the next, by a counter that all ranks share."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
@@ -14,7 +11,7 @@ from galinx.solvers.errors import SolveError
 
 
 class Counter:
-    """Numbers from 0, each given to one rank; collective to make and to free."""
+    """Counter from 0 whose numbers each go to a single rank; collective to make and to free."""
 
     def __init__(self, comm: MPI.Comm) -> None:
         self._next = MPI.Win.Allocate(8 if comm.rank == 0 else 0, 8, comm=comm)
@@ -23,22 +20,22 @@ class Counter:
         comm.barrier()
 
     def until(self, end: int) -> Iterator[int]:
-        """This rank's numbers below ``end``."""
-        one, got = np.ones(1, dtype=np.int64), np.empty(1, dtype=np.int64)
+        """Iterate over this rank's numbers below ``end``."""
+        increment, number = np.ones(1, dtype=np.int64), np.empty(1, dtype=np.int64)
         while True:
             self._next.Lock(0)
-            self._next.Fetch_and_op(one, got, 0)
+            self._next.Fetch_and_op(increment, number, 0)
             self._next.Unlock(0)
-            if got[0] >= end:
+            if number[0] >= end:
                 return
-            yield int(got[0])
+            yield int(number[0])
 
     def free(self) -> None:
-        """End it, when every rank is done."""
+        """Free the counter, when every rank is done."""
         self._next.Free()
 
 
-#: Parts that a rank may have computed and rank 0 not yet taken in.
+#: Most parts that a rank may have computed before rank 0 takes them in.
 AHEAD = 4
 
 _Task = TypeVar("_Task")
@@ -87,15 +84,15 @@ def _taken_in(world: MPI.Comm, mine: Iterator[_Part]) -> Iterator[_Part]:
 
 
 def by_turns(items: Sequence[_Task], solve: Callable[[_Task], _Part], together: bool) -> list[_Part]:
-    """What comes of all items, on every rank, each found by one of them; collective over MPI's world.
+    """Results of all items, on every rank, each solved by one of them; collective over MPI's world.
 
     Args:
-        items: the same on every rank.
-        solve: finds one.
-        together: every rank finds all, with the others.
+        items: items, equal on every rank.
+        solve: solves an item.
+        together: True where all ranks solve each item collectively.
 
     Raises:
-        SolveError: one could not be found; on every rank.
+        SolveError: an item could not be solved; on every rank.
     """
     world = MPI.COMM_WORLD
     if together or world.size == 1:
@@ -114,5 +111,5 @@ def by_turns(items: Sequence[_Task], solve: Callable[[_Task], _Part], together: 
 
 
 def same_on_all(finished: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """What rank 0 says, on every rank."""
+    """Broadcast of rank 0's finished states, (states,), to every rank."""
     return MPI.COMM_WORLD.bcast(finished)

@@ -1,4 +1,4 @@
-"""A slider under every law of a scene."""
+"""Motion of a scene's slider under each of its loads and friction laws."""
 
 from collections.abc import Callable
 from itertools import product
@@ -13,14 +13,15 @@ from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
 from ..errors import BadInput
 from ..scene.scene import Scene
 
-#: Sliders of a scene, times at which each is archived, and steps of the last cycle.
+#: Most sliders of a scene, archived times of each, and times of the last cycle.
 MOST, TIMES, STEPS = 200, 4001, 1001
 
 
 def check_sliders(scene: Scene) -> None:
-    """
+    """Check the number of sliders of a scene.
+
     Raises:
-        BadInput: a scene asks for more sliders than are followed.
+        BadInput: a scene has more sliders than are followed.
     """
     count = scene.friction.count * len(scene.punch.loads)
     if rows.SLIDER in scene.output.quantities and count > MOST:
@@ -31,16 +32,16 @@ def check_sliders(scene: Scene) -> None:
 
 
 def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None) -> dict[str, NDArray]:
-    """How the slider of a scene moves under each of its loads and laws: datasets by path.
+    """Motions of a scene's slider under each of its loads and laws: datasets by path.
 
     Args:
         scene: the scene.
-        done: is told how many motions are done, that under way by its share, and of how many.
+        done: takes the number of motions done, the one under way by its share, and the number of all.
 
     Raises:
         BadInput: a motion could not be followed.
     """
-    slider, found = scene.slider, list[dict[str, Any]]()
+    slider, motions = scene.slider, list[dict[str, Any]]()
     assert slider is not None
     times, of = np.linspace(0.0, slider.duration, TIMES), len(scene.punch.loads) * scene.friction.count
     for n, (load, law) in enumerate(product(scene.punch.loads, scene.friction.laws())):
@@ -52,7 +53,7 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
         cycle_v, cycle_f = np.full((2, STEPS), np.nan)
         if np.isfinite(last.period):
             _, cycle_v, cycle_f = ride.at(_close(ride))
-        found.append({
+        motions.append({
             rows.POSITION.path: x, rows.VELOCITY.path: v, rows.FRICTION.path: f,
             rows.CYCLE_VELOCITY.path: cycle_v, rows.CYCLE_FRICTION.path: cycle_f,
             rows.OUTCOME.path: outcome(ride, slider.drive_speed),
@@ -60,12 +61,12 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
             rows.PEAK.path: last.peak, rows.LEAST.path: last.least,
         })  # fmt: skip
     return {rows.TIMES.path: times} | {
-        path: np.array([one[path] for one in found]) for path in found[0]
+        path: np.array([motion[path] for motion in motions]) for path in motions[0]
     }  # fmt: skip
 
 
 def _close(ride: Ride) -> NDArray[np.float64]:
-    """Times in the last cycle, close where the integration went by small steps."""
+    """Times in the last cycle [s], (STEPS,), dense where the integration took small steps."""
     assert ride.cycle is not None
     t = ride.t[ride.cycle]
     return np.interp(np.linspace(0.0, len(t) - 1.0, STEPS), np.arange(len(t)), t)

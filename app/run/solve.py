@@ -1,9 +1,8 @@
-"""From tasks to parts: every method answers, quantities are read off the answers and compared.
+"""Solution of a plan's tasks: every method solves them, quantities are evaluated and compared.
 
-States that are alike but for their load: solved once, told under every load.
-
-A half-plane has no length. So stresses over N/(2a) know no load under a flat punch, nor under one whose
-height is a power of |X|, where the half-width alone follows the load.
+States that differ in their load alone are solved once. A half-plane has no length, so stresses over
+N/(2a) do not depend on the load under a flat punch, nor under a punch whose height is a power of |X|,
+where the half-width alone follows the load (:class:`LoadScaled`).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -31,30 +30,32 @@ from .methods.method import Method, Solver
 
 
 def under_loads(states: Callable[..., Any], body: Body, g: NDArray, load: NDArray | None) -> Any:
-    """A solver's solution of states under several loads.
+    """Solution of states under several loads, by one solver.
 
     Args:
-        states: of the solver: solves for values of σ_XY/σ_YY and, if given, loads.
-        body: the task's, whose load is the first.
+        states: the solver's method that solves for values of σ_XY/σ_YY and, if given, loads.
+        body: the task's body, whose load is the first.
         g: σ_XY/σ_YY, (states,).
-        load: of each state [N/m], (states,); None where all have that of the body.
+        load: load of each state [N/m], (states,); None where all have the body's.
     """
     if load is None:
         return states(g)
     if not body.alike:
         return states(g, load)
     different, of = np.unique(g, return_inverse=True)
-    return Alike(states(different), of, body.growth(load), lambda: states(g, load))
+    return LoadScaled(states(different), of, body.growth(load), lambda: states(g, load))
 
 
-class Alike:
-    """A solution of states that are like those of another; what is not known of these is solved for each.
+class LoadScaled:
+    """Solution of states under many loads, scaled from states under a single load.
+
+    Quantities that do not scale are taken from a solution of every state by itself, when first needed.
 
     Args:
-        once: solution of states of different frictions under one load.
-        of: which of these each state is like, (states,).
-        growth: half-width of each state over that one's, (states,).
-        each: gives the solution of every state by itself, for what follows the load otherwise.
+        once: solution of states of different frictions under a single load.
+        of: index of the state in ``once`` for each state, (states,).
+        growth: half-width of each state over that of its state in ``once``, (states,).
+        each: solves every state by itself, for quantities that follow the load otherwise.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Alike:
         return self._solved()
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):  # copies ask for what is not there yet
+        if name.startswith("_"):  # copies look for attributes before they are set
             raise AttributeError(name)
         return getattr(self._each, name)
 
@@ -83,17 +84,17 @@ class Alike:
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end, (states, 2)."""
+        """K_I at the left and the right end, (states, 2)."""
         return self._once.K_I[self._of]
 
     @property
     def exponents(self) -> NDArray[np.float64]:
-        """Fitted ones, (states, 2)."""
+        """Exponents fitted from the raw pressure at X = a and X = -a, (states, 2)."""
         return self._once.exponents[self._of]
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
+        """Half-width of the contact [m], (states,)."""
         return self._once.half_width[self._of] * self._growth
 
     @property
@@ -109,22 +110,22 @@ class Alike:
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         return self._once.normal_force[self._of]
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Tangential force over N/2, (states,)."""
         return self._once.tangential_force[self._of]
 
     @property
     def residual(self) -> NDArray[np.float64]:
-        """What the pressure leaves of the integral equation, relative, (states,)."""
+        """Residual of the integral equation under the pressure, relative, (states,)."""
         return self._once.residual[self._of]
 
     @property
     def residual_inside(self) -> NDArray[np.float64]:
-        """How far stresses inside are from line loads and equilibrium, relative, (states,)."""
+        """Residual of stresses inside against line loads and equilibrium, relative, (states,)."""
         return self._once.residual_inside[self._of]
 
     @property
@@ -134,12 +135,12 @@ class Alike:
 
     @property
     def fitted(self) -> NDArray[np.float64]:
-        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
         return self._once.fitted[self._of]
 
     @property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        """Estimated relative errors, (states,), by word of output.quantities."""
         return {word: values[self._of] for word, values in self._once.estimates.items()}
 
     @cached_property
@@ -160,21 +161,21 @@ class Alike:
 
 @dataclass(frozen=True)
 class Edges:
-    """What is known of states without solving them: the local analysis of the punch's edges."""
+    """Local analysis of the punch's edges, all that needs no solution of states."""
 
     local: Any
 
 
 @dataclass(frozen=True)
 class Work:
-    """What solves the tasks of a plan.
+    """Solution of a plan's tasks by all its methods.
 
     Attributes:
         plan: the plan.
         g: σ_XY/σ_YY of all states, (states,).
-        methods: by name.
+        methods: methods by name.
         clock: takes wall time by step.
-        finished: which states need not be computed again, (states,).
+        finished: True for states that need not be computed again, (states,).
     """
 
     plan: Plan
@@ -184,13 +185,13 @@ class Work:
     finished: NDArray[np.bool_]
 
     def begin(self) -> None:
-        """What methods do once for all speeds; by all ranks together, before these are shared out."""
+        """Prepare the methods for all speeds; collective, before speeds are shared out over the ranks."""
         for method in self.methods.values():
             if hasattr(method, "begin"):
                 method.begin()
 
     def to_do(self, task: Task) -> list[slice]:
-        """Rows that are still to be computed."""
+        """Rows of a task's states that are still to be computed, chunk by chunk."""
         return [rows for rows in self.plan.chunks(task) if not self.finished[rows].all()]
 
     def parts(self, task: Task) -> Iterator[Part]:
@@ -217,7 +218,11 @@ class Work:
             yield replace(last, record=_record(task, solvers, failures))
 
     def of_states(self, task: Task, rows: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Quantities of some states of a speed by path, none compared.
+        """Quantities of states of a speed by path, without comparisons.
+
+        Args:
+            task: the speed.
+            rows: indices of the states, (n,).
 
         Raises:
             SolveError: they could not be solved.
@@ -236,31 +241,31 @@ class Work:
         return data
 
     def _all(self, task: Task, solvers: Mapping[str, Solver], failures: "_Failures") -> Iterator[Part]:
-        """Parts of all that is to be computed; takes down what could not be."""
-        for some in self._batches(task):
-            found = dict(failures.whole)
-            parts = list(self._parts(task, some, solvers, found))
-            if found == failures.whole or len(task.loads) == 1 or task.body.alike:
-                failures.whole = found
-                failures.solved |= len(task.loads) > 1 and not found
+        """Parts of all rows still to be computed; reasons of failures are added to ``failures``."""
+        for runs in self._batches(task):
+            reasons = dict(failures.whole)
+            parts = list(self._parts(task, runs, solvers, reasons))
+            if reasons == failures.whole or len(task.loads) == 1 or task.body.alike:
+                failures.whole = reasons
+                failures.solved |= len(task.loads) > 1 and not reasons
                 yield from parts
                 continue
-            # Under some of its loads a contact may have no answer: the others are told all the same.
-            for load, one in self._by_load(some):
-                found = dict(failures.whole)
-                yield from self._parts(task, one, solvers, found)
-                failures.take(load, found)
+            # Under some of its loads a contact may have no answer: the others are solved all the same.
+            for load, runs_of_load in self._by_load(runs):
+                reasons = dict(failures.whole)
+                yield from self._parts(task, runs_of_load, solvers, reasons)
+                failures.take(load, reasons)
 
-    def _by_load(self, some: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
-        """Runs of states, cut so that each has one load."""
-        for rows in some:
+    def _by_load(self, runs: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
+        """Runs of states, cut so that each has a single load, with that load [N/m]."""
+        for rows in runs:
             loads = self.plan.load(rows)
             first = np.flatnonzero(np.diff(loads, prepend=np.nan)).tolist()
             for start, stop in zip(first, [*first[1:], len(loads)]):
                 yield float(loads[start]), [slice(rows.start + start, rows.start + stop)]
 
     def _batches(self, task: Task) -> list[list[slice]]:
-        """Rows that are still to be computed, so many at a time as a chunk has."""
+        """Rows that are still to be computed, in batches of at most a chunk."""
         batches: list[list[slice]] = []
         room = 0
         for rows in self.to_do(task):
@@ -273,16 +278,16 @@ class Work:
         return batches
 
     def _together(self, name: str, task: Task) -> bool:
-        """Does one solver know the states of a method under all loads?"""
+        """True where a single solver takes the states of a method under all loads."""
         return len(task.loads) == 1 or METHODS[name].loads
 
     def _parts(
-        self, task: Task, some: Sequence[slice], solvers: Mapping[str, Solver], failures: dict[str, str]
+        self, task: Task, runs: Sequence[slice], solvers: Mapping[str, Solver], failures: dict[str, str]
     ) -> Iterator[Part]:
-        """Results of some runs of states, which are solved together."""
-        g, load = np.concatenate([self.g[rows] for rows in some]), None
+        """Results of runs of states, which are solved together."""
+        g, load = np.concatenate([self.g[rows] for rows in runs]), None
         if len(task.loads) > 1:
-            load = np.concatenate([self.plan.load(rows) for rows in some])
+            load = np.concatenate([self.plan.load(rows) for rows in runs])
         body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
             data = self._of(LOCAL, Edges(_local(task, g, body)), body)
@@ -300,30 +305,32 @@ class Work:
                 if quantity.of_data:
                     data[quantity.path] = quantity.of_data(data)
             first = 0
-            for rows in some:
+            for rows in runs:
                 own = slice(first, first + rows.stop - rows.start)
                 of_run = {path: values[own] for path, values in data.items()}
                 N = body.load if load is None else load[own]
-                found = [] if failures else self._compared(of_run, g[own], N)
-                yield Part(rows, of_run, found, None)
+                compared = [] if failures else self._compared(of_run, g[own], N)
+                yield Part(rows, of_run, compared, None)
                 first = own.stop
 
     def _read(
         self, name: str, solver: Solver | None, task: Task, g: NDArray, load: NDArray | None
     ) -> dict[str, NDArray]:
-        """What a method's solution of states gives; without a solver each load has one of its own."""
+        """Quantities of states by one method, by path; if no solver is given, each load has its own."""
         if solver is not None:
             solution = under_loads(solver.states, task.body, g, load)
             return self._of(name, solution, task.body.loaded(load))
         assert load is not None
-        found = self._unknown(name, len(g))
+        data = self._unknown(name, len(g))
         for N in np.unique(load).tolist():
-            some = np.flatnonzero(load == N)
+            rows_of_load = np.flatnonzero(load == N)
             alone = replace(task, body=task.body.loaded(N), loads=(N,))
-            with self.methods[name].at(alone, np.unique(g[some])) as one:
-                for path, values in self._of(name, one.states(g[some]), alone.body).items():
-                    found[path][some] = values
-        return found
+            with self.methods[name].at(alone, np.unique(g[rows_of_load])) as solver_of_load:
+                for path, values in self._of(
+                    name, solver_of_load.states(g[rows_of_load]), alone.body
+                ).items():
+                    data[path][rows_of_load] = values
+        return data
 
     def _of(self, method: str, solution: Any, body: Body) -> dict[str, NDArray]:
         return {
@@ -345,7 +352,7 @@ class Work:
 
 
 def _local(task: Task, g: NDArray, body: Body) -> Any:
-    """Exponents at the ends of states."""
+    """Exponents of the pressure at the ends of states."""
     if not body.layered:
         return local_exponents(task.response, g, body.profile, body.compression)
     from galinx.solvers.layers import free_contact  # SciPy's special functions, a slow import
@@ -355,38 +362,38 @@ def _local(task: Task, g: NDArray, body: Body) -> Any:
     )
 
 
-#: What the time to read a method's solutions is told as.
+#: Clock's step for the evaluation of a method's solutions, by method.
 _STEPS = {"fem": "recovery", "closed_form": "closed form"}
 
 
 @dataclass
 class _Failures:
-    """What could not be solved at a speed, and why, by method.
+    """Reasons of failures at a speed, by method.
 
     Attributes:
-        whole: all of it, from some state on.
-        some: states under some loads, the first of these told.
-        solved: were states under another load?
+        whole: reasons why states under any load could not be solved.
+        of_loads: reasons why states under single loads could not, with the first of these loads.
+        solved: True where states under another load were solved.
     """
 
     whole: dict[str, str] = field(default_factory=dict)
-    some: dict[str, str] = field(default_factory=dict)
+    of_loads: dict[str, str] = field(default_factory=dict)
     solved: bool = False
 
-    def take(self, load: float, found: Mapping[str, str]) -> None:
-        """What was found of the states under a load."""
-        for name in found.keys() - self.whole.keys():
-            self.some.setdefault(name, f"N = {load:g} N/m: {found[name]}")
-        self.solved |= not found
+    def take(self, load: float, reasons: Mapping[str, str]) -> None:
+        """Take in the reasons, by method, for states under a load [N/m]; empty where solved."""
+        for name in reasons.keys() - self.whole.keys():
+            self.of_loads.setdefault(name, f"N = {load:g} N/m: {reasons[name]}")
+        self.solved |= not reasons
 
 
 def _record(task: Task, solvers: Mapping[str, Solver], failures: _Failures) -> dict[str, Any] | None:
     """Numbers of the work at a speed, None where no method has any."""
-    speed, told = {"speed": task.number, "c": task.response.c}, failures.some | failures.whole
+    speed, reasons = {"speed": task.number, "c": task.response.c}, failures.of_loads | failures.whole
     numbers: dict[str, Any] = {}
-    if failures.solved or not told:
+    if failures.solved or not reasons:
         numbers = {key: value for solver in solvers.values() for key, value in solver.record().items()}
-    if told:
-        failure = {"failure": "; ".join(told.values()), "solved": failures.solved}
+    if reasons:
+        failure = {"failure": "; ".join(reasons.values()), "solved": failures.solved}
         return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
     return numbers | speed if numbers else None

@@ -14,30 +14,33 @@ from galinx.solvers.solids import SOLIDS
 
 from ..errors import BadInput, excerpt, nearest, short
 
-#: What a material gives, or may not have.
+#: Keys that a material sets, or that a solid of another kind may not have.
 _CONSTANTS = ["solid.kind", "solid.yield_strength"] + [
     f"solid.{key}" for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
 ]
 
-#: Characters of a text that is put in: the time that tomlkit takes grows with their square.
+#: Longest text that a change may set, in characters: the time of tomlkit grows with their square.
 _LONGEST = 10_000
 
 
-#: The value of a key that is to be taken away, and has to be there.
+#: The value of a key that is to be removed, and has to exist.
 UNSET = object()
 
 
 def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any]:
     """Changes as the command line gives them: ``section.key=value``, the value as in TOML.
 
-    What is no TOML value is a text: ``solid.E=70 GPa`` needs no quotes.
+    A value that is not TOML is taken as a text: ``solid.E=70 GPa`` needs no quotes.
 
     Args:
-        words: of ``--set``.
-        unset: keys to be taken away.
+        words: arguments of ``--set``.
+        unset: arguments of ``--unset``, keys to be removed.
+
+    Returns:
+        New values by ``"section.key"``; ``UNSET`` for keys to be removed.
 
     Raises:
-        BadInput: a word without key or value, or not UTF-8; a key that is both set and taken away.
+        BadInput: a word without key or value, or not UTF-8; a key that is both set and removed.
     """
     changes: dict[str, Any] = {}
     for word in words:
@@ -65,22 +68,22 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
     Args:
         text: TOML.
-        changes: new values by ``"section.key"``, or ``"title"``; None takes a key away if it is there,
-            ``UNSET`` one that has to be, and ``"solid.material"`` the constants not among the changes.
-        name: stands in messages.
+        changes: new values by ``"section.key"``, or ``"title"``; None removes a key if it exists,
+            ``UNSET`` one that has to exist, and ``"solid.material"`` the constants not among the changes.
+        name: of the scene, for messages.
 
     Raises:
-        BadInput: the text is not TOML, a key is not of that form, or one to be taken away is not there.
+        BadInput: the text is not TOML, a key is not of that form, or one to be removed does not exist.
     """
     try:
         tree = tomlkit.parse(text)
-        known = [*_keys(tree)]
-        if stale := [path for path in _stale(tree, changes) if path in known]:
+        keys = [*_keys(tree)]
+        if stale := [path for path in _stale(tree, changes) if path in keys]:
             changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
-            if value is UNSET and path not in known:
-                raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, known)}")
-            if value is not None or path in known:
+            if value is UNSET and path not in keys:
+                raise ValueError(f"found no key {excerpt(path)} to take away{nearest(path, keys)}")
+            if value is not None or path in keys:
                 _change(tree, path, None if value is UNSET else value)
         return tomlkit.dumps(tree)
     except (TOMLKitError, ValueError, TypeError) as error:
@@ -90,7 +93,7 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
 
 
 def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Constants of the old model where another takes its place: they would not fit."""
+    """Keys of parameters of the old solid, law or profile that a new one does not have."""
     return [
         *_of_old_solid(tree, changes),
         *_of_old_model("friction.model", LAWS, tree, changes),
@@ -101,12 +104,20 @@ def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
 def _of_old_model(
     choice: str, models: Mapping[str, Any], tree: Any, changes: Mapping[str, Any]
 ) -> list[str]:
+    """Keys of a section that only models other than the newly chosen one have.
+
+    Args:
+        choice: key that names the model, as ``"friction.model"``.
+        models: classes by name.
+        tree: the scene.
+        changes: new values by key.
+    """
     section = choice.partition(".")[0]
     model, keys = changes.get(choice), tree.get(section)
     if not isinstance(model, str) or model not in models or not isinstance(keys, dict):
         return []
     own = parameters(models[model])
-    every = {key for known in models.values() for key in parameters(known)}
+    every = {key for kind in models.values() for key in parameters(kind)}
     stale = [
         f"{section}.{key}" for key in keys if _parameter(key) in every and _parameter(key) not in own
     ]
@@ -116,11 +127,12 @@ def _of_old_model(
 
 
 def _parameter(key: str) -> str:
-    """The parameter that follows from a key."""
+    """Name of the parameter that a key sets."""
     return "sigma0_over_load" if key == "sigma0" else key
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
+    """Keys of section [solid] that the newly chosen material or kind replaces or does not have."""
     if "solid.material" in changes:
         return _CONSTANTS
     solid = tree.get("solid")
@@ -133,12 +145,13 @@ def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
 
 
 def _keys(tree: Mapping[str, Any]) -> Iterator[str]:
-    """Keys of a scene as changes name them."""
+    """Keys of a scene, as ``"section.key"`` or ``"title"``."""
     for name, value in tree.items():
         yield from (f"{name}.{key}" for key in value) if isinstance(value, dict) else [name]
 
 
 def _change(tree: Any, path: str, value: Any) -> None:
+    """Set a key of a scene in place, or remove it where the value is None."""
     *sections, key = path.split(".")
     if len(sections) > 1 or (not sections and key != "title"):
         raise ValueError(f"found {excerpt(path)}, expected section.key, as in friction.mu_c")
@@ -155,7 +168,7 @@ def _change(tree: Any, path: str, value: Any) -> None:
 
 
 def _item(value: Any) -> Any:
-    """A value for tomlkit, whose time to make a list, unlike that to read one, grows with its square."""
+    """A value as tomlkit holds it; lists are parsed, as the time to build one grows with its square."""
     if isinstance(value, dict) and not isinstance(value, Item):  # a range; stays in its line
         (table := tomlkit.inline_table()).update(value)
         return table

@@ -1,6 +1,7 @@
-"""Solids by name, with the source of their constants: the table of ``materials.toml``.
+"""The library of scenes: materials and example scenes by name.
 
-Scenes to begin with: those of the folder scenes, by name.
+Materials are solids with their constants and the source of these, from the table ``materials.toml``.
+Templates are the scenes of the folder ``scenes``, to begin with.
 """
 
 import tomllib
@@ -11,15 +12,15 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Material:
-    """A known solid.
+    """A solid of the library.
 
     Attributes:
-        about: what it is.
-        kind: of solid.
-        values: its constants by key, as a scene writes them.
-        source: where they are printed.
-        yield_strength, yield_source: uniaxial, as a scene writes it, and where that is printed; "" of
-            what breaks rather than yields.
+        about: description of the material.
+        kind: name of the kind of solid.
+        values: constants by key, as a scene writes them.
+        source: publication of the constants.
+        yield_strength, yield_source: uniaxial yield strength as a scene writes it, and its publication;
+            "" for solids that break rather than yield.
     """
 
     about: str
@@ -31,22 +32,22 @@ class Material:
 
     @property
     def constants(self) -> dict[str, Any]:
-        """What a scene's section [solid] takes over."""
+        """Keys and values that a scene's section [solid] takes from the material."""
         strength = {"yield_strength": self.yield_strength} if self.yield_strength else {}
         return {"kind": self.kind} | self.values | strength
 
     @property
     def told(self) -> str:
-        """Its constants in a line."""
+        """Constants of the material in one line, each with its unit or "dimensionless"."""
         unit = {key: " (dimensionless)" for key, value in self.values.items() if isinstance(value, float)}
         return ", ".join(f"{key} = {value}{unit.get(key, '')}" for key, value in self.values.items())
 
 
 def _material(entry: dict[str, Any]) -> Material:
-    """From its table, in which what is no attribute is a constant."""
+    """A material from its table, in which every key that is no attribute is a constant."""
     names = ("about", "source", "yield_strength", "yield_source")
-    known = {name: entry.pop(name) for name in names if name in entry}
-    return Material(kind=entry.pop("kind", "isotropic"), values=entry, **known)
+    attributes = {name: entry.pop(name) for name in names if name in entry}
+    return Material(kind=entry.pop("kind", "isotropic"), values=entry, **attributes)
 
 
 #: Solids by the name that scenes use.
@@ -61,13 +62,13 @@ LIBRARY = {
 #: Scenes that are part of the program.
 SCENES = Path(__file__).parents[2] / "scenes"
 
-#: What editors look for; a scene that is copied elsewhere leaves the schema behind.
+#: Line by which editors find the schema; a scene that is copied elsewhere leaves the schema behind.
 _SCHEMA = "#:schema scene.schema.json\n"
 
 
 @dataclass(frozen=True)
 class Template:
-    """A scene to begin with: its name, what it is about, and its text."""
+    """A scene to begin with: its name, its first line as a description, and its text."""
 
     name: str
     about: str
@@ -75,10 +76,10 @@ class Template:
 
 
 def templates() -> dict[str, Template]:
-    """All of them by name."""
-    found = {}
+    """All templates by name."""
+    by_name = {}
     for path in sorted(SCENES.glob("*.toml")):
         text = path.read_text(encoding="utf-8").removeprefix(_SCHEMA)
         about = text.splitlines()[0].removeprefix("# ")
-        found[path.stem] = Template(path.stem, about, text)
-    return found
+        by_name[path.stem] = Template(path.stem, about, text)
+    return by_name

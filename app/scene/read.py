@@ -1,10 +1,9 @@
-"""Scenes are read: TOML with units, checked before any work starts.
+"""Reading of scenes: TOML with units, all of whose faults are listed before any work starts.
 
-Keys and sections that a scene has twice, which TOML's reader refuses without naming them.
-
-Every text of a scene is looked at before any work: HDF5 refuses some at the end.
-
-Tables of a scene that stand in files of their own: comma-separated values take the file's place.
+A scene's text is read in four steps. A table that stands in a file of comma-separated values takes the
+place of the file's name. TOML is parsed; keys and sections that a scene has twice, which TOML's reader
+refuses without naming them, are named. Every text is checked for control characters, which HDF5 would
+refuse only when results are archived. Then each section checks its keys.
 """
 
 import csv
@@ -33,16 +32,16 @@ _KEY = re.compile(r"\s*([\"']?)([\w.-]+)\1\s*=")
 
 
 def repeated(text: str, said: str) -> str:
-    """What a scene has twice, and where, for a message; "" where the reader says something else.
+    """A message that names the key or section that a scene has twice; "" for any other fault.
 
     Args:
         text: of the scene.
-        said: by TOML's reader.
+        said: message of TOML's reader.
     """
-    found = _AT.match(said)
-    if not found:
+    match = _AT.match(said)
+    if not match:
         return ""
-    lines, last = text.splitlines(), int(found[1])
+    lines, last = text.splitlines(), int(match[1])
     section = ""
     places: dict[str, int] = {}
     for number, line in enumerate(lines[:last], 1):
@@ -59,7 +58,7 @@ def repeated(text: str, said: str) -> str:
 
 
 def control_characters(tree: dict[str, Any]) -> Iterator[str]:
-    """A fault for each text or key of a scene with a control character; its place is named."""
+    """Faults of texts and keys of a scene with a control character, each with its place."""
     waiting: deque[tuple[str, Any]] = deque([("", tree)])  # deeper than Python's calls may be
     while waiting:
         place, value = waiting.popleft()
@@ -68,70 +67,72 @@ def control_characters(tree: dict[str, Any]) -> Iterator[str]:
                 yield f"{place}: {fault}"
         elif isinstance(value, list):
             texts = (str, list, dict)
-            waiting += ((f"{place}[{i}]", one) for i, one in enumerate(value) if isinstance(one, texts))
+            waiting += (
+                (f"{place}[{i}]", entry) for i, entry in enumerate(value) if isinstance(entry, texts)
+            )
         elif isinstance(value, dict):
-            for key, one in value.items():
+            for key, entry in value.items():
                 inside = f"{place}.{repr(key)[1:-1]}".removeprefix(".")
                 if fault := unseen(key):
                     yield f"the key {inside}: {fault}"
-                waiting.append((inside, one))
+                waiting.append((inside, entry))
 
 
-#: Bytes of a file, and the most rows that are put into a scene.
+#: Most bytes of a file of rows, and most rows of it.
 _LARGEST_TABLE, _MOST = 10**7, 10_000
-#: How names of such files end.
+#: End of the names of such files.
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
 #: A column's head: its name, and its unit in brackets.
 _HEAD = re.compile(r"[^\[\]()]*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 
 def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) -> str:
-    """A scene's text with the rows themselves where it names a file of rows.
+    """A scene's text with rows of numbers in place of the names of files that hold them.
 
     So the scene, and the archive that keeps it, needs no other file any more.
 
     Args:
-        text: TOML; returned as it is where it names no file, and where it is no TOML.
+        text: TOML; returned unchanged where it names no file, and where it is no TOML.
         sections: of scenes, by name.
-        folder: that the files' names start from.
+        folder: from which names of files are resolved.
         name: of the scene, for messages.
 
     Raises:
-        BadInput: a file cannot be read, or is no table of the columns that the key wants.
+        BadInput: a file cannot be read, or is no table of the columns that the key expects.
     """
     if not _NAMED.search(text):
         return text
     try:
         tree = tomllib.loads(text)
     except (ValueError, RecursionError):
-        return text  # told of by who reads the scene
-    found = {}
+        return text  # the scene's reader reports it
+    tables = {}
     for path, rows, file in _named(tree, sections):
         try:
-            found[path] = _read(folder / file, rows.units)
+            tables[path] = _read(folder / file, rows.units)
         except ValueError as error:
             raise BadInput(f"{name}, {path}: {error}") from None
-    if not found:
+    if not tables:
         return text
     from .changes import changed  # an import that only changes pay for
 
-    return changed(text, found, name)
+    return changed(text, tables, name)
 
 
 def _named(tree: Mapping[str, Any], sections: Mapping[str, Section]) -> Iterator[tuple[str, Rows, str]]:
-    """Keys whose rows are in a file, with what they want and the file's name."""
+    """Keys whose rows are in a file, each with its kind and the file's name."""
     for section, given in tree.items():
         if section not in sections or not isinstance(given, dict):
             continue
-        for key, known in sections[section].keys(given).items():
-            kind = known.kind.kind if isinstance(known.kind, Wrapped) else known.kind
+        for key, entry in sections[section].keys(given).items():
+            kind = entry.kind.kind if isinstance(entry.kind, Wrapped) else entry.kind
             file = given.get(key)
             if isinstance(kind, Rows) and isinstance(file, str) and _NAMED.search(f'{file}"'):
                 yield f"{section}.{key}", kind, file
 
 
 def _read(path: Path, units: tuple[str, ...]) -> list[list[float]]:
-    """Rows in SI units.
+    """Rows of a file of comma-separated values, in SI units.
 
     Raises:
         ValueError: the message names the file and the line.
@@ -156,20 +157,20 @@ def _read(path: Path, units: tuple[str, ...]) -> list[list[float]]:
 
 
 def _factors(path: Path, line: int, heads: list[str], units: tuple[str, ...]) -> list[float]:
-    """Units of the columns in SI, from their heads."""
+    """Factors that bring the columns' numbers to SI, from the units in their heads; (columns,)."""
     if len(heads) != len(units):
         raise ValueError(_wrong_width(path, line, heads, len(units)))
-    found = []
+    factors = []
     for head, unit in zip(heads, units):
         match = _HEAD.fullmatch(head)
         if match is None:
             raise ValueError(f"{path}, line {line}: found {excerpt(head)}, expected as in X [mm]")
         given = match[1] or ""
         try:
-            found.append(1.0 if given in ("", "1") else to_si(f"1 {given}", unit))
+            factors.append(1.0 if given in ("", "1") else to_si(f"1 {given}", unit))
         except ValueError as error:
             raise ValueError(f"{path}, line {line}, {head.strip()}: {error}") from None
-    return found
+    return factors
 
 
 def _numbers(path: Path, line: int, row: list[str], factors: list[float]) -> list[float]:
@@ -181,9 +182,9 @@ def _numbers(path: Path, line: int, row: list[str], factors: list[float]) -> lis
     return [factor * float(cell) for factor, cell in zip(factors, row)]
 
 
-def _wrong_width(path: Path, line: int, row: list[str], wanted: int) -> str:
+def _wrong_width(path: Path, line: int, row: list[str], columns: int) -> str:
     return (
-        f"{path}, line {line}: found {len(row)} columns, {excerpt(','.join(row))}; expected {wanted}, "
+        f"{path}, line {line}: found {len(row)} columns, {excerpt(','.join(row))}; expected {columns}, "
         "separated by commas"
     )
 
@@ -195,13 +196,13 @@ def _is_number(cell: str) -> bool:
         return False
 
 
-#: Bytes of a scene; a million speeds fit, and what has no end is not read for ever.
+#: Most bytes of a scene: a million speeds fit, and a file without an end is not read for ever.
 _LARGEST = 50 * 10**6
 
-#: How archives begin, and HDF5 files that were written without a seal.
+#: First bytes of archives, and of HDF5 files that were written without a seal.
 _ARCHIVES = (b"galinx archive\n", b"\x89HDF\r\n\x1a\n")
 
-#: Faults that a message lists at most.
+#: Most faults that a message lists.
 _FAULTS = 30
 
 
@@ -241,7 +242,11 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
 
 
 def parse(text: str, name: str = "scene") -> Scene:
-    """Check a scene's text; ``name`` stands in messages.
+    """A checked scene from its text.
+
+    Args:
+        text: TOML.
+        name: of the scene, for messages.
 
     Raises:
         BadInput: with all faults of the scene in one message.
@@ -275,36 +280,38 @@ def parse(text: str, name: str = "scene") -> Scene:
     lines = [f"  {fault}" for fault in faults[:_FAULTS]]
     if len(faults) > _FAULTS:
         lines.append(f"  and {len(faults) - _FAULTS} more")
-    told = "\n".join(lines)
-    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{told}")
+    listed = "\n".join(lines)
+    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
 def _fill_in_material(tree: dict[str, Any]) -> None:
-    """Values of a known solid; those that the scene gives itself stay."""
+    """Fill in the constants of the material that a scene names; those that the scene gives stay."""
     solid = tree.get("solid")
     if isinstance(solid, dict):
         name = solid.get("material")
         if isinstance(name, str):
-            # Those of a name that there is not are not missing: that is one fault, and found.
-            known = LIBRARY.get(name) or next(iter(LIBRARY.values()))
-            tree["solid"] = known.constants | solid
+            # An unknown name is one fault, which its key reports: no constant shall be missing besides.
+            material = LIBRARY.get(name) or next(iter(LIBRARY.values()))
+            tree["solid"] = material.constants | solid
 
 
 def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:
-    """σ₀ l/N of a stiffness that is given apart from the load; faults of both together."""
+    """Replace a stiffness σ₀ by σ₀ l/N, σ₀ over the load; returns the faults of both together."""
     friction, punch = tree.get("friction"), tree.get("punch", {})
     if not isinstance(friction, dict) or not isinstance(punch, dict) or "sigma0" not in friction:
         return []
-    known, load = (SECTIONS[name].keys(tree.get(name, {})) for name in ("friction", "punch"))
-    if "sigma0" not in known:
+    friction_keys, punch_keys = (
+        SECTIONS[name].keys(tree.get(name, {})) for name in ("friction", "punch")
+    )
+    if "sigma0" not in friction_keys:
         return []  # the section says that there is no such key
     if "sigma0_over_load" in friction:
         return ["friction: sigma0 and sigma0_over_load exclude each other; keep one"]
     # What cannot be read is a fault of its own section, where the other is not missing then.
     tree["friction"] = friction | {"sigma0_over_load": 1.0}
     try:
-        stiffness = known["sigma0"].kind(friction["sigma0"])
-        loads = load["load"].kind(punch["load"]) if "load" in punch else load["load"].default
+        stiffness = friction_keys["sigma0"].kind(friction["sigma0"])
+        loads = punch_keys["load"].kind(punch["load"]) if "load" in punch else punch_keys["load"].default
     except ValueError:
         return []
     if len(loads) > 1:

@@ -1,6 +1,7 @@
-"""What a scene says, section by section; numbers are in SI.
+"""A checked scene, section by section, with numbers in SI.
 
-Does a scene make sense? Keys that contradict each other, and values that look unusual.
+Here are also the checks that need more than one key: :func:`contradictions` lists keys that exclude or
+need each other, :func:`oddities` values that look unusual, because their unit may not be as meant.
 """
 
 import hashlib
@@ -34,12 +35,12 @@ from .values import Spread
 
 @dataclass(frozen=True)
 class HalfPlane:
-    """[solid]: an elastic solid, and what else is known of it.
+    """[solid]: an elastic solid, and its material.
 
     Attributes:
-        solid: the solid.
+        solid: elastic constants and density.
         material: name in the library, None where the scene gives all constants itself.
-        yield_strength: uniaxial [Pa], None where it is not given.
+        yield_strength: uniaxial yield strength [Pa], None where it is not given.
     """
 
     solid: Solid
@@ -60,7 +61,7 @@ class Punch:
         return self.loads[0]
 
 
-#: The most laws that tables of a friction section may list: each is held by itself.
+#: Most laws that the tables of a friction section may list: each is held by itself.
 _MOST_LISTED = 100_000
 
 
@@ -86,26 +87,26 @@ class Friction:
     vary: tuple[dict[str, tuple[Any, ...]], ...] = ()
 
     def __post_init__(self) -> None:
-        count = sum(prod(map(len, one.values())) for one in self._products)
+        count = sum(prod(map(len, lists.values())) for lists in self._products)
         if self.vary and count > _MOST_LISTED:
             raise ValueError(f"vary: found {count} laws, expected at most {_MOST_LISTED} in all tables")
 
     @property
     def _products(self) -> list[dict[str, tuple[Any, ...]]]:
         """Values of each parameter by key, for every product that is computed."""
-        return [self.parameters | one for one in self.vary] or [self.parameters]
+        return [self.parameters | table for table in self.vary] or [self.parameters]
 
     @cached_property
     def _listed(self) -> list[tuple[Any, ...]]:
         """Parameters of every law of the tables, each law once."""
-        every = (product(*one.values()) for one in self._products)
+        every = (product(*lists.values()) for lists in self._products)
         return list(dict.fromkeys(chain.from_iterable(every)))
 
     @property
     def values(self) -> dict[str, tuple[Any, ...]]:
         """All values that a parameter takes, by key."""
         return {
-            key: tuple(dict.fromkeys(chain.from_iterable(one[key] for one in self._products)))
+            key: tuple(dict.fromkeys(chain.from_iterable(lists[key] for lists in self._products)))
             for key in self.parameters
         }
 
@@ -124,8 +125,8 @@ class Friction:
             yield made(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
-        """Parameters of every law by key, each (count,), without tables, which all laws share."""
-        single = [key for key, known in parameters(self.law).items() if known.single]
+        """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
+        single = [key for key, parameter in parameters(self.law).items() if parameter.single]
         if self.vary:
             columns = dict(zip(self.parameters, zip(*self._listed)))
             return {key: np.array(columns[key]) for key in self.parameters if key in single}
@@ -136,17 +137,17 @@ class Friction:
                 columns_[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
         return columns_
 
-    def together(self, columns: dict[str, NDArray], some: slice) -> FrictionLaw:
-        """Some laws as one that stands for all of them.
+    def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
+        """A law whose parameters are arrays, which stands for many laws at once.
 
         Args:
-            columns: of this.
-            some: which.
+            columns: parameters of every law, from :meth:`columns`.
+            rows: the laws that it stands for.
 
         Raises:
             ValueError: a law refuses its parameters.
         """
-        return made(self.law, {key: values[some, None] for key, values in columns.items()})
+        return made(self.law, {key: values[rows, None] for key, values in columns.items()})
 
     @property
     def stress_ratio(self) -> float:
@@ -175,7 +176,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Solve:
-    """[solve]: methods and what they are given, see the keys."""
+    """[solve]: methods and their options, as the section's keys describe them."""
 
     methods: tuple[str, ...]
     tolerance: float
@@ -190,18 +191,18 @@ class Solve:
 
     @property
     def own_pressure(self) -> bool:
-        """Is a pressure of the user's own put in?"""
+        """True where the scene prescribes a pressure of its own, not that of a closed form."""
         return self.mode == "traction" and self.pressure != "closed_form"
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """Words by which quantities and rules say that they are of this mode."""
+        """Names of the modes, by which quantities and rules that apply are selected."""
         return ("", self.mode, OWN_PRESSURE) if self.own_pressure else ("", PUNCH, self.mode)
 
 
 @dataclass(frozen=True)
 class Output:
-    """[output]: words for quantities, and where stresses inside are wanted, over a."""
+    """[output]: names of groups of quantities, and points of stresses inside the solid, over a."""
 
     quantities: tuple[str, ...]
     points: tuple[tuple[float, float], ...] = ()
@@ -209,7 +210,7 @@ class Output:
 
     @property
     def inside(self) -> NDArray[np.float64]:
-        """All points inside, (n, 2): first the map's, by rows of Y, then the single ones."""
+        """All points inside the solid over a, (n, 2): the map's by rows of Y, then the single ones."""
         single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
         if self.map is None:
             return single
@@ -219,16 +220,16 @@ class Output:
 
 @dataclass(frozen=True)
 class Time:
-    """[time]: what happens over time; times over a/c_s.
+    """[time]: a motion in time; times over a/c_s.
 
     Attributes:
         end: last time.
-        step: of the finite elements, None where the tolerance sets it.
-        load_ramp: time within which the load comes on.
-        load: times and shares of N instead of that, from t = 0 on, or none.
-        steady: does it begin in steady motion, not at rest?
-        by_law: does friction change by its law along the strokes, or stay that of a state?
-        every: time between those at which stresses along the surface are told, None for none.
+        step: time step of the finite elements, None where the tolerance sets it.
+        load_ramp: time within which the load rises from 0 to N.
+        load: times and shares of N in place of the ramp, from t = 0 on; empty for the ramp.
+        steady: True where the motion begins in steady motion, not at rest.
+        by_law: True where friction changes by its law along the strokes, False where it is constant.
+        every: time from one output of stresses along the surface to the next, None for none.
     """
 
     end: float
@@ -246,11 +247,11 @@ class Scene:
 
     Attributes:
         title: free text.
-        text: the TOML it came from, byte for byte as archived.
+        text: its TOML, byte for byte as archived.
         half_plane, punch, friction, motion, solve, output: its sections.
         slider: a mass on a spring, None for none.
-        layers: on the solid, from the top down.
-        time: what happens over time, None for none.
+        layers: layers on the solid, from the top down.
+        time: a motion in time, None for none.
     """
 
     title: str
@@ -291,12 +292,12 @@ class Scene:
 
     @cached_property
     def body(self) -> Body:
-        """What slides over what, under the first load; a pressure of the user's own is not among it."""
+        """Contact of the punch and the solid under the first load, without a prescribed pressure."""
         return Body(self.solid, self.punch.profile, self.punch.load, None, self.half_plane.yield_strength)
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """Words by which quantities and rules say that they are of this mode."""
+        """Names of the modes, by which quantities and rules that apply are selected."""
         own = self.solve.own_pressure
         return (*self.solve.modes, *(FOUND,) * self.body.found, *(FINITE,) * (own or self.body.finite))
 
@@ -306,7 +307,7 @@ class Scene:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-#: Words of output.quantities that need no contact.
+#: Names in output.quantities that need no contact.
 FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
 #: Usual lengths of a stroke [m].
 _STROKE = (1e-10, 1.0)
@@ -317,39 +318,39 @@ _ATOMS = 1e-9
 
 
 def contradictions(scene: Scene) -> list[str]:
-    """Faults that no key has alone, one sentence each."""
+    """Faults of keys that exclude or need one another, one sentence each."""
     faults: list[str] = []
-    asked, solve = set(scene.output.quantities), scene.solve
+    quantities, solve = set(scene.output.quantities), scene.solve
     faults += _of_motion(scene)
-    if (contact := sorted(asked - FRICTIONS)) and not solve.methods:
+    if (contact := sorted(quantities - FRICTIONS)) and not solve.methods:
         faults.append(
             f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
             "closed_form, fem or both"
         )
-    if (SLIDER in asked) != (scene.slider is not None):
+    if (SLIDER in quantities) != (scene.slider is not None):
         faults.append(
             'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
             "drive_speed and duration"
         )
-    if (TIME in asked) != (scene.time is not None):
+    if (TIME in quantities) != (scene.time is not None):
         faults.append('time: the quantity "time" and the section [time] go together, with end')
-    if ("interior" in asked) != bool(scene.output.points or scene.output.map):
+    if ("interior" in quantities) != bool(scene.output.points or scene.output.map):
         faults.append(
             'output: the quantity "interior" and output.points or output.map go together, as in points = '
             "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
             "to, number)"
         )
-    if "yield" in asked and scene.half_plane.yield_strength is None:
+    if "yield" in quantities and scene.half_plane.yield_strength is None:
         faults.append(
             'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
             '"205 MPa", or a material that has one'
         )
-    if "yield" in asked and not scene.solid.knows_σ_ZZ:
+    if "yield" in quantities and not scene.solid.knows_σ_ZZ:
         faults.append(
             'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
             "without which σ_ZZ is not known in plane strain"
         )
-    if AT_INTERFACES in asked and not scene.layers:
+    if AT_INTERFACES in quantities and not scene.layers:
         faults.append(
             'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
         )
@@ -364,11 +365,12 @@ def contradictions(scene: Scene) -> list[str]:
 
 
 def _of_motion(scene: Scene) -> Iterator[str]:
+    """Faults of section [motion], one sentence each."""
     motion, c_s = scene.motion, scene.solid.c_s
     if motion.c is not None and motion.speed is not None:
         yield "motion: c and speed exclude each other; keep one"
     elif motion.path is not None and (motion.c is not None or motion.speed is not None):
-        yield "motion: path tells the speed, too; take c and speed away"
+        yield "motion: path gives the speed, too; take c and speed away"
     elif motion.path is None and motion.c is None and motion.speed is None:
         yield "motion: expected c (over the shear wave speed) or speed (m/s)"
     try:
@@ -384,20 +386,22 @@ def _of_motion(scene: Scene) -> Iterator[str]:
 
 
 def oddities(scene: Scene) -> list[str]:
-    """What looks unusual, one sentence a key: the unit may be another than meant."""
-    found = []
+    """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
+    warnings = []
     for path, numbers, unit, (low, high) in _usual(scene):
         odd = [f"{value:g}" for value in numbers if not low <= value <= high]
-        known, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
+        of_unit, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
         if len(odd) == 1:
-            found.append(f"{path} = {odd[0]}{known} is unusual, {usual}; is its unit as meant?")
+            warnings.append(f"{path} = {odd[0]}{of_unit} is unusual, {usual}; is its unit as meant?")
         elif odd:
-            found.append(f"{path} = {listed(odd)}{known} are unusual, {usual}; is their unit as meant?")
-    return [*found, *_too_much(scene), *_too_small(scene)]
+            warnings.append(
+                f"{path} = {listed(odd)}{of_unit} are unusual, {usual}; is their unit as meant?"
+            )
+    return [*warnings, *_too_much(scene), *_too_small(scene)]
 
 
 def _too_much(scene: Scene) -> Iterator[str]:
-    """A load that no solid bears: that half-width and load fit one another, no key can tell alone."""
+    """Warning about a mean pressure that no solid bears: load and half-width do not fit one another."""
     loads = scene.punch.loads
     mean = scene.body.loaded(max(loads)).stress
     if mean > _PRESSED * scene.solid.μ:
@@ -409,7 +413,7 @@ def _too_much(scene: Scene) -> Iterator[str]:
 
 
 def _too_small(scene: Scene) -> Iterator[str]:
-    """A contact of a few atoms; given half-widths are told of by their key."""
+    """Warning about a contact with free ends that is a few atoms wide; for a flat punch its key warns."""
     if not scene.body.free:
         return
     load = min(scene.punch.loads)
@@ -423,15 +427,15 @@ def _too_small(scene: Scene) -> Iterator[str]:
 
 
 def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:
-    """Numbers of a scene with their path, unit and where they usually lie."""
+    """Numbers of a scene with their path, values, unit and usual range."""
     yield "friction.pre_sliding", [scene.friction.pre_sliding], "m", _STROKE
-    one = {"solid": scene.solid, "punch": scene.punch.profile}
+    models = {"solid": scene.solid, "punch": scene.punch.profile}
     given = [
-        *((name, parameters(model), constants(model)) for name, model in one.items()),
+        *((name, parameters(model), constants(model)) for name, model in models.items()),
         ("friction", parameters(scene.friction.law), scene.friction.values),
     ]
-    for section, known, found in given:
-        for key, parameter in known.items():
+    for section, parameters_, values in given:
+        for key, parameter in parameters_.items():
             if parameter.usual:
-                numbers = np.atleast_1d(found[key]).tolist()
+                numbers = np.atleast_1d(values[key]).tolist()
                 yield f"{section}.{key}", numbers, parameter.unit, parameter.usual

@@ -1,10 +1,9 @@
 """Sections of a scene: every key with its kind, default and meaning.
 
-Keys of a scene's sections, and what makes a section of them.
-
-Layers of a scene, [[layer]], from the top down.
-
-JSON schema of scenes, for editors that complete and check TOML; made from the keys that check.
+A :class:`Section` checks the keys of a table of the scene and builds the section's object from their
+values. A :class:`ModelSection` has the parameters of a registered model among its keys, and
+:class:`LayerSections` reads the tables [[layer]], from the top down. The same keys make the JSON schema
+of scenes, by which editors complete and check TOML.
 """
 
 import dataclasses
@@ -57,11 +56,11 @@ class Key:
     """A key of a section.
 
     Attributes:
-        kind: what its value is.
-        about: what it means.
-        default: value of a key that is not given.
-        note: what documentation says beyond ``about``.
-        without: what documentation says instead of a default of None.
+        kind: kind of the value, which checks it.
+        about: meaning of the key.
+        default: value where the key is absent.
+        note: addition to ``about`` in the documentation.
+        without: text of the documentation in place of a default of None.
         stands_for: a model's parameter that follows from this key; models without it do not have the key.
     """
 
@@ -78,11 +77,11 @@ class Section:
 
     Args:
         build: makes the section from its values by key.
-        keys: of the section.
-        or_else: what else would do where a key is missing, for messages.
+        keys: keys by name.
+        or_else: alternative to a missing key, for messages.
     """
 
-    #: How the section stands in a scene.
+    #: Heading of the section in a scene.
     heading = "[{}]"
 
     def __init__(self, build: Callable[..., Any], keys: Mapping[str, Key], or_else: str = "") -> None:
@@ -90,7 +89,7 @@ class Section:
 
     @property
     def alternatives(self) -> dict[str, dict[str, Key]]:
-        """All keys that a section can have, by what it describes; here the one set there is."""
+        """Sets of keys that a section can have, by name of the model; here a single set, named ""."""
         return {"": self._keys}
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
@@ -98,32 +97,38 @@ class Section:
         return self._keys
 
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
-        """What the section says, or None after adding its faults; ``name`` is the section's."""
+        """The section's object, or None after its faults are added.
+
+        Args:
+            name: of the section.
+            given: values by key, as TOML gives them.
+            faults: list to which messages are added.
+        """
         if not isinstance(given, dict):
             faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
             return None
         keys = self.keys(given)
-        found = [
+        own_faults = [
             f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
         ]
         values = {}
-        for key, known in keys.items():
+        for key, entry in keys.items():
             if key not in given:
-                if known.default is REQUIRED:
-                    found.append(f"{name}.{key}: missing; expected the {known.about}{self.or_else}")
+                if entry.default is REQUIRED:
+                    own_faults.append(f"{name}.{key}: missing; expected the {entry.about}{self.or_else}")
                 else:
-                    values[key] = known.default
+                    values[key] = entry.default
                 continue
             try:
-                values[key] = known.kind(given[key])
+                values[key] = entry.kind(given[key])
             except ValueError as error:
-                found.append(f"{name}.{key} ({known.about}): {error}")
-        if not found:
+                own_faults.append(f"{name}.{key} ({entry.about}): {error}")
+        if not own_faults:
             try:
                 return self._made(values)
             except ValueError as error:  # values that a model refuses together
-                found.append(f"{name}: {error}")
-        faults += found
+                own_faults.append(f"{name}: {error}")
+        faults += own_faults
         return None
 
     def _made(self, values: dict[str, Any]) -> Any:
@@ -135,13 +140,13 @@ class ModelSection(Section):
 
     Args:
         chosen: key that names the model.
-        default: the model of a section that names none.
+        default: name of the model where that key is absent.
         models: classes by name.
         build: makes the section from the model's class, the model's values by key, and the other values.
-        keys: of the section besides, by name.
-        several: a parameter may be a list.
+        keys: keys beside the model's parameters, by name.
+        several: True where a parameter may be a list.
         defaults: of parameters, in scenes.
-        or_else: what else would do where a key is missing, for messages.
+        or_else: alternative to a missing key, for messages.
     """
 
     def __init__(
@@ -165,15 +170,15 @@ class ModelSection(Section):
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         name = given.get(self._chosen)
-        known = isinstance(name, str) and name in self._models
-        return self._of(str(name) if known else self._default)
+        registered = isinstance(name, str) and name in self._models
+        return self._of(str(name) if registered else self._default)
 
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
-        wanted = given.get(self._chosen) if isinstance(given, dict) else None
-        if wanted is not None and (not isinstance(wanted, str) or wanted not in self._models):
+        model = given.get(self._chosen) if isinstance(given, dict) else None
+        if model is not None and (not isinstance(model, str) or model not in self._models):
             # Which other keys there are depends on it.
             try:
-                Choice(self._models)(wanted)
+                Choice(self._models)(model)
             except ValueError as error:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
                 faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
@@ -181,46 +186,52 @@ class ModelSection(Section):
         return super().read(name, given, faults)
 
     def _of(self, model: str) -> dict[str, Key]:
+        """Keys of a section with a model of that name."""
         kind = self._models[model]
-        own = {key: self._key(known, kind) for key, known in parameters(kind).items()}
+        own = {key: self._key(parameter, kind) for key, parameter in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
-        besides = {key: known for key, known in self._keys.items() if known.stands_for in ("", *own)}
+        besides = {key: entry for key, entry in self._keys.items() if entry.stands_for in ("", *own)}
         keys = {**own, self._chosen: chosen, **besides}
         return keys | {"vary": self._variations(model)} if self._several else keys
 
     def _variations(self, model: str) -> Key:
-        """Tables of parameters; rows of numbers, which all laws share, are not among these."""
+        """Key ``vary``, tables of parameters; a parameter that is a table itself cannot vary."""
         single = {
-            name: [known for known in parameters(kind).values() if known.single]
+            name: [parameter for parameter in parameters(kind).values() if parameter.single]
             for name, kind in self._models.items()
         }
-        own = {known.key: self._key(known, self._models[model]).kind for known in single[model]}
-        every = tuple(dict.fromkeys(known.key for some in single.values() for known in some))
+        own = {
+            parameter.key: self._key(parameter, self._models[model]).kind for parameter in single[model]
+        }
+        every = tuple(
+            dict.fromkeys(parameter.key for several in single.values() for parameter in several)
+        )
         return Key(
             Variations(own, every), "parameters of the laws, table by table", (),
             "instead of the product of the lists above: the product of each table, with what it leaves "
             "out as the section has it; laws that are in several tables are computed once",
         )  # fmt: skip
 
-    def _key(self, known: Parameter, model: Any) -> Key:
+    def _key(self, parameter: Parameter, model: Any) -> Key:
+        """Key of a parameter of a model."""
         value: Kind
-        if known.options:
-            value = Choice(known.options)
-        elif known.columns:
-            value = Rows(known.columns)
-        elif known.count:
-            value = NumberList(known.unit, known.count)
+        if parameter.options:
+            value = Choice(parameter.options)
+        elif parameter.columns:
+            value = Rows(parameter.columns)
+        elif parameter.count:
+            value = NumberList(parameter.unit, parameter.count)
         else:
-            value = (Numbers if self._several else Number)(known.unit, known.range)
-        default = self._defaults.get(known.key, fields(model)[known.key].default)
+            value = (Numbers if self._several else Number)(parameter.unit, parameter.range)
+        default = self._defaults.get(parameter.key, fields(model)[parameter.key].default)
         if self._several:  # each then is a tuple of what laws have
             if isinstance(value, Choice):
                 value = OneOrMore(value)
-            elif not known.single:
+            elif not parameter.single:
                 value = Wrapped(value)
             if default is not REQUIRED:
                 default = (default,)
-        return Key(value, known.about, default, known.note)
+        return Key(value, parameter.about, default, parameter.note)
 
     def _made(self, values: dict[str, Any]) -> Any:
         model = self._models[values.pop(self._chosen)]
@@ -228,13 +239,13 @@ class ModelSection(Section):
         return self.build(model, own, **values)
 
 
-#: The most layers of a scene.
+#: Most layers of a scene.
 MOST = 10
 _POSITIVE = Range(above=0.0)
 
 
 class Constants:
-    """Constants of a solid at the lower face, `{ E = 2.5e9, nu = 0.3 }`; the others are as on top."""
+    """Constants of a solid at a layer's lower face, `{ E = 2.5e9, nu = 0.3 }`; others are as on top."""
 
     def __call__(self, value: Any) -> dict[str, Any]:
         if not isinstance(value, dict) or not value:
@@ -272,7 +283,7 @@ class Depths:
 _KEYS = {
     "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives `kind` and constants", None,
+        Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
         "what is written beside it replaces the material's",
     ),
     "to": Key(
@@ -310,7 +321,7 @@ class LayerSections:
 
     @property
     def or_else(self) -> str:
-        """What else would do where a key is missing."""
+        """Alternative to a missing key, for messages."""
         return self._one.or_else
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
@@ -318,10 +329,10 @@ class LayerSections:
         return self._one.keys(given)
 
     def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
-        """The layers; faults are added."""
+        """The layers from the top down; their faults are added to ``faults``."""
         if given == {}:
             return ()
-        if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+        if not isinstance(given, list) or not all(isinstance(table, dict) for table in given):
             faults.append(
                 f"{name}: found {excerpt(given)}, expected tables [[{name}]], from the top down"
             )
@@ -329,18 +340,18 @@ class LayerSections:
         if len(given) > MOST:
             faults.append(f"{name}: found {len(given)} layers, expected at most {MOST}")
             return ()
-        found: list[Layer] = []
-        for number, one in enumerate(given, 1):
-            found += self._read(f"{name} {number}", one, faults)
-        return tuple(found)
+        layers: list[Layer] = []
+        for number, table in enumerate(given, 1):
+            layers += self._read(f"{name} {number}", table, faults)
+        return tuple(layers)
 
     def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
         if isinstance(given.get("properties"), list):
             return self._tabulated(name, given, faults)
         material = given.get("material")
-        known = LIBRARY.get(material) if isinstance(material, str) else None
-        constants = {"kind": known.kind} | known.values if known else {}
-        if material is not None and not known:  # its constants are not missing: one fault
+        of_library = LIBRARY.get(material) if isinstance(material, str) else None
+        constants = {"kind": of_library.kind} | of_library.values if of_library else {}
+        if material is not None and not of_library:  # its constants are not missing: one fault
             constants = next(iter(LIBRARY.values())).values
         kept = constants | given
         layer = self._one.read(name, kept, faults)
@@ -358,7 +369,7 @@ class LayerSections:
 
     def _tabulated(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
         if others := sorted(given.keys() - {"properties", "kind", "plane"}):
-            faults.append(f"{name}: properties tells {', '.join(others)}, too; take one of them away")
+            faults.append(f"{name}: properties gives {', '.join(others)}, too; take one of them away")
             return []
         if given.get("kind", "isotropic") != "isotropic":
             faults.append(
@@ -374,8 +385,8 @@ class LayerSections:
             faults.append(f"{name}.properties: {error}")
             return []
         return [
-            Layer(lower[0] - upper[0], one, None if one == other else other)
-            for (upper, lower), (one, other) in zip(pairwise(rows), pairwise(solids))
+            Layer(lower[0] - upper[0], top, None if top == bottom else bottom)
+            for (upper, lower), (top, bottom) in zip(pairwise(rows), pairwise(solids))
         ]
 
 
@@ -387,7 +398,7 @@ def _layer(
     kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
     to: Any, grading: str, exponent: float, properties: Any,
 ) -> Any:  # fmt: skip
-    """What one table says; the lower face's constants are still to be read."""
+    """A layer of one table [[layer]], whose constants at the lower face are still to be read."""
     if thickness is None:
         raise ValueError('missing thickness, as in thickness = "2 µm"')
     if to is None and (grading != "linear" or exponent != 1.0):
@@ -398,7 +409,7 @@ def _layer(
 
 
 class _Read:
-    """A layer whose lower face is still in the scene's words."""
+    """A layer whose constants at the lower face are still as TOML gives them."""
 
     def __init__(
         self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float
@@ -407,7 +418,7 @@ class _Read:
         self.grading, self.exponent = grading, exponent
 
 
-#: Times of a motion at which stresses along the surface are told, at most.
+#: Most times of a motion at which stresses along the surface are output.
 MOST_OUTPUTS = 400
 
 
@@ -424,7 +435,7 @@ def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...])
 def _friction(
     law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, **rest: Any
 ) -> Friction:
-    """``sigma0`` is among the values already: the reader has divided it by the load."""
+    """Section [friction]; ``sigma0`` is unused: the reader has divided it by the load already."""
     return Friction(law, values, **rest)
 
 
@@ -466,8 +477,8 @@ def _time(
 
 _SOLID_KEYS = {
     "material": Key(
-        Choice(LIBRARY), "name of a known solid, gives `kind`, constants and, of metals, yield_strength",
-        None,
+        Choice(LIBRARY),
+        "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     ),
     "yield_strength": Key(
@@ -534,8 +545,8 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "what solves the contact", ("closed_form", "sie", "fem"),
-        "an empty list where only friction is asked for",
+        Choices(METHODS, at_least=0), "methods that solve the contact", ("closed_form", "sie", "fem"),
+        "an empty list for friction alone",
     ),
     "tolerance": Key(
         Number("", Range(at_least=1e-10, at_most=0.1)),
@@ -546,17 +557,17 @@ _SOLVE_KEYS = {
         Choice(MESHES), "mesh", "confocal", '`"box"` is the block of the study, with walls at 100 a'
     ),
     "mode": Key(
-        Choice(MODES), "pressure unknown or put in", "contact",
-        '`"traction"`: pressure put in, see [Theory](theory.md)',
+        Choice(MODES), "pressure unknown or prescribed", "contact",
+        '`"traction"`: prescribed pressure, see [Theory](theory.md)',
     ),
     "degree": Key(
-        Whole(Range(at_least=1, at_most=12)), "polynomial degree, if not found by tolerance", None,
-        without="found by tolerance",
+        Whole(Range(at_least=1, at_most=12)), "polynomial degree, if not set by tolerance", None,
+        without="set by tolerance",
     ),
     "cuts": Key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1),
     "sweep": Key(
         Choice(("auto", "every")), "which of many speeds finite elements solve", "auto",
-        '`"auto"`: from 16 speeds on as many as a fit through them needs to tell the others, see '
+        '`"auto"`: from 16 speeds on as many as a fit through them needs to give the others, see '
         '[Sweeps](howto_sweep.md); `"every"`: each',
     ),
     "solver": Key(
@@ -604,7 +615,7 @@ _TIME_KEYS = {
         "from t = 0 on; between two points it changes like that, too",
     ),
     "start": Key(
-        Choice(("rest", "steady")), "what there is at t = 0", "rest",
+        Choice(("rest", "steady")), "state at t = 0", "rest",
         '`"steady"`: the steady motion of friction and load at t = 0',
     ),
     "friction": Key(
@@ -612,7 +623,7 @@ _TIME_KEYS = {
         '`"law"`: by the law along motion.strokes, one after the other; `"constant"`: that of each state',
     ),
     "every": Key(
-        Number("", _POSITIVE), "time over a/c_s from one to the next at which the surface is looked at",
+        Number("", _POSITIVE), "time over a/c_s from one output of the surface to the next",
         None, "stresses along it then, and over time the energy near the punch and beyond",
         without="none",
     ),
@@ -620,7 +631,7 @@ _TIME_KEYS = {
 
 _OUTPUT_KEYS = {
     "quantities": Key(
-        Choices(WORDS), "what is asked for", ("friction", "sif", "surface"),
+        Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
@@ -667,37 +678,37 @@ def schema() -> dict[str, Any]:
 
 
 def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, Any]:
-    """A section with the keys of all its alternatives; required are those that all of them require."""
-    keys = {key: known for one in alternatives.values() for key, known in one.items()}
+    """JSON schema of a section with the keys of all its alternatives; required are those of every one."""
+    every = {name: key for keys in alternatives.values() for name, key in keys.items()}
     needed = [
-        key
-        for key in keys
-        if all(key in one and one[key].default is REQUIRED for one in alternatives.values())
+        name
+        for name in every
+        if all(name in keys and keys[name].default is REQUIRED for keys in alternatives.values())
     ]
     section = {
         "type": "object",
-        "properties": {key: entry(known) for key, known in keys.items()},
+        "properties": {name: entry(key) for name, key in every.items()},
         "additionalProperties": False,
     }
-    if name == "solid":  # a known material gives the constants
+    if name == "solid":  # a material gives the constants
         section["anyOf"] = [{"required": ["material"]}, {"required": needed}]
     elif needed:
         section["required"] = needed
     return section
 
 
-def _layer_schema(one: dict[str, Any]) -> dict[str, Any]:
-    """A layer: constants of its own, a known material, or rows by depth."""
-    needed = one.pop("required", [])
+def _layer_schema(table: dict[str, Any]) -> dict[str, Any]:
+    """JSON schema of a layer: constants of its own, a material, or rows by depth."""
+    needed = table.pop("required", [])
     enough = [["thickness", "material"], ["thickness", *needed], ["properties"]]
-    return one | {"anyOf": [{"required": keys} for keys in enough]}
+    return table | {"anyOf": [{"required": keys} for keys in enough]}
 
 
 def entry(key: Key) -> dict[str, Any]:
     """JSON schema of a key's value."""
     unit = getattr(key.kind, "unit", None)
     about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
-    found = key.kind.schema() | {"description": about}
+    described = key.kind.schema() | {"description": about}
     if key.default is not REQUIRED and key.default not in (None, ((),)):  # a table left out is none
-        found["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
-    return found
+        described["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
+    return described

@@ -1,10 +1,8 @@
 """Numbers with units: texts such as "193 GPa" become SI numbers, rarer units by pint's table.
 
-What a quantity is as scenes write it: a number, and units with signs between them.
-
-Nothing of it is evaluated: what is no such text is refused.
-
-Metric units that most scenes use; to read all that pint knows takes longer than a friction loop.
+A quantity in a scene is a number and units with ``*``, ``/`` and ``^`` between them. It is parsed, never
+evaluated; any other text is refused. The metric units that most scenes use have a table here, because
+loading pint takes longer than a friction loop.
 """
 
 import re
@@ -16,14 +14,14 @@ from typing import Any
 
 from ..errors import excerpt
 
-#: Characters that a quantity may have.
+#: Most characters of a quantity.
 LONGEST = 200
 
 _SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 _PLAIN = str.maketrans(_SUPERSCRIPTS, "-0123456789")
 
 _NUMBER = re.compile(r"\s*([-+]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|(?:nan|inf)\b))")
-#: What a unit that divides begins with, where no other stands before it.
+#: Beginning of a product of units that starts with a divisor, as ``1/m``.
 _ONE = re.compile(r"\s*1\s*(?=/)")
 _FACTOR = re.compile(
     rf"\s*([*/]?)\s*(%|[^\W\d{_SUPERSCRIPTS}][^\W{_SUPERSCRIPTS}]*)"
@@ -36,7 +34,7 @@ Units = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number with the product of powers of units that it counts; no units: it counts nothing."""
+    """A number and the product of powers of units that it is given in; dimensionless without units."""
 
     number: float
     units: Units
@@ -46,32 +44,32 @@ def quantity(text: str) -> Quantity:
     """Read a quantity, as ``25000 1/m`` or ``7.86 g/mm^3``.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text is no quantity.
     """
-    found = _NUMBER.match(text) if len(text) <= LONGEST else None
-    if not found:
+    head = _NUMBER.match(text) if len(text) <= LONGEST else None
+    if not head:
         raise ValueError("no number")
-    return Quantity(float(found[1]), units(text[found.end() :]))
+    return Quantity(float(head[1]), units(text[head.end() :]))
 
 
 def units(text: str) -> Units:
     """Read a product of powers of units; exponents have one digit.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text is no quantity.
     """
-    found: list[tuple[str, int]] = []
-    one = _ONE.match(text)
-    at, end = one.end() if one else 0, len(text.rstrip())
+    factors: list[tuple[str, int]] = []
+    numerator = _ONE.match(text)
+    at, end = numerator.end() if numerator else 0, len(text.rstrip())
     while at < end:
         factor = _FACTOR.match(text, at)
         # Only what comes first needs no sign.
-        if not factor or (bool(found) != bool(factor[1]) and factor[1] != "/"):
+        if not factor or (bool(factors) != bool(factor[1]) and factor[1] != "/"):
             raise ValueError("no product of units")
         sign = -1 if factor[1] == "/" else 1
-        found.append((factor[2], sign * int((factor[3] or factor[4] or "1").translate(_PLAIN))))
+        factors.append((factor[2], sign * int((factor[3] or factor[4] or "1").translate(_PLAIN))))
         at = factor.end()
-    return tuple(found)
+    return tuple(factors)
 
 
 #: Power of ten and dimension (length, mass, time) of a unit by its name.
@@ -85,7 +83,7 @@ _UNITS = {
 }  # fmt: skip
 
 
-def in_units(given: Quantity, wanted: Units) -> float | None:
+def in_units(given: Quantity, target: Units) -> float | None:
     """A quantity's number in other units; None where a unit is not in the table, or dimensions differ.
 
     Factors are powers of ten and are divided by where they are below one, so that "0.1 mm" is the float
@@ -94,15 +92,15 @@ def in_units(given: Quantity, wanted: Units) -> float | None:
     Raises:
         OverflowError: the factor is no floating-point number.
     """
-    one, other = _product(given.units), _product(wanted)
-    if one is None or other is None or one[1] != other[1]:
+    source, goal = _product(given.units), _product(target)
+    if source is None or goal is None or source[1] != goal[1]:
         return None
-    power = one[0] - other[0]
+    power = source[0] - goal[0]
     return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
 
 
 def _product(units: Units) -> tuple[int, tuple[int, ...]] | None:
-    """Power of ten and dimension of a product of units; None where one is not in the table."""
+    """Power of ten and dimension of a product of units; None where a unit is not in the table."""
     power = 0
     dimension: tuple[int, ...] = (0, 0, 0)
     for name, exponent in units:
@@ -139,52 +137,52 @@ def to_si(value: Any, unit: str) -> float:
     """A number in SI, or a string with a unit, as a number in ``unit``.
 
     Args:
-        value: what the scene says.
+        value: a number or a text, as TOML gives it.
         unit: the SI unit expected, "" for dimensionless.
 
     Raises:
         ValueError: not a number, not finite, an unknown unit or one of the wrong dimension.
     """
-    wanted = f"a number in {unit} or a string with a unit" if unit else "a dimensionless number"
+    expected = f"a number in {unit} or a string with a unit" if unit else "a dimensionless number"
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"found {excerpt(value)}, expected {wanted}")
+        raise ValueError(f"found {excerpt(value)}, expected {expected}")
     try:
-        number = _parsed(value, unit, wanted) if isinstance(value, str) else float(value)
+        number = _parsed(value, unit, expected) if isinstance(value, str) else float(value)
     except OverflowError:
         number = float("inf")
     if not isfinite(number):
-        raise ValueError(f"found {excerpt(value)}, expected {wanted} that is finite")
+        raise ValueError(f"found {excerpt(value)}, expected {expected} that is finite")
     return number
 
 
-def _parsed(text: str, unit: str, wanted: str) -> float:
+def _parsed(text: str, unit: str, expected: str) -> float:
+    """A text with a unit as a number in ``unit``; ``expected`` describes it in messages."""
     try:
         given = quantity(text)
     except ValueError:
         form = ": a number, then units with * / ^ between them" if unit else ""
-        raise ValueError(f"found {excerpt(text)}, expected {wanted}{form}") from None
+        raise ValueError(f"found {excerpt(text)}, expected {expected}{form}") from None
     metric = in_units(given, units(unit))
     try:
         return _by_pint(given, units(unit)) if metric is None else metric
     except ValueError as error:
-        raise ValueError(f"found {excerpt(text)} {error}, expected {wanted}") from None
+        raise ValueError(f"found {excerpt(text)} {error}, expected {expected}") from None
 
 
-def _by_pint(given: Quantity, wanted: Units) -> float:
-    """A quantity in other units, by pint's table; of pint's parser, which evaluates, nothing is used.
+def _by_pint(given: Quantity, target: Units) -> float:
+    """A quantity's number in other units, by pint's table, without pint's parser, which evaluates.
 
     Raises:
-        ValueError: a unit is unknown, or what they measure differs; angles, counts and bits are no
-            numbers.
+        ValueError: a unit is unknown, or dimensions differ; angles, counts and bits are no numbers.
     """
-    table, one, other = _registry(), _container(given.units), _container(wanted)
+    table, source, goal = _registry(), _container(given.units), _container(target)
     try:
-        if table.get_root_units(one)[1] == table.get_root_units(other)[1]:
-            return float(table.Quantity(given.number, one).to(other).magnitude)
+        if table.get_root_units(source)[1] == table.get_root_units(goal)[1]:
+            return float(table.Quantity(given.number, source).to(goal).magnitude)
     except _pint().errors.PintError:
         raise ValueError("with units that have no zero and cannot be multiplied") from None
-    dimension = table.get_dimensionality(one)
-    counted = f"in {table.get_root_units(one)[1]}" if given.units else "without a unit"
+    dimension = table.get_dimensionality(source)
+    counted = f"in {table.get_root_units(source)[1]}" if given.units else "without a unit"
     raise ValueError(f"of dimension {dimension}" if dimension else counted)
 
 
@@ -192,13 +190,13 @@ def _container(product: Units) -> Any:
     """pint's own form of a product of units.
 
     Raises:
-        ValueError: one is unknown.
+        ValueError: a unit is unknown.
     """
     exponents: dict[str, int] = {}
     for name, exponent in product:
         try:
-            known = _registry().get_name(name)
+            name_of_pint = _registry().get_name(name)
         except _pint().UndefinedUnitError:
             raise ValueError(f"with the unknown unit {excerpt(name)}") from None
-        exponents[known] = exponents.get(known, 0) + exponent
+        exponents[name_of_pint] = exponents.get(name_of_pint, 0) + exponent
     return _pint().util.UnitsContainer(exponents)

@@ -1,8 +1,7 @@
-"""Values of a scene: each kind turns what TOML gives into what is computed with.
+"""Kinds of values in a scene: each turns a value of TOML into the one to compute with, or refuses it.
 
-Several numbers of a scene: one, a list, or a range of them.
-
-Tables of a scene: rows of numbers, one of several texts, strokes.
+There are single numbers and texts, numbers as a list or a range, and tables: rows of numbers, variations
+of a law's parameters, strokes. Each kind also gives the JSON schema of its values.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -21,23 +20,23 @@ _NO_BOUNDS = Range()
 
 
 class Kind(Protocol):
-    """A kind of values; its docstring says what a scene writes."""
+    """A kind of values; its docstring describes these in the documentation of scenes."""
 
     def __call__(self, value: Any) -> Any:
         """The checked value.
 
         Raises:
-            ValueError: what was found, and what was expected.
+            ValueError: the value is refused; the message says what was found and what was expected.
         """
 
     def schema(self) -> dict[str, Any]:
-        """JSON schema of what a scene writes."""
+        """JSON schema of the values in a scene."""
 
 
 def _within(value: float, bounds: Range) -> float:
     if value not in bounds:
-        found = excerpt(value) if isinstance(value, int) else f"{value:g}"
-        raise ValueError(f"found {found}, expected {bounds}")
+        shown = excerpt(value) if isinstance(value, int) else f"{value:g}"
+        raise ValueError(f"found {shown}, expected {bounds}")
     return value
 
 
@@ -62,7 +61,7 @@ class Number:
         return _within(to_si(value, self.unit), self.bounds)
 
     def schema(self) -> dict[str, Any]:
-        """Bounds hold for plain numbers; those with units are checked by the program."""
+        """JSON schema, whose bounds hold for plain numbers; the kind checks numbers with units."""
         return {"anyOf": [{"type": "number"} | _limits(self.bounds), _TEXT]}
 
 
@@ -81,7 +80,7 @@ class OrAuto:
 
 @dataclass(frozen=True)
 class NumberList:
-    """So many numbers in ``unit``, each of which may be a text with a unit."""
+    """A list of ``count`` numbers in ``unit``, each of which may be a text with a unit."""
 
     unit: str
     count: int
@@ -151,8 +150,8 @@ class Choices:
             raise ValueError(f"found {excerpt(value)}, expected a list of names")
         if len(value) < self.at_least:
             raise ValueError(f"found an empty list, expected {_one_of(self.options)}")
-        one = Choice(self.options)
-        return tuple(one(entry) for entry in value)
+        choice = Choice(self.options)
+        return tuple(choice(entry) for entry in value)
 
     def schema(self) -> dict[str, Any]:
         return {"type": "array", "items": Choice(self.options).schema()}
@@ -184,7 +183,7 @@ class Pressure:
         if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
             raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
         if not any(σ for _, σ in pairs):
-            raise ValueError("found no pressure but 0, expected some σ_YY/(N/2a) below 0")
+            raise ValueError("found no pressure but 0, expected a σ_YY/(N/2a) below 0")
         return pairs
 
     def schema(self) -> dict[str, Any]:
@@ -254,7 +253,7 @@ class Map:
 
 _FORM = '{from = …, to = …, number = …}, with spacing = "log" where ratios are to be equal'
 _SPACINGS = ("linear", "log")
-#: A million speeds fit into a list, too.
+#: Most numbers of a range.
 _MOST = 10**6
 
 
@@ -266,24 +265,24 @@ class Numbers:
     bounds: Range = Range()
 
     def __call__(self, value: Any) -> tuple[float, ...]:
-        one = Number(self.unit, self.bounds)
+        kind = Number(self.unit, self.bounds)
         if isinstance(value, dict):
-            return _spread(value, one)
-        found = tuple(one(entry) for entry in (value if isinstance(value, list) else [value]))
-        if not found:
+            return _spread(value, kind)
+        numbers = tuple(kind(entry) for entry in (value if isinstance(value, list) else [value]))
+        if not numbers:
             raise ValueError("found an empty list, expected at least one number")
-        return found
+        return numbers
 
     def schema(self) -> dict[str, Any]:
         kind = Number(self.unit, self.bounds)
-        one = kind.schema()
+        single = kind.schema()
         spread = {
             "type": "object",
-            "properties": {key: known.schema() for key, known in _keys(kind).items()},
+            "properties": {key: value.schema() for key, value in _keys(kind).items()},
             "required": ["from", "to", "number"],
             "additionalProperties": False,
         }
-        return {"anyOf": [*one["anyOf"], {"type": "array", "items": one, "minItems": 1}, spread]}
+        return {"anyOf": [*single["anyOf"], {"type": "array", "items": single, "minItems": 1}, spread]}
 
 
 def _keys(end: Number) -> dict[str, Kind]:
@@ -292,7 +291,7 @@ def _keys(end: Number) -> dict[str, Kind]:
 
 
 def _spread(given: dict[str, Any], end: Number) -> tuple[float, ...]:
-    """Numbers of a range; where both ends are what ``end`` allows, what lies between is, too."""
+    """Numbers of a range, ends included; those between are within bounds where both ends are."""
     keys = _keys(end)
     values: dict[str, Any] = {"spacing": "linear"}
     for key in given:
@@ -317,12 +316,12 @@ def _spread(given: dict[str, Any], end: Number) -> tuple[float, ...]:
 
 
 def _between(first: float, last: float, number: int, logarithmic: bool) -> Iterator[float]:
-    """What lies between the ends, in decimals: 0.3 of 0, 0.1, … 0.9 is what 0.3 is in a list."""
-    one, other = (Decimal(repr(end)) for end in (first, last))
+    """Numbers between the ends, computed in decimals: 0.3 of 0, 0.1, … 0.9 is the float of "0.3"."""
+    low, high = (Decimal(repr(end)) for end in (first, last))
     if logarithmic:
-        one, other = one.ln(), other.ln()
+        low, high = low.ln(), high.ln()
     for i in range(1, number - 1):
-        at = (one * (number - 1 - i) + other * i) / (number - 1)
+        at = (low * (number - 1 - i) + high * i) / (number - 1)
         yield float(at.exp() if logarithmic else at)
 
 
@@ -368,13 +367,13 @@ class OneOrMore:
         return tuple(self.one(entry) for entry in value)
 
     def schema(self) -> dict[str, Any]:
-        one = self.one.schema()
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+        single = self.one.schema()
+        return {"anyOf": [single, {"type": "array", "items": single, "minItems": 1}]}
 
 
 @dataclass(frozen=True)
 class Wrapped:
-    """What is the same for all laws of a scene."""
+    """A value that is the same for all laws of a scene, as a list of one."""
 
     kind: Kind
 
@@ -387,24 +386,21 @@ class Wrapped:
 
 @dataclass(frozen=True)
 class Variations:
-    """Tables, each with values, lists or ranges of parameters of the law.
+    """Tables, each with values, lists or ranges of parameters of the law."""
 
-    Attributes:
-        kinds: of the parameters that the law has, by key.
-        every: keys of the parameters that some law has.
-    """
-
+    #: Kinds of the law's parameters, by key.
     kinds: Mapping[str, Kind]
+    #: Keys of the parameters of all laws.
     every: tuple[str, ...]
 
     def __call__(self, value: Any) -> tuple[dict[str, tuple[Any, ...]], ...]:
-        if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+        if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
             raise ValueError(
                 f"found {excerpt(value)}, expected tables [[friction.vary]] of parameters of the law"
             )
-        return tuple(self._one(f"table {number}", table) for number, table in enumerate(value, 1))
+        return tuple(self._table(f"table {number}", table) for number, table in enumerate(value, 1))
 
-    def _one(self, name: str, table: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
+    def _table(self, name: str, table: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
         given = {}
         for key, value in table.items():
             if key not in self.kinds:
@@ -438,14 +434,14 @@ class Strokes:
             raise ValueError(f"found {excerpt(value)}, expected a list of names or of {_STROKE_FORM}")
         if not value:
             raise ValueError(f"found an empty list, expected forward or backward or {_STROKE_FORM}")
-        return tuple(self._one(entry) for entry in value)
+        return tuple(self._stroke(entry) for entry in value)
 
-    def _one(self, value: Any) -> str | Partial:
+    def _stroke(self, value: Any) -> str | Partial:
         if not isinstance(value, dict):
             return Choice(DIRECTION)(value)
         if unknown := [key for key in value if key not in _KEYS]:
-            found, hint = excerpt(unknown[0]), nearest(unknown[0], [*_KEYS])
-            raise ValueError(f"found the key {found} in a stroke{hint}")
+            shown, hint = excerpt(unknown[0]), nearest(unknown[0], [*_KEYS])
+            raise ValueError(f"found the key {shown} in a stroke{hint}")
         if "to" not in value:
             raise ValueError(f"found a stroke without to, expected {_STROKE_FORM}")
         given = {}

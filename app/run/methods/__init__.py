@@ -1,4 +1,4 @@
-"""Methods that solve the contact: each is made for a plan, and imports what only it needs when it is."""
+"""Methods that solve the contact: each is made for a plan, and imports its own libraries only then."""
 
 from galinx.clock import Clock
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
@@ -13,12 +13,12 @@ __all__ = ["METHODS", "Method", "MethodKind", "make"]
 
 
 def make(name: str, plan: Plan, progress: Progress, clock: Clock) -> Method:
-    """The method of a name for a plan.
+    """Make the method of a name for a plan.
 
     Args:
         name: in :data:`galinx.app.methods.METHODS`.
-        plan: whose tasks the method will answer.
-        progress: is told about the work.
+        plan: the plan whose tasks the method will solve.
+        progress: shows the work.
         clock: takes wall time by step.
 
     Raises:
@@ -31,9 +31,9 @@ def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
     from .closed_form import ClosedForm, with_given_ends
 
     if plan.body.found:
-        from .closed_form import FoundPunches
+        from .closed_form import FreePunches
 
-        return ClosedForm(FoundPunches)
+        return ClosedForm(FreePunches)
     return ClosedForm(with_given_ends)
 
 
@@ -50,5 +50,5 @@ def _finite_elements(plan: Plan, progress: Progress, clock: Clock) -> Method:
         return FiniteElements(plan, progress, clock)
 
 
-#: Those of galinx itself, by name.
+#: Methods of galinx itself, by name.
 _OWN = {CLOSED_FORM: _closed_form, SIE: _layers, FEM: _finite_elements}

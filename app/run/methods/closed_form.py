@@ -1,6 +1,7 @@
-"""The singular integral equation: closed forms, or its collocation where the punch is not flat.
+"""Singular integral equation of a uniform half-plane as a method, in closed form or by collocation.
 
-The singular integral equation of punches whose contact ends where the pressure says.
+Flat punches and prescribed pressures have closed forms; punches with a profile and two sharp edges are
+solved by collocation; a contact with free ends ends where the pressure vanishes.
 """
 
 from collections.abc import Callable, Iterator
@@ -26,16 +27,16 @@ from .method import Solver
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
 TERMS = 40
 
-#: Points inside whose potentials are held at once.
+#: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
 
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Every task has its solution at once.
+    """Method that answers every task directly, without a mesh.
 
     Attributes:
-        solution: of a task and values of σ_XY/σ_YY.
+        solution: makes the solution of a task and values of σ_XY/σ_YY, (states,).
     """
 
     solution: Callable[[Task, NDArray], Any]
@@ -58,9 +59,9 @@ class _AtSpeed:
 
 
 def with_given_ends(task: Task, g: NDArray) -> Any:
-    """Punches whose contact has its ends, and pressures of one's own."""
+    """Solution of punches whose contact has fixed ends, or of a prescribed pressure."""
     if task.body.pressure:
-        return OwnPressures(task, g)
+        return PrescribedPressures(task, g)
     return (FlatPunches if task.body.flat else ShapedPunches)(task, g)
 
 
@@ -78,7 +79,7 @@ class Punches:
 
     @cached_property
     def local(self) -> FlatPunch:
-        """The edges, where every sharp punch is like a flat one."""
+        """Local analysis of the edges, at which every sharp punch has the exponents of a flat one."""
         return FlatPunch(self.task.response, self.g)
 
     def _pressure_at(self, r: NDArray) -> NDArray[np.float64]:
@@ -87,13 +88,13 @@ class Punches:
 
     @cached_property
     def residual(self) -> NDArray[np.float64]:
-        """What the pressure leaves of the integral equation, relative, (states,)."""
+        """Residual of the integral equation under the pressure, relative, (states,)."""
         task = self.task
         return of_contact(task.response, self.g, self.local, task.body, self._pressure_at)
 
     @cached_property
     def residual_inside(self) -> NDArray[np.float64]:
-        """How far stresses inside are from line loads and equilibrium, relative, (states,)."""
+        """Residual of stresses inside against line loads and equilibrium, relative, (states,)."""
         task, local = self.task, self.local
         return of_field(
             task.response, self.g, (local.α, local.β), self._pressure_at, self._stresses_at,
@@ -101,11 +102,11 @@ class Punches:
         )  # fmt: skip
 
     def _stresses_at(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY inside, (3, states, n)."""
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, n)."""
         raise NotImplementedError
 
     def _strength(self, exact: FlatPunch | GivenPressure) -> Strength:
-        """Yield, where stresses are known at all points."""
+        """Yield of the states, by exact stresses at all points."""
         task = self.task
 
         def field(points: NDArray) -> NDArray[np.float64]:
@@ -114,13 +115,13 @@ class Punches:
         return Strength(field, task.body, task.response, self.g, self.local)
 
     def _by_batches(self, inside: Callable[[NDArray, NDArray], NDArray]) -> NDArray[np.float64]:
-        """Stresses inside, (3, states, m), some points after the others: potentials take much room."""
+        """Stresses inside, (3, states, m), by batches of points: potentials take much memory."""
         points = self.task.places.points
-        found = np.empty((3, len(self.g), len(points)))
+        σ = np.empty((3, len(self.g), len(points)))
         for first in range(0, len(points), _TOGETHER):
-            some = slice(first, first + _TOGETHER)
-            found[:, :, some] = inside(*points[some].T)
-        return found
+            batch = slice(first, first + _TOGETHER)
+            σ[:, :, batch] = inside(*points[batch].T)
+        return σ
 
 
 class FlatPunches(Punches):
@@ -134,11 +135,11 @@ class FlatPunches(Punches):
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At X = -a and X = a, the same number, (states, 2)."""
+        """K_I at X = -a and X = a, equal at both ends, (states, 2)."""
         return np.column_stack([self.local.K_I] * 2)
 
     def strained_within(self, strain: float) -> NDArray[np.float64]:
-        """How far from X = -a and X = a, under the punch, -u,X exceeds a strain, over a, (states, 2)."""
+        """Distances over a from X = -a and X = a within which -u,X exceeds a strain, (states, 2)."""
         return np.column_stack(self.local.strained_within(strain / self.task.body.strain))
 
     @cached_property
@@ -157,12 +158,12 @@ class FlatPunches(Punches):
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         return self._strength(self._over_places)
 
 
-class OwnPressures(Punches):
-    """A pressure of the user's own, exact."""
+class PrescribedPressures(Punches):
+    """Prescribed pressures, exact."""
 
     @cached_property
     def residual_inside(self) -> NDArray[np.float64]:
@@ -182,7 +183,7 @@ class OwnPressures(Punches):
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         return np.full(len(self.g), self._pressure.resultant)
 
     @cached_property
@@ -203,7 +204,7 @@ class OwnPressures(Punches):
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         return self._strength(self._over_places)
 
 
@@ -226,7 +227,7 @@ class ShapedPunches(Punches):
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:
-        """At X = -a and X = a, (states, 2)."""
+        """K_I at X = -a and X = a, (states, 2)."""
         return np.array([expansion.K_I for expansion in self._expansions])
 
     @cached_property
@@ -240,16 +241,16 @@ class ShapedPunches(Punches):
 
     @property
     def inside(self) -> NDArray[np.float64]:
-        """Not known: finite elements are."""
+        """Unavailable: stresses below a profile come from finite elements only."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
 
 
-#: Distance over a from an end or a kink from which on stresses are looked at.
+#: Least distance over a from an end or a kink at which stresses are evaluated.
 _NEAREST = 1e-7
 
 
-class FoundPunches(Punches):
-    """Punches with several frictions, each with its own half-width and middle."""
+class FreePunches(Punches):
+    """Contacts with free ends, with several frictions, each with its own half-width and middle."""
 
     @cached_property
     def _contacts(self) -> Contacts:
@@ -258,12 +259,12 @@ class FoundPunches(Punches):
 
     @cached_property
     def local(self) -> Any:
-        """Exponents at the ends."""
+        """Exponents of the pressure at the ends."""
         return Exponents(self._contacts.of("α"), self._contacts.of("β"))
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
+        """Half-width of the contact [m], (states,)."""
         return self._contacts.of("half_width")
 
     @property
@@ -273,7 +274,7 @@ class FoundPunches(Punches):
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end, 0 at one that is found, (states, 2)."""
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
         return self._contacts.of("K_I")
 
     @cached_property
@@ -283,25 +284,25 @@ class FoundPunches(Punches):
 
     @cached_property
     def residual(self) -> NDArray[np.float64]:
-        found, body, load = np.empty(len(self.g)), self.task.body, self.task.body.load
-        for rows, some, kinks in self._contacts.alike():
+        residuals, body, load = np.empty(len(self.g)), self.task.body, self.task.body.load
+        for rows, group, kinks in self._contacts.alike():
             loaded = body.loaded(load[rows] if np.ndim(load) else load)
-            exponents = Exponents(some.of("α"), some.of("β"))
-            lengths = some.of("centre"), some.of("half_width")
-            found[rows] = of_contact(
-                self.task.response, some.g, exponents, loaded, some.pressure, lengths, kinks
+            exponents = Exponents(group.of("α"), group.of("β"))
+            lengths = group.of("centre"), group.of("half_width")
+            residuals[rows] = of_contact(
+                self.task.response, group.g, exponents, loaded, group.pressure, lengths, kinks
             )
-        return found
+        return residuals
 
     @cached_property
     def residual_inside(self) -> NDArray[np.float64]:
-        found = np.empty(len(self.g))
-        for rows, some, kinks in self._contacts.alike():
-            found[rows] = of_field(
-                self.task.response, some.g, (some.of("α"), some.of("β")), some.pressure, some.inside,
+        residuals = np.empty(len(self.g))
+        for rows, group, kinks in self._contacts.alike():
+            residuals[rows] = of_field(
+                self.task.response, group.g, (group.of("α"), group.of("β")), group.pressure, group.inside,
                 self.task.places.points, kinks,
             )  # fmt: skip
-        return found
+        return residuals
 
     @cached_property
     def surface(self) -> Surface:
@@ -312,12 +313,12 @@ class FoundPunches(Punches):
 
     @cached_property
     def _turns(self) -> Turns | None:
-        """Exact; at ends that are free, and under kinks, wherever stresses are finite."""
-        found = self._contacts
-        X = found.turns
+        """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
+        states = self._contacts
+        X = states.turns
         if not X.shape[1]:
             return None
-        on_surface = found.stresses(np.nan_to_num(X), np.zeros_like(X))
+        on_surface = states.stresses(np.nan_to_num(X), np.zeros_like(X))
         return Turns(X, np.where(np.isnan(X), np.nan, on_surface))
 
     @cached_property
@@ -326,11 +327,11 @@ class FoundPunches(Punches):
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
-        found, task = self._contacts, self.task
+        """Yield of the states."""
+        states, task = self._contacts, self.task
 
         def field(points: NDArray) -> NDArray[np.float64]:
-            return found.stresses(points[..., 0], points[..., 1])
+            return states.stresses(points[..., 0], points[..., 1])
 
         return Strength(
             field, task.body, task.response, self.g, self.local, self.half_width, self._turns, _NEAREST

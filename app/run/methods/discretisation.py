@@ -1,4 +1,4 @@
-"""The meshes and spaces that all speeds of a plan share."""
+"""Meshes and spaces that all speeds of a plan share."""
 
 import logging
 from collections.abc import Iterator
@@ -28,11 +28,11 @@ from ...plan.task import Plan
 #: Spaces by the assembler of their matrices.
 SPACES: dict[str, type[Space]] = {TENSOR: Space, DOLFINX: DolfinxSpace}
 
-#: Accuracy of ends over that of what follows: where they are wrong by ε, stresses at a distance d from
-#: them are by about ε/√d. And the least, above rounding.
+#: Accuracy of ends over the scene's tolerance, as an error ε of an end changes stresses at a distance d
+#: from it by about ε/√d; and the least accuracy, above rounding.
 _OF_ENDS, _LEAST = 1e-3, 1e-11
 
-#: Tolerance over the scene's of the cells that are tried where those for the scene's do not do.
+#: Tolerance over the scene's of the finer cells, tried where no degree reaches the scene's tolerance.
 _FINER = 0.03
 
 
@@ -41,13 +41,13 @@ class Discretisation:
 
     Args:
         plan: the plan, with finite elements.
-        progress: is told about the work.
+        progress: shows the work.
         clock: takes wall time by step.
 
     Attributes:
-        plan: the finite elements' part.
-        chunk: states that are treated at once.
-        stresses: words of output.quantities that ask for stresses of finite elements.
+        plan: the finite elements' part of the plan.
+        chunk: states of a batch.
+        stresses: words of output.quantities that request stresses of finite elements.
         comm: the ranks that share a mesh.
     """
 
@@ -64,29 +64,29 @@ class Discretisation:
 
     @cached_property
     def for_ends(self) -> "Discretisation":
-        """What serves no stress, but the ends of the contacts alone, at all speeds."""
+        """Discretisation for the ends of contacts alone, at all speeds, without stresses."""
         plan = self.plan
         tolerance = max(_OF_ENDS * plan.tolerance, _LEAST)
-        wanted = replace(
+        target = replace(
             plan.wanted, tolerance=tolerance, nearest=None, farthest=0.0, around=False, bends=True,
             exponent=plan.sharp,
         )  # fmt: skip
-        degrees = tuple(plan.kind.degree(wanted, task.response.margin) for task in self._whole.tasks)
-        fem = replace(plan, wanted=wanted, refinement=plan.kind.refinement(wanted), degrees=degrees)
+        degrees = tuple(plan.kind.degree(target, task.response.margin) for task in self._whole.tasks)
+        fem = replace(plan, wanted=target, refinement=plan.kind.refinement(target), degrees=degrees)
         other = Discretisation(replace(self._whole, fem=fem), self._progress, self.clock)
         other.stresses = frozenset()
         return other
 
     @cached_property
     def finer(self) -> "Discretisation":
-        """What serves the same on cells for a tighter tolerance."""
+        """Discretisation of the plan on cells for a tighter tolerance."""
         whole = replace(self._whole, fem=on_finer_cells(self.plan))
         other = Discretisation(whole, self._progress, self.clock)
         other.stresses = self.stresses
         return other
 
     def warn(self, text: str) -> None:
-        """What the user should know."""
+        """Warn the user."""
         self._progress.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
@@ -106,7 +106,7 @@ class Discretisation:
             return distribute(pattern if self.comm.rank == 0 else None, self.comm)
 
     def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
-        """The space of a degree on such a mesh."""
+        """The space of a degree on a mesh with its facet tags, shared out over ranks."""
         with quiet_compiler():
             return SPACES[self.plan.assembler](
                 *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
@@ -132,21 +132,21 @@ class Discretisation:
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:
-    """The plan with cells for a tighter tolerance, and twice as many in angle and in distance."""
-    kind, wanted = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
+    """Plan with cells for a tighter tolerance, and twice as many of them in angle and in distance."""
+    kind, target = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
     if isinstance(kind, OnLayers):
-        return replace(plan, wanted=wanted, drawn=kind.drawn(wanted))
-    rings = kind.refinement(wanted)
+        return replace(plan, wanted=target, drawn=kind.drawn(target))
+    rings = kind.refinement(target)
     columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
     refinement = replace(
         rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
     )
-    return replace(plan, wanted=wanted, refinement=refinement)
+    return replace(plan, wanted=target, refinement=refinement)
 
 
 @contextmanager
 def quiet_compiler() -> Iterator[None]:
-    """FFCx's build tools announce compilations on the root logger, whose level they set themselves."""
+    """Silence FFCx's build tools, which announce compilations on a root logger whose level they set."""
     disabled, warnings = logging.root.manager.disable, logging.getLogger("py.warnings")
     level = warnings.level
     logging.disable(logging.INFO)

@@ -1,6 +1,7 @@
-"""Stresses from the displacement fields of a speed, on the surface and inside.
+"""Stresses from the displacement fields of a speed, on the surface, inside and at interfaces.
 
-Stresses of a contact with free ends, those next to the ends from a little farther away.
+For a contact with free ends, slopes next to the ends are continued from a little farther away
+(:class:`KinkedDisplacement`).
 """
 
 from collections.abc import Collection, Sequence
@@ -23,23 +24,23 @@ from ...plan.task import Task
 
 
 class Displacement:
-    """What is read off combinations of some fields; derivatives are taken once, where they are asked for.
+    """Stresses of combinations of displacement fields; each derivative is taken once, when first needed.
 
     Args:
         task: the speed, and the places.
         space: the finite element space.
         fields: displacements over N/(2μ).
-        slopes: theirs along X on the surface, where they are known.
+        slopes: slopes of the fields along X on the surface, from a fit; computed if None.
     """
 
     def __init__(
         self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
     ) -> None:
         self._task, self._space, self._fields = task, space, fields
-        self._known = slopes
+        self._fitted_slopes = slopes
 
     def prepare(self, words: Collection[str]) -> None:
-        """Take the derivatives that words of output.quantities ask for, before the fields are freed."""
+        """Take the derivatives that words of output.quantities request, before the fields are freed."""
         if words:
             self._slopes  # noqa: B018 - cached
         if BELOW in words:
@@ -56,8 +57,8 @@ class Displacement:
 
     @cached_property
     def _slopes(self) -> SurfaceSlopes | FittedSlopes:
-        if self._known is not None:
-            return self._known
+        if self._fitted_slopes is not None:
+            return self._fitted_slopes
         return SurfaceSlopes(self._space, self._fields, self._task.places.X)
 
     @cached_property
@@ -74,20 +75,20 @@ class Displacement:
 
     @cached_property
     def _interfaces(self) -> list[tuple[NDArray, InteriorGradients, InteriorGradients]]:
-        """Points of each interface, and gradients above and below it."""
-        places, found = self._task.places, []
+        """Points of each interface, (n, 2), and gradients above and below it."""
+        places, gradients = self._task.places, []
         for depth in places.interfaces.tolist():
             points = np.column_stack([places.along, np.full_like(places.along, -depth)])
-            found.append((points, self._at(points), self._at(points, -1)))
-        return found
+            gradients.append((points, self._at(points), self._at(points, -1)))
+        return gradients
 
     def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
-        """Gradients at points; at an interface above it (1) or below (-1)."""
+        """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
         response = self._task.response
         return InteriorGradients(self._space, response, self._fields, points, self._values, side)
 
     def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY at points (n, 2) of gradients (states, n, 2, 2), as of ``_at``."""
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""
         response = self._task.response
         if not isinstance(response, ByCells):
             return response.stresses(gradients)
@@ -95,57 +96,57 @@ class Displacement:
         return response.stresses_at(response.solids(Y, side), Y, gradients)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
-        """The surface of states with these weights and contact stress, NaN beside the punch."""
+        """Stresses on the surface, by weights (states, fields) and σ_YY, NaN beside the punch."""
         u_X, v_X = self._slopes.of(weights)
         σ = np.nan_to_num(σ_YY)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
         return Surface(self._task.places, σ_YY, σ_XX, raw, v_X)
 
     def around(self, weights: NDArray) -> NDArray[np.float64]:
-        """The same where stresses are looked at for yield, (3, states, k)."""
+        """σ_XX, σ_YY, σ_XY at the points checked for yield, (3, states, k)."""
         return self._stresses(self._task.places.around, self._around.of(weights))
 
     def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
-        """The same at points of all states, (1, n, 2), or of each, (states, n, 2): (3, states, n)."""
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         flat = points.reshape(-1, 2)
-        found = self._at(flat)
+        gradients = self._at(flat)
         if len(points) == 1:
-            return self._stresses(flat, found.of(weights))
-        each = found.of_each(weights)
+            return self._stresses(flat, gradients.of(weights))
+        each = gradients.of_each(weights)
         whole = self._stresses(flat, each.reshape(1, -1, 2, 2))
         return whole.reshape(3, *each.shape[:2])
 
     def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).
 
-        Tractions, which both sides share, are told by the softer one rather than by the stiffer, whose
-        other stresses may be large beside them: weights are as the other side's modulus.
+        Tractions, which both sides share, are taken from the softer side rather than from the stiffer,
+        whose other stresses may be large beside them: each side's weight goes with the other's modulus.
         """
-        found = []
+        stresses = []
         for i, (points, above, below) in enumerate(self._interfaces):
-            one = self._stresses(points, above.of(weights))
-            other = self._stresses(points, below.of(weights), -1)
+            σ_above = self._stresses(points, above.of(weights))
+            σ_below = self._stresses(points, below.of(weights), -1)
             upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
             share = lower.μ / (upper.μ + lower.μ)
-            tractions = share * one[1:] + (1.0 - share) * other[1:]
-            found.append([*tractions, one[0], other[0]])
-        return np.moveaxis(np.array(found), 0, 2)
+            tractions = share * σ_above[1:] + (1.0 - share) * σ_below[1:]
+            stresses.append([*tractions, σ_above[0], σ_below[0]])
+        return np.moveaxis(np.array(stresses), 0, 2)
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        """What the last digits of the fields can do to σ_XX on the surface, (states, n)."""
+        """Effect of rounding of the fields on σ_XX on the surface, (states, n)."""
         noise = self._slopes.rounding(weights)
         return np.abs(self._task.response.σ_XX(noise, 0.0 * noise, 0.0 * noise))
 
     def inside(self, weights: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY inside of states with these weights, (3, states, m)."""
-        found = np.empty((3, len(weights), len(self._task.places.points)))
-        for some, gradients in self._gradients.by_batches(weights):
-            found[:, :, some] = self._stresses(self._task.places.points[some], gradients)
-        return found
+        """σ_XX, σ_YY, σ_XY inside by weights (states, fields), (3, states, m)."""
+        σ = np.empty((3, len(weights), len(self._task.places.points)))
+        for batch, gradients in self._gradients.by_batches(weights):
+            σ[:, :, batch] = self._stresses(self._task.places.points[batch], gradients)
+        return σ
 
 
 class KinkedDisplacement(Displacement):
-    """See :class:`Displacement`.
+    """Displacement of a contact with free ends; see :class:`Displacement`.
 
     Args:
         task: the speed, and the places.
@@ -167,11 +168,11 @@ class KinkedDisplacement(Displacement):
         self._gaps, self._exponents = gaps, exponents
 
     def at_places_of(self, task: Task) -> "KinkedDisplacement":
-        """The same, asked at other places."""
+        """Displacement at the places of another task."""
         return KinkedDisplacement(task, self._space, self._fields[0], self._gaps, self._exponents)
 
     def strain(self, X: NDArray) -> NDArray[np.float64]:
-        """μ u,X over N/(2a) at positions on the surface, (n,), as the polynomials have it."""
+        """Strain μ u,X over N/(2a) at positions on the surface, (n,), by the polynomials of the cells."""
         return SurfaceSlopes(self._space, self._fields, X).of(np.ones((1, 1)))[0][0]
 
     @cached_property
@@ -181,11 +182,11 @@ class KinkedDisplacement(Displacement):
 
 
 class _Slopes:
-    """Combinations of slopes at some places; see :class:`SurfaceSlopes`.
+    """Slopes continued from sampled places; see :class:`SurfaceSlopes`.
 
     Args:
-        slopes: at some places.
-        of_places: what multiplies these, (wanted, places).
+        slopes: slopes of the fields at sampled places.
+        of_places: matrix from slopes there to slopes at the requested places, (requested, places).
     """
 
     def __init__(self, slopes: SurfaceSlopes, of_places: NDArray) -> None:

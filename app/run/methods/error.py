@@ -1,8 +1,8 @@
-"""The error of finite elements, measured on solutions of lower degree, and the degree it asks for.
+"""Measured error of finite elements, and the degree that brings it within tolerance.
 
-What the error of finite elements is measured on: numbers of states, and what they are relative to.
-
-Solutions of rising degree at one speed: what the error is measured on.
+Solutions of rising degree at one speed form a ladder (:class:`Ladder`). The error is measured by gauges,
+numbers of states with the sizes to which their changes are relative (:class:`Gauge`), and estimated from
+their changes from level to level (:class:`MeasuredError`).
 """
 
 from collections.abc import Callable, Iterator
@@ -37,33 +37,33 @@ from ...plan.task import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
 
-#: Points inside on which the error is measured; of more, so many are picked.
+#: Most points inside on which the error is measured; of more points so many are picked.
 _POINTS = 400
 
 #: Positions r under the punch at which the pressure's smooth factor is measured, both edges among them.
 _ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
 
 
-#: What rounding does to stresses over what the last digits of the displacements alone can, times the root
-#: of the response's margin: 0.2 to 2.8 times what breaks mirror images where solids have them.
+#: Effect of rounding on stresses over that of the last digits of the displacements alone, times the root
+#: of the response's margin: 0.2 to 2.8 times the difference of mirror images where solids have them.
 _SOLVED = 100.0
 
 
 @dataclass(frozen=True)
 class Gauge:
-    """Numbers of some states that stand for a word of output.quantities.
+    """Numbers of states that stand for a word of output.quantities.
 
     Attributes:
         word: the word.
-        values: (states, n).
-        scale: what they are relative to, (states, n).
-        left: relative error that a level knows of itself, (states,) or 0.
+        values: the numbers, (states, n).
+        scale: sizes to which their changes are relative, (states, n).
+        unresolved: relative error that a level shows by itself, (states,) or 0.
     """
 
     word: str
     values: NDArray[np.float64]
     scale: NDArray[np.float64]
-    left: Any = 0.0
+    unresolved: Any = 0.0
 
     def change(self, coarse: "Gauge") -> NDArray[np.float64]:
         """Largest relative difference of each state from the same gauge of another level, (states,)."""
@@ -71,7 +71,7 @@ class Gauge:
 
 
 def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
-    """K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
+    """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
         pressure: of the states.
@@ -80,42 +80,44 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) 
     """
     factor = pressure.factor(_ACROSS)
     values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
-    left = pressure.unresolved
+    unresolved = pressure.unresolved
     if isinstance(pressure, StretchedPressure):
-        left = left + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
-    return Gauge(INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), left)
+        unresolved = unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
+    return Gauge(
+        INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
+    )
 
 
 def of_intensities(K_I: NDArray) -> Gauge:
-    """K_I at both ends, (states, 2)."""
+    """Gauge of K_I at both ends, (states, 2)."""
     return Gauge(INTENSITIES, K_I, np.abs(K_I))
 
 
 def of_in_plane(σ_XX: NDArray, X: NDArray) -> Gauge:
-    """σ_XX on the surface, (states, n)."""
+    """Gauge of σ_XX on the surface, (states, n)."""
     return Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, X))
 
 
 def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
-    """Stresses inside, (3, states, m), and the word that asks for them."""
+    """Gauge of stresses inside, (3, states, m), for the word that requests them."""
     size = stresses.of_inside(σ, *points.T)
     return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
 
 
 def of_interfaces(σ: NDArray) -> Gauge:
-    """Stresses along interfaces, (4, states, interfaces, n)."""
+    """Gauge of stresses along interfaces, (4, states, interfaces, n)."""
     size = np.broadcast_to(stresses.of_interfaces(σ), σ.shape)
     values, of = (np.moveaxis(part, 1, 0).reshape(σ.shape[1], -1) for part in (σ, size))
     return Gauge(AT_INTERFACES, values, of)
 
 
 class StressGauges:
-    """Stresses that are asked for, of combinations of some fields; derivatives are taken at once.
+    """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
     Args:
-        work: knows what is asked for.
+        work: has the words of the requested stresses.
         task: the speed, and the places.
-        displaced: gives the displacement at a task's places.
+        displaced: makes the displacement at a task's places.
     """
 
     def __init__(
@@ -126,41 +128,41 @@ class StressGauges:
         self._displacement.prepare(self._words)
 
     @property
-    def wanted(self) -> bool:
-        """Are there any?"""
+    def any_stress(self) -> bool:
+        """True where stresses are requested."""
         return bool(self._words)
 
     @property
     def slopes(self) -> Any:
-        """Slopes of the fields on the surface, None where no stress is asked for."""
+        """Slopes of the fields on the surface, None where no stress is requested."""
         return self._displacement.slopes if self._words else None
 
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
-        """Of states with these weights, and the contact stress on the surface, NaN beside the punch."""
-        found, places = [], self._task.places
+        """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""
+        gauges, places = [], self._task.places
         if ON_SURFACE in self._words:
             surface = self._displacement.surface(g, weights, σ_YY)
-            found.append(of_in_plane(surface.σ_XX, places.X))
+            gauges.append(of_in_plane(surface.σ_XX, places.X))
         if BELOW in self._words:
-            found.append(of_inside(self._displacement.inside(weights), places.points))
+            gauges.append(of_inside(self._displacement.inside(weights), places.points))
         if YIELD in self._words:
-            found.append(of_inside(self._displacement.around(weights), places.around, YIELD))
+            gauges.append(of_inside(self._displacement.around(weights), places.around, YIELD))
         if AT_INTERFACES in self._words:
-            found.append(of_interfaces(self._displacement.interfaces(weights)))
-        return found
+            gauges.append(of_interfaces(self._displacement.interfaces(weights)))
+        return gauges
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
-        """The same, seen from the other side where the sign is negative.
+        """Gauges of states, of their mirror images where the sign is negative.
 
         Points inside have no mirror image, those on the surface have: σ_XX there stands for both.
         """
         if not self._words:
-            return []  # no derivative is taken that nobody asks for
+            return []  # no derivative is taken that is not requested
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
         return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
 
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
-        """What the fields' last digits can do to stresses, relative; those on the surface for all."""
+        """Effect of rounding of the fields on stresses, relative: that on the surface for every word."""
         if not self._words:
             return []
         σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
@@ -170,14 +172,14 @@ class StressGauges:
 
 
 def gauged(task: Task) -> Task:
-    """The task at fewer points inside: some at all distances from the edges, from nearest to farthest."""
-    points, around = (_some(all_) for all_ in (task.places.points, task.places.around))
+    """Task at fewer points inside, picked at all distances from the edges, from nearest to farthest."""
+    points, around = (_picked(all_) for all_ in (task.places.points, task.places.around))
     if points is task.places.points and around is task.places.around:
         return task
     return replace(task, places=replace(task.places, points=points, around=around))
 
 
-def _some(points: NDArray) -> NDArray[np.float64]:
+def _picked(points: NDArray) -> NDArray[np.float64]:
     if len(points) <= _POINTS:
         return points
     X, Y = points.T
@@ -186,12 +188,12 @@ def _some(points: NDArray) -> NDArray[np.float64]:
     return points[np.sort(picked)]
 
 
-#: Levels that are held at once: two differences measure the error.
+#: Levels that are held in memory: two differences measure the error.
 _HELD = 3
 
 
 class Spaces(Protocol):
-    """What gives the spaces of a ladder."""
+    """Source of the spaces of a ladder."""
 
     @property
     def plan(self) -> FemPlan: ...
@@ -199,32 +201,32 @@ class Spaces(Protocol):
     def space(self, degree: int, cuts: int = 1) -> Space: ...
 
     def warn(self, text: str) -> None:
-        """What the user should know."""
+        """Warn the user."""
 
 
 class Level(Protocol):
-    """A solution at one degree; what it measures can be asked for after its release."""
+    """Solution at one degree; its gauges can be evaluated after its release."""
 
     @property
     def space(self) -> Space: ...
     @property
     def factor(self) -> Any:
-        """Of the linear system, with numbers of its work."""
+        """Factor of the linear system, with numbers of its work."""
 
     @property
     def mirrored(self) -> bool:
-        """Does ``rounding`` say what mirror images show, and not only what rounding might do?"""
+        """True where ``rounding`` is that of mirror images, not only a bound on rounding."""
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        """What the error is measured on of states with these values of σ_XY/σ_YY.
+        """Gauges of states with values g of σ_XY/σ_YY.
 
         Args:
             g: σ_XY/σ_YY, (states,).
-            load: of each state [N/m], (states,); that of the task if not given.
+            load: load of each state [N/m], (states,); the task's if None.
         """
 
     def rounding(self, g: NDArray) -> list[float]:
-        """What rounding alone is seen to do to each of these, relative."""
+        """Effect of rounding alone on each gauge, relative."""
 
     def release(self) -> None:
         """Free factor and fields."""
@@ -240,13 +242,13 @@ class Ladder:
         work: gives spaces.
         task: the speed.
         solved: solves on a space for all values of g.
-        degree: to begin with; the plan's if not given.
+        degree: degree to begin with; the plan's if None.
 
     Attributes:
-        degree: of the last level.
-        levels: the last ones.
-        changes: largest change from the degree before of what the error is measured on, by degree and by
-            word of output.quantities.
+        degree: degree of the last level.
+        levels: the last levels.
+        changes: largest relative change of the gauges from the degree before, by degree and by word of
+            output.quantities.
     """
 
     def __init__(
@@ -261,7 +263,7 @@ class Ladder:
         self._work = WorkDone()
 
     def add(self, g: NDArray, degree: int, cuts: int = 1) -> None:
-        """Solve at a degree for all values of g; the factor before makes room."""
+        """Solve at a degree for all values of g; the previous factor is freed first."""
         for level in self.levels[-1:]:
             level.release()
         self.levels.append(self._solved(self.work.space(degree, cuts), g))
@@ -300,12 +302,12 @@ class WorkDone:
     largest_condition: float = 0.0
 
     def count(self, level: Any) -> None:
-        """Count the work of what has a factor."""
+        """Count the work of a level by its factor."""
         factor = level.factor
         self.add(WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition))
 
     def add(self, other: "WorkDone") -> None:
-        """Count other work, too."""
+        """Add other work."""
         self.factorisations += other.factorisations
         self.back_substitutions += other.back_substitutions
         self.iterations = max(self.iterations, other.iterations)
@@ -313,19 +315,19 @@ class WorkDone:
         self.largest_condition = max(self.largest_condition, other.largest_condition)
 
 
-#: What rounding does, over what of it breaks the mirror image.
+#: Effect of rounding, over its part that breaks the mirror image.
 ROUNDING = 3.0
 
-#: What higher moments do without friction, over what they do at σ_XY = σ_YY.
+#: Effect of higher moments without friction, over that at σ_XY = σ_YY.
 _UPRIGHT = 0.1
 
 #: States, spread over all of a speed, whose measured error decides the degree.
 PROBES = 9
 
 
-#: Degrees over which it is seen how changes fall, and by how much what is left at the highest degree has
-#: to miss the tolerance, were they to go on so, before a ladder ends there.
-_SEEN, _DOUBT = 2, 3.0
+#: Degrees over which the decay of changes is measured; a ladder ends early where the error extrapolated
+#: to the highest degree exceeds the tolerance by this factor.
+_DECAY, _DOUBT = 2, 3.0
 
 
 @contextmanager
@@ -333,12 +335,12 @@ def climbed(
     work: Discretisation, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any],
     degree: int | None = None, share: float = 1.0,
 ) -> Iterator[tuple[Ladder, "MeasuredError"]]:  # fmt: skip
-    """A ladder whose degree was raised until the measured error is within tolerance; it is freed at last.
+    """Ladder whose degree was raised until the measured error is within tolerance; it is freed at exit.
 
     Args:
-        work, task, solved, degree: of the :class:`Ladder`.
+        work, task, solved, degree: as of :class:`Ladder`.
         g: the speed's values of σ_XY/σ_YY, sorted.
-        share: of the tolerance that the error may take.
+        share: share of the tolerance that the error may take.
     """
     ladder = Ladder(work, task, solved, degree)
     try:
@@ -351,29 +353,29 @@ def climbed(
 def reached(
     work: Any, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
 ) -> Iterator[tuple[Ladder, "MeasuredError"]]:
-    """The same, on cells for a tighter tolerance where those for the wanted one do not do at any degree.
+    """Ladder as of :func:`climbed`, on finer cells where no degree reaches the tolerance on the plan's.
 
     Args:
-        work, task, solved: of the :class:`Ladder`; the work with its ``finer``, which has such cells.
+        work, task, solved: as of :class:`Ladder`; ``work.finer`` has the finer cells.
         g: the speed's values of σ_XY/σ_YY, sorted.
     """
     tolerance = work.plan.tolerance
     with climbed(work, task, g, solved) as (ladder, error):
         if not error.of_cells:
-            yield ladder, error.told()
+            yield ladder, error.warned()
             return
     with climbed(work.finer, task, g, solved, None, tolerance / work.finer.plan.tolerance) as finer:
         ladder, error = finer
-        yield ladder, error.told()
+        yield ladder, error.warned()
 
 
 def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
     """Raise the degree until the measured error of sample states is within tolerance, or hardly falls.
 
     Args:
-        ladder: without a level.
+        ladder: ladder without a level.
         g: the speed's values of σ_XY/σ_YY, sorted.
-        share: of the tolerance that the error may take.
+        share: share of the tolerance that the error may take.
     """
     plan = ladder.work.plan
     for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
@@ -396,9 +398,9 @@ def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
 
 
 def _stalls(changes: dict[int, float], degree: int, tolerance: float) -> bool:
-    """Do changes fall so slowly that the highest degree would not reach the tolerance either?"""
-    before, last = changes.get(degree - _SEEN, 0.0), changes[degree]
-    ρ = (last / before) ** (1.0 / _SEEN) if before else 0.0
+    """True where changes fall so slowly that the highest degree would not reach the tolerance either."""
+    before, last = changes.get(degree - _DECAY, 0.0), changes[degree]
+    ρ = (last / before) ** (1.0 / _DECAY) if before else 0.0
     if ρ >= 1.0:
         return True
     at_last = last * ρ ** (DEGREES[1] - degree)
@@ -406,27 +408,27 @@ def _stalls(changes: dict[int, float], degree: int, tolerance: float) -> bool:
 
 
 class MeasuredError:
-    """How far the last level is off, by what changed from level to level.
+    """Error of a ladder's last level, estimated from changes from level to level.
 
     Args:
         ladder: with three levels of rising degree; or with a better one than the last, of a fixed degree.
-        probes: values of σ_XY/σ_YY that stand for all of the speed.
-        loads: of these probes [N/m]; that of the task if not given.
-        share: of the tolerance that the error may take.
+        probes: values of σ_XY/σ_YY that stand for all of the speed, (probes,).
+        loads: load of each probe [N/m]; the task's if None.
+        share: share of the tolerance that the error may take.
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
-        excessive: is an error larger than the tolerance, and would a higher degree make it smaller?
-        of_cells: is it, and the most of it neither rounding nor what the outer radius leaves?
-        worst: the largest error of the probes.
+        excessive: True where an error exceeds the tolerance, and a higher degree would make it smaller.
+        of_cells: True where, besides, most of it is neither rounding nor the effect of the outer radius.
+        worst: largest relative error of the probes.
     """
 
     def __init__(
         self, ladder: Ladder, probes: NDArray, loads: NDArray | None = None, share: float = 1.0
     ) -> None:
         self._ladder = ladder
-        found = [level.measured(probes, loads) for level in ladder.levels]
-        self._sample = _changes(found)
+        gauges = [level.measured(probes, loads) for level in ladder.levels]
+        self._sample = _changes(gauges)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
         if not ladder.levels[-1].mirrored:
             # Only what rounding might do is known there; what it does is in the last change, once.
@@ -439,22 +441,22 @@ class MeasuredError:
                 by_word = {word: float(pair[i].max()) for word, pair in self._sample.items()}
                 ladder.changes[degree] = by_word
                 self.changes[degree] = max(by_word.values(), default=0.0)
-        tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(found[-1], probes)
+        tolerance, unseen = share * ladder.work.plan.tolerance, self._unseen(gauges[-1], probes)
         # Where the outer radius alone spoils the tolerance, the cells need not do better than it.
-        errors = self._errors(found, probes)
+        errors = self._errors(gauges, probes)
         wrong = {
             name: error > np.maximum(tolerance, 1.1 * unseen[name]) for name, error in errors.items()
         }
-        self.excessive = any(bool(one.any()) for one in wrong.values())
+        self.excessive = any(bool(states.any()) for states in wrong.values())
         self.of_cells = not ladder.work.plan.fixed and any(
-            bool((one & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
-            for name, one in wrong.items()
+            bool((states & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
+            for name, states in wrong.items()
         )
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
         self._tolerance = tolerance
 
-    def told(self) -> "MeasuredError":
-        """Itself; a warning says where the tolerance is not reached."""
+    def warned(self) -> "MeasuredError":
+        """This error, after a warning where the tolerance is not reached."""
         ladder = self._ladder
         if self.excessive and not ladder.work.plan.fixed:
             ladder.work.warn(
@@ -465,7 +467,7 @@ class MeasuredError:
         return self
 
     def record(self) -> dict[str, list[float]]:
-        """The changes by degree, as they are archived."""
+        """Changes by degree, as they are archived."""
         changes = np.zeros(DEGREES[1] + 1)
         for degree, change in self.changes.items():
             changes[degree] = change
@@ -474,27 +476,30 @@ class MeasuredError:
     def of(
         self, g: NDArray, load: Any = None, last: Callable[[], list[Gauge]] | None = None
     ) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by the word of output.quantities that asks for them.
+        """Estimated relative errors, (states,), by word of output.quantities.
 
         Args:
             g: σ_XY/σ_YY, (states,).
-            load: of each state [N/m], (states,); that of the task if not given.
-            last: gives what is measured of these states on the last level, from what is known of them.
+            load: load of each state [N/m], (states,); the task's if None.
+            last: gives the gauges of these states on the last level, where they have been solved.
         """
         *coarser, finest = self._ladder.levels
-        found = [level.measured(g, load) for level in coarser]
-        return self._errors([*found, last() if last else finest.measured(g, load)], g)
+        gauges = [level.measured(g, load) for level in coarser]
+        return self._errors([*gauges, last() if last else finest.measured(g, load)], g)
 
-    def _errors(self, found: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
-        unseen = self._unseen(found[-1], g)
-        own = {gauge.word: gauge.left for gauge in found[-1]}
+    def _errors(self, gauges: list[list[Gauge]], g: NDArray) -> dict[str, NDArray[np.float64]]:
+        unseen = self._unseen(gauges[-1], g)
+        own = {gauge.word: gauge.unresolved for gauge in gauges[-1]}
         return {
-            word: self._left(word, changes) + unseen[word] + own[word] + ROUNDING * self._rounding[word]
-            for word, changes in _changes(found).items()
+            word: self._of_levels(word, changes)
+            + unseen[word]
+            + own[word]
+            + ROUNDING * self._rounding[word]
+            for word, changes in _changes(gauges).items()
         }
 
-    def _left(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
-        """Estimated relative errors that the levels show, (states,)."""
+    def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
+        """Estimated relative errors by changes from level to level, (states,)."""
         rate = self._rate(word)
         if self._ladder.work.plan.fixed:
             return before(changes[0], rate)
@@ -502,12 +507,12 @@ class MeasuredError:
         return remaining(first, second, self._sample[word], rate, self._rounding[word])
 
     def _rate(self, word: str) -> Rate:
-        """What is counted on, or how changes fell over two degrees: over one it may be luck."""
+        """Usual rate of convergence, or a slower one by the decay over two degrees; one may be luck."""
         rate, changes, degree = self._usual(word), self._ladder.changes, self._ladder.degree
-        earlier = changes.get(degree - _SEEN, {}).get(word)
+        earlier = changes.get(degree - _DECAY, {}).get(word)
         if not earlier:
             return rate
-        ρ = min((changes[degree][word] / earlier) ** (1.0 / _SEEN), SLOWEST)
+        ρ = min((changes[degree][word] / earlier) ** (1.0 / _DECAY), SLOWEST)
         return Rate(max(ρ, rate.usual), max(ρ, rate.believed), rate.least)
 
     def _usual(self, word: str) -> Rate:
@@ -519,32 +524,32 @@ class MeasuredError:
         return SLOWER if self._ladder.task.body.layered else of_degrees(2)
 
     def _unseen(self, gauges: list[Gauge], g: NDArray) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors that no level sees: of outer radius, innermost cells; (states,)."""
+        """Estimated errors common to all levels, of outer radius and innermost cells, (states,)."""
         plan, response = self._ladder.work.plan, self._ladder.task.response
-        kind, wanted, margin = plan.kind, plan.wanted, response.margin
-        innermost = kind.unseen(wanted, self._ladder.degree, plan.cuts, margin)
+        kind, target, margin = plan.kind, plan.wanted, response.margin
+        innermost = kind.unseen(target, self._ladder.degree, plan.cuts, margin)
         # Measured at far boundaries of 100 a, 1e3 a and 1e4 a; see docs/verification.md. n times the
         # margin is about the surface's compliance at rest, 1/10 to 10 for the solids that were tried.
         compliance = 2.0 + 0.55 * max(float(np.log(4.0 * response.n * margin)), -1.0)
         # Stiffness across the depth moves the boundary nearer, unless it is drawn for the solid.
         nearer = max(response.m / response.n, 1.0) ** 0.5
         nearer /= 1.0 if kind.chart.contracts else response.contraction.imag
-        far = nearer * kind.truncation(wanted, margin)
+        far = nearer * kind.truncation(target, margin)
         lean = response.n12 / response.n
         # Without friction nothing leans to a side, but every other of the higher moments needs no side.
-        leaning = np.abs(g) + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(wanted) > 1)
+        leaning = np.abs(g) + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(target) > 1)
         of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
-        found = {}
+        errors = {}
         for gauge in gauges:
             if gauge.word == INTENSITIES:
-                found[gauge.word] = innermost + far * of_edges
+                errors[gauge.word] = innermost + far * of_edges
             else:
                 of_places = compliance * (0.3 + 1.9 / gauge.scale.min(axis=1)) / margin ** (1.0 / 6.0)
                 # No interface is near an edge.
-                beside = kind.unseen_beside(wanted, self._ladder.degree, plan.cuts)
+                beside = kind.unseen_beside(target, self._ladder.degree, plan.cuts)
                 beside *= gauge.word != AT_INTERFACES
-                found[gauge.word] = innermost + beside + far * (of_edges + of_places)
-        return found
+                errors[gauge.word] = innermost + beside + far * (of_edges + of_places)
+        return errors
 
 
 def _changes(levels: list[list[Gauge]]) -> dict[str, list[NDArray[np.float64]]]:

@@ -24,7 +24,7 @@ MODES = {
     "contact": Mode(punch.solver, punch.one_state, punch.PunchLevel, punch.PunchesAtSpeed),
     "traction": Mode(prescribed_pressure.formula_solver, prescribed_pressure.formula_state),
     OWN_PRESSURE: Mode(prescribed_pressure.solver, prescribed_pressure.one_state),
-    FOUND: Mode(punch.free_solver, punch.free_state, punch.FoundLevel, punch.FoundAtSpeed),
+    FOUND: Mode(punch.free_solver, punch.free_state, punch.FreeLevel, punch.FreeAtSpeed),
     OWN_MESHES: Mode(kinked.solver),
     FOLLOWED: Mode(followed.solver),
     LOADS: Mode(prescribed_pressure.layered_solver),
@@ -36,11 +36,11 @@ class FiniteElements:
 
     Args:
         plan: the plan, with finite elements.
-        progress: is told about the work.
+        progress: shows the work.
         clock: takes wall time by step.
 
     Attributes:
-        work: the meshes and spaces.
+        work: meshes and spaces.
     """
 
     def __init__(self, plan: Plan, progress: Progress, clock: Clock) -> None:
@@ -50,13 +50,13 @@ class FiniteElements:
 
     @cached_property
     def _trained(self) -> Trained | None:
-        """What tells of speeds that are not solved: made at the first of them, of all of them."""
+        """Fit through solved speeds for all others, made when first needed; None without one."""
         if self.work.plan.sweep is None:
             return None
         return train(self.work, list(self._tasks), self._mode, self._progress.say)
 
     def begin(self) -> None:
-        """What serves all speeds; under MPI before they are shared out, by all ranks together."""
+        """Make the mesh and the fit of all speeds; collective, before speeds are shared out."""
         self.work.mesh(self.work.plan.cuts)
         with quiet_compiler():
             self._trained  # noqa: B018 - cached
@@ -75,6 +75,6 @@ class FiniteElements:
     def one_state(
         self, task: Task, g: float, degree: int
     ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
-        """Space, displacement fields, their weights and the pressure of one state, no error measured."""
-        with quiet_compiler(), self._mode.one_state(self.work, task, g, degree) as found:
-            yield found
+        """Space, displacement fields, their weights and the pressure of one state, without estimates."""
+        with quiet_compiler(), self._mode.one_state(self.work, task, g, degree) as state:
+            yield state

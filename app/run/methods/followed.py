@@ -1,17 +1,13 @@
-"""Punches over layers whose contact ends where the pressure says, by finite elements.
+"""Contacts with free ends over layers, by finite elements on meshes drawn for each contact.
 
-Layers have a length, so each contact has a mesh drawn for its half-width. That is found by solving on a
-few of them, at a lower degree at first, until the load that makes a contact of that size is the one
-wanted; then the degree rises until the measured error is within tolerance.
+Layers have a length, so each contact has a mesh drawn for its half-width. The half-width is solved for on
+a few meshes, at a lower degree at first, until the load that makes a contact of that size is the load of
+the task; then the degree rises until the measured error is within tolerance (:class:`FollowedState`).
 
-One contact over layers: its half-width found, the degree raised until the error is small enough.
-
-A contact over layers at one degree on a mesh drawn for its half-width; what its error is measured on.
-
-Held under the punch are its height around a middle that is nearly known, what that changes by where the
-middle moves, and a constant; what they carry and the intensities at both ends are linear in their
-amplitudes. So the mesh's half-width has a load of its own, at which no intensity is left, and a middle:
-of a parabola at once, of others once that hardly moves.
+Three displacements are prescribed under the punch: its height around a nearby middle, the change of that
+height where the middle moves, and a constant. Their loads and the intensities at both ends are linear in
+their amplitudes. So the half-width of a mesh has a load of its own, at which both intensities vanish, and
+a middle: of a parabola at once, of other profiles once the middle hardly moves (:class:`FollowedLevel`).
 """
 
 from collections.abc import Iterator
@@ -50,25 +46,25 @@ from .punch import negligible, tests_of
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 #: Weights of a single field.
 ONE = np.ones((1, 1))
-#: Of the load's logarithm, by how much it grows with that of the half-width; of a half-plane it is 2.
+#: Growth of the load's logarithm with that of the half-width, as on a half-plane under a parabola.
 GROWTH = 2.0
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A task as a contact of some half-width sees it; lengths are over that.
+    """Task scaled to a contact: its lengths are over the contact's half-width.
 
     Attributes:
         task: the task, under one load.
-        half_width: [m].
+        half_width: half-width of the contact [m].
     """
 
     task: Task
     half_width: float
 
     @cached_property
-    def seen(self) -> Task:
-        """With that length."""
+    def scaled(self) -> Task:
+        """The task with lengths over the half-width."""
         task, h = self.task, self.half_width
         places, depths = task.places, task.body.solid.depths / h  # type: ignore[attr-defined]
         return replace(
@@ -79,28 +75,28 @@ class Sized:
         )
 
     def plan(self, plan: FemPlan, words: frozenset[str], tolerance: float) -> FemPlan:
-        """Of a mesh drawn for it.
+        """Plan of a mesh drawn for the contact.
 
         Args:
-            plan: of all contacts.
-            words: of output.quantities that ask for stresses of it.
-            tolerance: relative.
+            plan: plan of all contacts.
+            words: words of output.quantities that request stresses.
+            tolerance: relative tolerance.
         """
-        seen = self.seen
-        places, interfaces = seen.places, seen.places.interfaces
-        kind = fem.kind_of(interfaces, [seen.response])
+        scaled = self.scaled
+        places, interfaces = scaled.places, scaled.places.interfaces
+        kind = fem.kind_of(interfaces, [scaled.response])
         below = places.points if BELOW in words else np.empty((0, 2))
         if AT_INTERFACES in words:
             X, depth = np.meshgrid(places.along, interfaces)
             below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
         X = places.X if ON_SURFACE in words else np.empty(0)
-        asked = Places(X, below, places.around)
-        wanted = wanted_for(tolerance, asked, plan.sharp, seen.response.spread)
-        wanted = fem.wanted_of_free_ends_on_layers(wanted)
-        degree = kind.degree(wanted, seen.response.margin)
+        requested = Places(X, below, places.around)
+        target = wanted_for(tolerance, requested, plan.sharp, scaled.response.spread)
+        target = fem.wanted_of_free_ends_on_layers(target)
+        degree = kind.degree(target, scaled.response.margin)
         return replace(
-            plan, kind=kind, wanted=wanted, drawn=kind.drawn(wanted),
-            degrees=(degree,) * len(plan.degrees), tests=fem.tests_of(seen.body.solid, kind, wanted),
+            plan, kind=kind, wanted=target, drawn=kind.drawn(target),
+            degrees=(degree,) * len(plan.degrees), tests=fem.tests_of(scaled.body.solid, kind, target),
         )  # fmt: skip
 
 
@@ -108,9 +104,9 @@ class FollowingMesh:
     """Spaces on a mesh of one contact; see :class:`Discretisation`.
 
     Args:
-        work: of all contacts.
-        plan: of the mesh.
-        stresses: words of output.quantities that ask for stresses of it.
+        work: discretisation of all contacts.
+        plan: plan of the mesh.
+        stresses: words of output.quantities that request stresses.
     """
 
     def __init__(self, work: Discretisation, plan: FemPlan, stresses: frozenset[str]) -> None:
@@ -120,11 +116,11 @@ class FollowingMesh:
 
     @cached_property
     def finer(self) -> "FollowingMesh":
-        """With cells for a tighter tolerance."""
+        """Spaces on a mesh with cells for a tighter tolerance."""
         return FollowingMesh(self._work, on_finer_cells(self.plan), self.stresses)
 
     def warn(self, text: str) -> None:
-        """What the user should know."""
+        """Warn the user."""
         self._work.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
@@ -136,19 +132,19 @@ class FollowedLevel:
     """A contact at one degree; see :class:`galinx.app.run.methods.error.Level`.
 
     Args:
-        work: the mesh, and what is asked for.
-        task: with lengths over the mesh's half-width, under the load that is wanted.
-        space: of the degree.
+        work: the mesh, and the words of the requested stresses.
+        task: the task with lengths over the mesh's half-width.
+        space: space of the degree.
         g: σ_XY/σ_YY.
-        profile: of the punch.
-        near: middle of the contact near by [m].
+        profile: profile of the punch.
+        near: middle of a contact near by [m].
 
     Attributes:
-        contact: nodal forces of the state, over that load.
-        off: logarithm of the load that makes a contact of this half-width over the one that is wanted.
+        contact: nodal forces of the state, over the task's load.
+        off: logarithm of the load that makes a contact of this half-width, over the task's load.
         centre: middle of the contact over its half-width.
-        field: its displacement over N/(2μ), condensed.
-        pressure: the contact's.
+        field: displacement over N/(2μ), condensed.
+        pressure: pressure of the contact.
         factor: of the linear system, freed, with numbers of its work.
     """
 
@@ -190,16 +186,16 @@ class FollowedLevel:
 
     @property
     def half_width(self) -> float:
-        """Of the contact that carries the load that is wanted, over the mesh's, about."""
+        """Half-width of the contact under the task's load, over the mesh's half-width, approximately."""
         return float(np.exp(-self.off / GROWTH))
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        """Of the one state there is."""
+        """Gauges of the level's only state."""
         σ_YY = self.pressure.σ_YY(self._task.places.X)
         return [self._of_forces(), *self._gauges.of(self._g, ONE, σ_YY)]
 
     def _of_forces(self) -> Gauge:
-        """The pressure all over the contact, its moments over the load, and where the contact ends."""
+        """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
         σ = self.pressure.σ_YY(_ACROSS)
         moments, lengths = self._moments[:, 1:6], np.array([[self.off / GROWTH, self.centre]])
         values = np.concatenate([σ, moments, lengths], axis=1)
@@ -207,23 +203,23 @@ class FollowedLevel:
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(self.pressure.factor(_ACROSS)).max(axis=1)
         ends = np.abs(self.pressure.factor(np.array([-1.0, 1.0]))).max(axis=1)
-        left = self.pressure.unresolved * ends / factor
+        unresolved = self.pressure.unresolved * ends / factor
         return Gauge(
-            INTENSITIES, values, np.concatenate([stresses.of_factor(σ), *of_others], axis=1), left
+            INTENSITIES, values, np.concatenate([stresses.of_factor(σ), *of_others], axis=1), unresolved
         )
 
     @property
     def mirrored(self) -> bool:
-        """The image of a contact is another."""
+        """False: the mirror image of the state is another contact."""
         return False
 
     def rounding(self, g: NDArray) -> list[float]:
-        """What a solve leaves of its forces stands for the rounding of these."""
+        """Effect of rounding on each gauge, relative; on the pressure by the solve's residual."""
         σ_YY = self.pressure.σ_YY(self._task.places.X)
         return [self.factor.largest_residual, *self._gauges.rounding(self._g, ONE, σ_YY)]
 
     def release(self) -> None:
-        """There is one vector only."""
+        """Keep all: a level holds a single vector."""
 
     def destroy(self) -> None:
         self.field.destroy()
@@ -232,8 +228,8 @@ class FollowedLevel:
 def _balanced(
     solved: SlidingPunch, g: NDArray, K_I: Any, half_width: float
 ) -> tuple[ContactStates, float, float]:
-    """The state without intensities, the logarithm of its load over the wanted one, and by how much its
-    middle is moved, over the half-width [m].
+    """State without intensities, logarithm of its load over the task's, and shift of its middle over the
+    half-width [m].
 
     Raises:
         SolveError: no load makes such a contact.
@@ -242,7 +238,7 @@ def _balanced(
     K = np.stack([K_I(part) for part in parts], axis=1)
     loads = np.array([part.load[0] for part in parts])
     amplitudes = np.linalg.solve(np.vstack([loads, K]), np.array([-2.0, 0.0, 0.0]))
-    # Over the load that it takes the punch's height is that over the wanted one times their quotient.
+    # Over its own load the punch's height is that over the task's load times their quotient.
     _, share, slope = amplitudes.tolist()
     if not share > 0.0:
         raise SolveError(
@@ -255,13 +251,13 @@ def _balanced(
 #: Meshes at most, the largest step of the half-width's logarithm, and the least and the most by which the
 #: load's may grow with it.
 _MESHES, _LARGEST, _SLOPES = 40, 1.2, (0.5, 15.0)
-#: How near the half-width has to be before a degree is high, by how much it is lower until then, and how
-#: near, over the tolerance, before nothing is moved any more.
+#: Step of the half-width's logarithm below which the degree is raised, by how much it is lower until
+#: then, and step over the tolerance below which the half-width is accepted.
 _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.1
-#: Least difference of the half-width's logarithm by which loads of two meshes tell how these grow.
+#: Least difference of the half-width's logarithm from which the growth of the load is computed.
 _APART = 1e-5
-#: Share of the tolerance that may be left of it once all is solved; a mesh more is drawn otherwise.
-_LEFT = 0.3
+#: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
+_ERROR = 0.3
 
 #: No stresses.
 _NONE: frozenset[str] = frozenset()
@@ -272,10 +268,10 @@ class FollowedState:
     """A solved contact; lengths over its half-width from its middle.
 
     Attributes:
-        task: the speed, and the load, as this contact sees them.
-        half_width, centre: of the contact [m].
-        level: the last.
-        estimates: relative errors by the word of output.quantities that asks for what they are of.
+        task: the speed and the load, with lengths over the half-width.
+        half_width, centre: half-width and middle of the contact [m].
+        level: the last level.
+        estimates: estimated relative errors by word of output.quantities.
         record: numbers of the work, as they are archived.
     """
 
@@ -288,7 +284,7 @@ class FollowedState:
 
     @cached_property
     def surface(self) -> Surface:
-        """Stresses on the surface, of one state."""
+        """Stresses on the surface, of a single state."""
         σ_YY = self.level.pressure.σ_YY(self.task.places.X)
         return self.level.displacement.surface(self.level.contact.g, ONE, σ_YY)
 
@@ -307,7 +303,7 @@ class FollowedState:
 
 
 class _Contact:
-    """A contact that is looked for.
+    """Search for the half-width and the middle of a contact.
 
     Args:
         work: gives meshes.
@@ -322,22 +318,22 @@ class _Contact:
         self._before: tuple[float, float] | None = None
 
     def settled(self, h: float) -> float:
-        """The half-width [m] that carries the load, from one near by.
+        """Half-width [m] of the contact that carries the load, from a half-width near by.
 
         Raises:
-            SolveError: none was found.
+            SolveError: no half-width was found.
         """
         x, tolerance, rough = float(np.log(h)), self.work.plan.tolerance, True
         for _ in range(_MESHES):
             off, lean = self._off(float(np.exp(x)), rough)
             self._learn(x, off)
             x_next = self.moved(x, off)
-            # What the middle moves by is known to the square of that.
+            # The shift of the middle is accurate to its square.
             step = max(abs(x_next - x), lean**2)
             if not rough and step <= _SETTLED * tolerance:
                 return float(np.exp(x_next))
             if rough and step <= max(_ROUGH, _SETTLED * tolerance):
-                # What a low degree says of the load is no measure of what a high one does.
+                # Loads of a low degree do not compare with those of a high one.
                 rough, self._before = False, None
             x = x_next
         raise SolveError(
@@ -346,25 +342,25 @@ class _Contact:
         )
 
     def moved(self, x: float, off: float) -> float:
-        """The half-width's logarithm, by how the load grows with it."""
+        """Next logarithm of the half-width, by the growth of the load with it."""
         return x - float(np.clip(off / self._growth, -_LARGEST, _LARGEST))
 
     def _learn(self, x: float, off: float) -> None:
-        """How the load grows, by two half-widths of one degree."""
+        """Update the growth of the load with the half-width, by two half-widths of equal degree."""
         if self._before is not None and abs(x - self._before[0]) > _APART:
             low, high = _SLOPES
             self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
         self._before = x, off
 
     def _off(self, h: float, rough: bool) -> tuple[float, float]:
-        """Logarithm of the load that makes a contact of this half-width, over the one that is wanted; and
-        by how much the middle moves, over the half-width."""
+        """Logarithm of the load that makes a contact of half-width h [m], over the task's; and shift of
+        the middle over h."""
         sized = Sized(self.task, h)
         plan = sized.plan(self.work.plan, _NONE, self.work.plan.tolerance)
         degree = plan.degrees[self.task.number]
         mesh = FollowingMesh(self.work, plan, _NONE)
         space = mesh.space(max(degree - _LOWER, DEGREES[0]) if rough else degree)
-        level = self.level(mesh, sized.seen, space)
+        level = self.level(mesh, sized.scaled, space)
         level.destroy()
         before, self._centre = self._centre, h * level.centre
         return level.off, (self._centre - before) / h
@@ -372,12 +368,12 @@ class _Contact:
     def level(self, mesh: FollowingMesh, task: Task, space: Any) -> FollowedLevel:
         """The contact on a space."""
         profile = self.task.body.profile
-        found = FollowedLevel(mesh, task, space, self.g, profile, self._centre)
-        self.done.count(found)
-        return found
+        contact = FollowedLevel(mesh, task, space, self.g, profile, self._centre)
+        self.done.count(contact)
+        return contact
 
     def solved(self, h: float) -> tuple[Sized, FollowedLevel, dict[str, float]]:
-        """On a mesh drawn for a half-width [m], as good as it has to be; and relative errors by word."""
+        """Contact on a mesh drawn for a half-width [m], solved to the tolerance; errors by word."""
         sized = Sized(self.task, h)
         words = self.work.stresses
         mesh = FollowingMesh(
@@ -386,22 +382,22 @@ class _Contact:
         g = np.array([self.g])
 
         def level(space: Any, _: NDArray) -> FollowedLevel:
-            return self.level(mesh, sized.seen, space)
+            return self.level(mesh, sized.scaled, space)
 
-        with reached(mesh, sized.seen, g, level) as (ladder, error):
+        with reached(mesh, sized.scaled, g, level) as (ladder, error):
             of = {word: float(values[0]) for word, values in error.of(g).items()}
             self.record = error.record()
             return sized, ladder.levels.pop(), of
 
 
 def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDone) -> FollowedState:
-    """The contact at a friction.
+    """Solve the contact at a friction.
 
     Args:
         work: gives meshes.
         task: the speed, and the load.
         g: σ_XY/σ_YY.
-        near: half-width near by [m].
+        near: half-width of a contact near by [m].
         done: takes the numbers of the work.
 
     Raises:
@@ -411,7 +407,7 @@ def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDo
     h = contact.settled(near)
     sized, last, estimates = contact.solved(h)
     h = float(np.exp(contact.moved(float(np.log(h)), last.off)))
-    if abs(h / sized.half_width - 1.0) > _LEFT * work.plan.tolerance:
+    if abs(h / sized.half_width - 1.0) > _ERROR * work.plan.tolerance:
         last.destroy()
         sized, last, estimates = contact.solved(h)
         h = float(np.exp(contact.moved(float(np.log(h)), last.off)))
@@ -420,12 +416,12 @@ def solved(work: Discretisation, task: Task, g: float, near: float, done: WorkDo
     estimates = {word: value + off for word, value in estimates.items()}
     assert INTENSITIES in estimates
     size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
-    return FollowedState(sized.seen, h, h * last.centre, last, estimates, size | contact.record)
+    return FollowedState(sized.scaled, h, h * last.centre, last, estimates, size | contact.record)
 
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FollowedAtSpeed"]:
-    """States are solved when they are asked for, each on meshes of its own."""
+    """Solver whose states are solved when first needed, each on meshes of its own."""
     at = FollowedAtSpeed(work, task)
     try:
         yield at
@@ -439,17 +435,17 @@ class FollowedAtSpeed(OwnMeshesAtSpeed):
     def states(self, g: NDArray, load: Any = None) -> "FollowedPunches":
         body = self.task.body.loaded(load)
         loads = np.broadcast_to(body.load, g.shape).tolist()
-        found = [self._state(*state) for state in zip(g.tolist(), loads)]
-        return FollowedPunches(self.task, g, found, body)
+        contacts = [self._state(*state) for state in zip(g.tolist(), loads)]
+        return FollowedPunches(self.task, g, contacts, body)
 
     def _solve(self, g: float, load: float) -> FollowedState:
         task = alone(self.task, load)
         return solved(self.work, task, g, self._near(g, load, task), self._done)
 
     def _near(self, g: float, load: float, task: Task) -> float:
-        """Half-width [m] to begin with: of the nearest state, or that at rest."""
+        """Half-width [m] to begin with: that of the solved state of nearest friction, or that at rest."""
         same = [
-            (abs(other - g), state.half_width) for (other, N), state in self._known.items() if load == N
+            (abs(other - g), state.half_width) for (other, N), state in self._kept.items() if load == N
         ]
         return min(same)[1] if same else float(task.body.half_width)
 
@@ -459,34 +455,34 @@ class FollowedPunches(OnOwnMeshes):
 
     @property
     def places(self) -> Places:
-        """Where stresses are."""
+        """Places at which stresses are evaluated."""
         return self.task.places
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
-        return np.array([state.half_width for state in self.found])
+        """Half-width of the contact [m], (states,)."""
+        return np.array([state.half_width for state in self.contacts])
 
     @property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return np.array([state.centre for state in self.found])
+        return np.array([state.centre for state in self.contacts])
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, (states,)."""
-        each = [state.level.pressure.σ_YY for state in self.found]
+        each = [state.level.pressure.σ_YY for state in self.contacts]
         return largest(lambda x: np.concatenate([-σ_YY(x) for σ_YY in each]), lambda i, x: -each[i](x)[0])
 
     @cached_property
     def interfaces(self) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
-        return np.stack([state.interfaces for state in self.found], axis=1)
+        return np.stack([state.interfaces for state in self.contacts], axis=1)
 
     @cached_property
     def σ_ZZ(self) -> NDArray[np.float64]:
         """Normal stress out of the plane at points inside, (states, m)."""
         Y = self.places.points[:, 1]
         return np.array(
-            [state.task.body.σ_ZZ(self.inside[:, i], Y) for i, state in enumerate(self.found)]
+            [state.task.body.σ_ZZ(self.inside[:, i], Y) for i, state in enumerate(self.contacts)]
         )

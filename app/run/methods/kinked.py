@@ -1,19 +1,14 @@
-"""Punches of any convex profile whose contact ends where the pressure says, by finite elements.
+"""Contacts with free ends under punches of any convex profile, by finite elements.
 
-The slope of such a punch, or its derivative, jumps at places that depend on the state, and cells are
-graded towards these: every state has a mesh of its own, once its ends are nearly known. On that the
-degree rises until the measured error is within tolerance. Where contacts of all loads are alike, one
-state of a friction is all of them.
+The slope of such a punch, or its derivative, jumps at places that depend on the state. So the ends are
+solved for first, on the mesh of all speeds, where a few polynomial shapes give the ends of every friction
+and every load, and cells need not resolve a kink (:class:`EndsLevel`). Then every state has a mesh of its
+own, with cells graded towards its kinks, on which the degree rises until the measured error is within
+tolerance (:class:`KinkedState`). Where contacts of all loads differ in size alone, a single state of a
+friction stands for all of them.
 
-One contact with kinks, found, and its degree raised until the measured error is within tolerance.
-
-A contact with kinks at one degree, and what its error is measured on.
-
-Ends of contacts of any convex profile at one speed, by finite elements on the mesh of all speeds.
-
-A few polynomial shapes tell where every friction and every load ends; no mesh knows of a kink there.
-
-What punches share whose contacts have a mesh of their own for every state.
+All contacts with a mesh for every state, those over layers included, share :class:`OwnMeshesAtSpeed` and
+:class:`OnOwnMeshes`.
 """
 
 from collections.abc import Iterator
@@ -64,18 +59,18 @@ from .error import (
 )
 from .punch import PunchLevel, negligible
 
-#: σ_XY/σ_YY and load [N/m]; middle and half-width [m].
+#: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
 State: TypeAlias = tuple[float, float]
 Lengths: TypeAlias = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Ends:
-    """Where a contact ends.
+    """Ends of a contact.
 
     Attributes:
-        centre, half_width: [m].
-        error: estimated, of both over the half-width.
+        centre, half_width: middle and half-width of the contact [m].
+        error: estimated error of both over the half-width.
     """
 
     centre: float
@@ -97,8 +92,8 @@ class EndsLevel(PunchLevel):
     """Ends at one degree; see :class:`PunchLevel`.
 
     Args:
-        work, task, space, g: of that.
-        near: middles and half-widths [m] of states by σ_XY/σ_YY and load, as levels before knew them.
+        work, task, space, g: as of :class:`PunchLevel`.
+        near: middles and half-widths [m] of states by σ_XY/σ_YY and load, from previous levels.
     """
 
     def __init__(
@@ -107,19 +102,19 @@ class EndsLevel(PunchLevel):
         super().__init__(work, task, space, g)
         self._near = near
         self._conditions: dict[float, FreeEnds] = {}
-        self._found: dict[State, Lengths] = {}
+        self._lengths: dict[State, Lengths] = {}
 
     def heights(self) -> NDArray[np.float64]:
         return heights_of_shapes(self.space.chart.surface_position(self.space.contact.s))
 
     def conditions(self, g: NDArray) -> list[FreeEnds]:
-        """Of every friction."""
+        """Conditions at free ends of every friction."""
         missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
         if len(missing):
             self._conditions |= zip(missing.tolist(), self._solved(missing))
         return [self._conditions[value] for value in g.tolist()]
 
-    def found(self, g: NDArray, load: Any = None) -> list[Lengths]:
+    def lengths(self, g: NDArray, load: Any = None) -> list[Lengths]:
         """Middle and half-width [m] of every state.
 
         Raises:
@@ -128,13 +123,13 @@ class EndsLevel(PunchLevel):
         body, last = self.task.body, None
         loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
         states = list(zip(g.tolist(), loads))
-        for state, known in zip(states, self.conditions(g)):
-            if state not in self._found:
+        for state, condition in zip(states, self.conditions(g)):
+            if state not in self._lengths:
                 unit = body.loaded(state[1]).displacement
                 start = self._near.get(state, last)
-                self._found[state] = self._near[state] = known.found(body.profile, unit, start)
-            last = self._found[state]
-        return [self._found[state] for state in states]
+                self._lengths[state] = self._near[state] = condition.found(body.profile, unit, start)
+            last = self._lengths[state]
+        return [self._lengths[state] for state in states]
 
     def _solved(self, g: NDArray) -> list[FreeEnds]:
         parts, local = self.punch.parts(g), FlatPunch(self.task.response, g)
@@ -145,36 +140,36 @@ class EndsLevel(PunchLevel):
         return free_ends(local, K, np.stack([part.load for part in parts], axis=-1))
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        ends = np.array(self.found(g, load))
+        ends = np.array(self.lengths(g, load))
         h = ends[:, 1:]
-        unseen = np.array([[known.unseen] for known in self.conditions(g)])
-        # Half-widths of a level are told over those of none: their logarithms differ by relative changes.
+        unseen = np.array([[condition.unseen] for condition in self.conditions(g)])
+        # Differences of the half-widths' logarithms are relative changes.
         values = np.concatenate([np.log(h), ends[:, :1] / h, unseen], axis=1)
         return [Gauge(INTENSITIES, values, np.ones_like(values))]
 
 
 class EndsAtSpeed:
-    """Ends at one speed, found to the tolerance.
+    """Ends at one speed, solved to the tolerance.
 
     Args:
-        ladder: climbed.
-        error: of its last level.
+        ladder: ladder at its last level.
+        error: error of that level.
     """
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
         self._ladder, self._error = ladder, error
 
     def of(self, g: float, load: float) -> Ends:
-        """Of a state.
+        """Ends of a state.
 
         Raises:
             SolveError: no contact carries the load.
         """
         state, level = (np.array([g]), np.array([load])), self._ladder.levels[-1]
-        ((centre, half_width),) = level.found(*state)
+        ((centre, half_width),) = level.lengths(*state)
         (error,) = self._error.of(*state)[INTENSITIES]
-        (known,) = level.conditions(state[0])
-        return Ends(centre, half_width, float(error) + known.unseen)
+        (condition,) = level.conditions(state[0])
+        return Ends(centre, half_width, float(error) + condition.unseen)
 
     @property
     def done(self) -> WorkDone:
@@ -187,12 +182,12 @@ def alone(task: Task, load: float) -> Task:
     return replace(task, body=task.body.loaded(load), loads=(load,))
 
 
-#: What is known of every surface.
+#: Stresses and slope of every surface.
 _ON_SURFACE = ("σ_YY", "σ_XX", "v_X")
 
 
 class OwnMeshesAtSpeed:
-    """Contacts at one speed, each solved when it is asked for; the last few are kept.
+    """Contacts at one speed, each solved when first needed; the last few are kept.
 
     Args:
         work: gives spaces.
@@ -203,30 +198,30 @@ class OwnMeshesAtSpeed:
         self.work, self.task = work, task
         self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
         self._done = WorkDone()
-        #: By σ_XY/σ_YY and load, those that were asked for last at last.
-        self._known: dict[tuple[float, float], Any] = {}
+        #: States by σ_XY/σ_YY and load, in the order of their last use.
+        self._kept: dict[tuple[float, float], Any] = {}
 
     def record(self) -> dict[str, Any]:
         return self._record | vars(self._done)
 
     def destroy(self) -> None:
-        """Free what states hold."""
-        for state in self._known.values():
+        """Free the kept states."""
+        for state in self._kept.values():
             state.destroy()
 
     def _solve(self, g: float, load: float) -> Any:
-        """A contact, with numbers of its work in ``record``, at σ_XY/σ_YY under a load [N/m]."""
+        """Solve a contact at σ_XY/σ_YY under a load [N/m]; its ``record`` has numbers of the work."""
         raise NotImplementedError
 
     def _state(self, g: float, load: float) -> Any:
-        state = self._known.pop((g, load), None)
+        state = self._kept.pop((g, load), None)
         if state is None:
             state = self._solve(g, load)
             for name, value in state.record.items():
                 self._record[name] = max(self._record.get(name, value), value)
-        self._known[g, load] = state
-        while len(self._known) > OWN_MESHES_KEPT:
-            self._known.pop(next(iter(self._known))).destroy()
+        self._kept[g, load] = state
+        while len(self._kept) > OWN_MESHES_KEPT:
+            self._kept.pop(next(iter(self._kept))).destroy()
         return state
 
 
@@ -237,13 +232,13 @@ class OnOwnMeshes:
     Attributes:
         task: their speed.
         g: σ_XY/σ_YY, (states,).
-        found: of each; of some loads the same where contacts are alike.
+        contacts: solved contact of each state; shared by loads under which contacts differ in size alone.
         body: what slides over what, under the load of each.
     """
 
     task: Task
     g: NDArray[np.float64]
-    found: list[Any]
+    contacts: list[Any]
     body: Body
 
     @cached_property
@@ -254,40 +249,40 @@ class OnOwnMeshes:
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end: none, by condition, (states, 2)."""
+        """K_I at the left and the right end: 0, as both are free, (states, 2)."""
         return np.zeros((len(self.g), 2))
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.array([state.level.contact.normal.sum() for state in self.found])
+        """Normal force over N/2, (states,)."""
+        return np.array([state.level.contact.normal.sum() for state in self.contacts])
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return np.array([state.level.contact.tangential.sum() for state in self.found])
+        """Tangential force over N/2, (states,)."""
+        return np.array([state.level.contact.tangential.sum() for state in self.contacts])
 
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        words = self.found[0].estimates
-        return {word: np.array([state.estimates[word] for state in self.found]) for word in words}
+        """Estimated relative errors, (states,), by word of output.quantities."""
+        words = self.contacts[0].estimates
+        return {word: np.array([state.estimates[word] for state in self.contacts]) for word in words}
 
     @cached_property
     def surface(self) -> Surface:
         """Stresses on the surface."""
-        each = [state.surface for state in self.found]
-        σ_YY, σ_XX, v_X = (np.array([getattr(one, name)[0] for one in each]) for name in _ON_SURFACE)
-        turns = together([one.turns for one in each if one.turns is not None])
+        each = [state.surface for state in self.contacts]
+        σ_YY, σ_XX, v_X = (np.array([getattr(own, name)[0] for own in each]) for name in _ON_SURFACE)
+        turns = together([own.turns for own in each if own.turns is not None])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
-        return np.stack([state.inside for state in self.found], axis=1)
+        return np.stack([state.inside for state in self.contacts], axis=1)
 
 
-#: Most kinks in a contact, and how near to its end one may be.
+#: Most kinks in a contact, and their largest distance from its middle over the half-width.
 _MOST, _NEXT_TO_END = 12, 0.98
 
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
@@ -300,7 +295,7 @@ _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 #: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
 _AROUND_CUSP, _INNERMOST = 4, 30.0
 
-#: Size of the innermost cells at a tip over the distance from where stresses are looked at.
+#: Size of the innermost cells at a tip, over the least distance from it at which stresses are evaluated.
 _OF_TIP = 0.25
 
 #: Weights of a single field.
@@ -308,7 +303,7 @@ ONE = np.ones((1, 1))
 
 
 def places_of_kinks(body: Body, ends: Ends) -> NDArray[np.float64]:
-    """Of those under the contact, over the half-width from its middle.
+    """Positions of the kinks under the contact, over the half-width from its middle, (k,).
 
     Raises:
         SolveError: cells cannot be graded towards them.
@@ -325,7 +320,7 @@ def places_of_kinks(body: Body, ends: Ends) -> NDArray[np.float64]:
 
 
 def _gentle(plan: FemPlan) -> Refinement:
-    """The plan's refinement with rings no steeper than its mesh has them as a rule.
+    """Plan's refinement with rings no steeper than the usual ones of its mesh.
 
     They are steeper where cells are finer in angle, which does at ends that are free: the pressure at a
     kink is no power of the distance, and a ring that spans a fifth of it is slow to follow that.
@@ -337,11 +332,11 @@ def _gentle(plan: FemPlan) -> Refinement:
 
 
 def rings_around_kinks(rings: Refinement, tolerance: float, body: Body) -> int:
-    """How many more than around the ends.
+    """Number of rings around kinks beyond those around the ends.
 
-    Next to a kink of the slope's derivative the pressure is d log d, and what the innermost cells make of
-    it is of their size whatever the degree is. At a tip it is infinite, and looked at farther away: where
-    an innermost cell reached there, no degree would resolve it, however loose the tolerance is.
+    Next to a kink of the slope's derivative the pressure is d log d, and its error in the innermost cells
+    is of their size at any degree. At a tip the pressure is infinite, and stresses are evaluated farther
+    away: if an innermost cell reached that far, no degree would resolve them at any tolerance.
     """
     if cusp(body.profile):
         return _AROUND_CUSP
@@ -357,12 +352,12 @@ class OwnMeshes:
     """Spaces on the mesh of one state, see :class:`Discretisation`.
 
     Args:
-        work: of all states.
-        places: of the kinks over the half-width.
-        body: what slides over what.
+        work: discretisation of all states.
+        places: positions of the kinks over the half-width, (k,).
+        body: the sliding contact.
 
     Attributes:
-        plan: of all states.
+        plan: plan of all states.
     """
 
     def __init__(self, work: Discretisation, places: NDArray, body: Body) -> None:
@@ -373,11 +368,11 @@ class OwnMeshes:
 
     @cached_property
     def finer(self) -> "OwnMeshes":
-        """With cells for a tighter tolerance."""
+        """Spaces on a mesh with cells for a tighter tolerance."""
         return OwnMeshes(self._work.finer, self._places, self._body)
 
     def warn(self, text: str) -> None:
-        """What the user should know."""
+        """Warn the user."""
         self._work.warn(text)
 
     def space(self, degree: int, cuts: int = 1) -> Space:
@@ -389,19 +384,19 @@ class KinkedLevel:
     """A contact at one degree; see :class:`galinx.app.run.methods.error.Level`.
 
     Args:
-        work: knows what is asked for.
+        work: has the words of the requested stresses.
         task: the speed, and the load.
-        space: of the degree, on cells graded towards the kinks.
-        places: of these over the half-width.
-        ends: of the contact.
+        space: space of the degree, on cells graded towards the kinks.
+        places: positions of the kinks over the half-width, (k,).
+        ends: ends of the contact.
         g: σ_XY/σ_YY.
 
     Attributes:
         contact: nodal forces of the state.
-        field: its displacement over N/(2μ), condensed.
-        displacement: what is read off that.
-        pressure: the contact's.
-        kinks: places at which it is finite for all that.
+        field: displacement over N/(2μ), condensed.
+        displacement: stresses by that field.
+        pressure: pressure of the contact.
+        kinks: positions of the kinks at which the pressure is finite.
         factor: of the linear system, freed, with numbers of its work.
     """
 
@@ -435,23 +430,23 @@ class KinkedLevel:
         self._gauges = StressGauges(work, self._task, self.displacement.at_places_of)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        """Of the one state there is."""
+        """Gauges of the level's only state."""
         return [self._of_forces(), *self._gauges.of(self._g, ONE, self._on_surface())]
 
     @property
     def mirrored(self) -> bool:
-        """The image of the kinks has another mesh."""
+        """False: the mirror image of the kinks has another mesh."""
         return False
 
     def rounding(self, g: NDArray) -> list[float]:
-        """What a solve leaves of its forces stands for the rounding of these."""
+        """Effect of rounding on each gauge, relative; on the pressure by the solve's residual."""
         return [
             self.factor.largest_residual,
             *self._gauges.rounding(self._g, ONE, self._on_surface()),
         ]
 
     def release(self) -> None:
-        """There is one vector only."""
+        """Keep all: a level holds a single vector."""
 
     def destroy(self) -> None:
         self.field.destroy()
@@ -466,18 +461,20 @@ class KinkedLevel:
         return self.pressure.σ_YY(self._task.places.X)[None]
 
     def _of_forces(self) -> Gauge:
-        """Moments of the pressure over the load, and the pressure over its largest, kinks among the
-        places: there it is a limit, which has less digits than what it is taken from."""
+        """Gauge of the pressure's moments over the load, and of the pressure over its largest.
+
+        Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
+        """
         at_kinks = [self.pressure.at_kink(i) for i in range(len(self.kinks))]
         σ = np.append(self.pressure.σ_YY(self._across), at_kinks)[None]
         values, size = np.concatenate([self._moments, σ], axis=1), float(np.abs(σ).max())
         scale = np.concatenate([2.0 + 0.0 * self._moments, size + 0.0 * σ], axis=1)
-        left = self.pressure.left_at_kinks / size if at_kinks else 0.0
-        return Gauge(INTENSITIES, values, scale, left)
+        unresolved = self.pressure.left_at_kinks / size if at_kinks else 0.0
+        return Gauge(INTENSITIES, values, scale, unresolved)
 
 
 def _off(task: Task, tips: NDArray) -> Task:
-    """The task without places next to tips, where stresses are infinite."""
+    """Task without places next to tips, where stresses are infinite."""
     places = task.places
     X, points, around = places.X, places.points, places.around
     return replace(
@@ -497,9 +494,9 @@ class KinkedState:
 
     Attributes:
         task: the speed, and the load.
-        ends: of the contact.
-        level: the last.
-        estimates: relative errors by the word of output.quantities that asks for what they are of.
+        ends: ends of the contact.
+        level: the last level.
+        estimates: estimated relative errors by word of output.quantities.
         record: numbers of the work, as they are archived.
     """
 
@@ -511,10 +508,10 @@ class KinkedState:
 
     @cached_property
     def surface(self) -> Surface:
-        """Stresses on the surface, of one state."""
+        """Stresses on the surface, of a single state."""
         σ_YY = self.level.pressure.σ_YY(self.task.places.X)[None]
-        found = self.level.displacement.surface(self.level.contact.g, ONE, σ_YY)
-        return replace(found, turns=self._turns(found))
+        surface = self.level.displacement.surface(self.level.contact.g, ONE, σ_YY)
+        return replace(surface, turns=self._turns(surface))
 
     def _turns(self, surface: Surface) -> Turns:
         """Stresses at both ends, and under kinks where they are finite."""
@@ -539,33 +536,33 @@ class KinkedState:
 
     @cached_property
     def residual(self) -> float:
-        """What the pressure leaves of the integral equation, relative."""
-        level, ends, one = self.level, self.ends, np.ones(1)
+        """Residual of the integral equation under the pressure, relative."""
+        level, ends, unit = self.level, self.ends, np.ones(1)
         local = FlatPunch(self.task.response, level.contact.g)
-        left = of_contact(
+        residuals = of_contact(
             self.task.response, level.contact.g, Exponents(local.α + 1.0, local.β + 1.0), self.task.body,
-            lambda r: level.pressure.σ_YY(r)[None], (ends.centre * one, ends.half_width * one),
+            lambda r: level.pressure.σ_YY(r)[None], (ends.centre * unit, ends.half_width * unit),
             level.pressure.kinks, level.pressure.breaks,
         )  # fmt: skip
-        return float(left[0])
+        return float(residuals[0])
 
     def at(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (..., 2) over a, (3, ...)."""
-        found = self.level.displacement.at(points.reshape(1, -1, 2), ONE)
-        return found.reshape(3, *points.shape[:-1])
+        σ = self.level.displacement.at(points.reshape(1, -1, 2), ONE)
+        return σ.reshape(3, *points.shape[:-1])
 
     def destroy(self) -> None:
         self.level.destroy()
 
 
 def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDone) -> KinkedState:
-    """The contact at a friction.
+    """Solve the contact at a friction.
 
     Args:
         work: gives spaces.
         task: the speed, and the load.
         g: σ_XY/σ_YY.
-        ends: of the contact.
+        ends: ends of the contact.
         done: takes the numbers of the work.
 
     Raises:
@@ -574,9 +571,9 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
     places = places_of_kinks(task.body, ends)
 
     def level(space: Any, _: NDArray) -> KinkedLevel:
-        found = KinkedLevel(work, task, space, places, ends, g)
-        done.count(found)
-        return found
+        contact = KinkedLevel(work, task, space, places, ends, g)
+        done.count(contact)
+        return contact
 
     of_one = np.array([g])
     with reached(OwnMeshes(work, places, task.body), task, of_one, level) as (ladder, error):
@@ -589,7 +586,7 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
 
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["KinkedAtSpeed"]:
-    """States are solved when they are asked for, each on meshes of its own."""
+    """Solver whose states are solved when first needed, each on meshes of its own."""
     with ends_at_speed(work.for_ends, task, g) as ends:
         at = KinkedAtSpeed(work, task, ends)
         try:
@@ -602,8 +599,8 @@ class KinkedAtSpeed(OwnMeshesAtSpeed):
     """Contacts at one speed, see :class:`OwnMeshesAtSpeed`.
 
     Args:
-        work, task: the same.
-        ends: of all its contacts.
+        work, task: as of :class:`OwnMeshesAtSpeed`.
+        ends: ends of all its contacts.
     """
 
     def __init__(self, work: Discretisation, task: Task, ends: EndsAtSpeed) -> None:
@@ -614,9 +611,9 @@ class KinkedAtSpeed(OwnMeshesAtSpeed):
         body = self.task.body.loaded(load)
         of_each = np.broadcast_to(body.load, g.shape)
         solved_at = np.full(g.shape, self.task.body.load) if body.alike else of_each
-        found = [self._state(*state) for state in zip(g.tolist(), solved_at.tolist())]
+        contacts = [self._state(*state) for state in zip(g.tolist(), solved_at.tolist())]
         growth = self.task.body.growth(of_each) if body.alike else np.ones(g.shape)
-        return KinkedPunches(self.task, g, found, body, growth)
+        return KinkedPunches(self.task, g, contacts, body, growth)
 
     def record(self) -> dict[str, Any]:
         done = WorkDone(**vars(self._done))
@@ -633,49 +630,49 @@ class KinkedPunches(OnOwnMeshes):
     """Punches of any convex profile with several frictions and loads.
 
     Attributes:
-        growth: half-width of each over that of what was found, (states,).
+        growth: half-width of each state over that of its solved contact, (states,).
     """
 
     growth: NDArray[np.float64]
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
-        return self.growth * [state.ends.half_width for state in self.found]
+        """Half-width of the contact [m], (states,)."""
+        return self.growth * [state.ends.half_width for state in self.contacts]
 
     @property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.growth * [state.ends.centre for state in self.found]
+        return self.growth * [state.ends.centre for state in self.contacts]
 
     @property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
         if jumps(self.body.profile):
             return np.full(len(self.g), np.nan), np.full(len(self.g), np.nan)
-        values, places = np.array([state.largest for state in self.found]).T
+        values, places = np.array([state.largest for state in self.contacts]).T
         return values, places
 
     @property
     def residual(self) -> NDArray[np.float64]:
-        """What the pressure leaves of the integral equation, relative, (states,)."""
-        return np.array([state.residual for state in self.found])
+        """Residual of the integral equation under the pressure, relative, (states,)."""
+        return np.array([state.residual for state in self.contacts])
 
     @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
-        return np.array([state.level.contact.v0[0] for state in self.found])
+        return np.array([state.level.contact.v0[0] for state in self.contacts])
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         return Strength(
             self._stresses, self.body, self.task.response, self.g, self.local, self.half_width,
-            self.surface.turns, max(state.level.nearest for state in self.found),
+            self.surface.turns, max(state.level.nearest for state in self.contacts),
         )  # fmt: skip
 
     def _stresses(self, points: NDArray) -> NDArray[np.float64]:
-        """At points of all states, (1, n, 2), or of each, (states, n, 2): (3, states, n)."""
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         each = np.broadcast_to(points, (len(self.g), *points.shape[1:]))
-        found = [state.at(some) for state, some in zip(self.found, each)]
-        return np.stack(found, axis=1)
+        σ = [state.at(own) for state, own in zip(self.contacts, each)]
+        return np.stack(σ, axis=1)

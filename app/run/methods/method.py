@@ -1,4 +1,4 @@
-"""What a method is: it answers each task of a plan, one speed, with a solver of friction states."""
+"""Protocols of methods: a method answers each task of a plan, a speed, with a solver of states."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -15,27 +15,27 @@ Pressure = Callable[[NDArray], NDArray]
 
 
 class Solver(Protocol):
-    """Friction states at one speed."""
+    """Solver of friction states at one speed."""
 
     def states(self, g: NDArray) -> Solution:
-        """The states with these values of σ_XY/σ_YY, under the load of the task's body.
+        """Solve the states with values g of σ_XY/σ_YY, (states,), under the load of the task's body.
 
-        A method that says so by ``loads`` takes a second argument, ``load``: that of each state [N/m],
-        (states,), or None for the task's.
+        The solvers of a method whose kind has ``loads`` take a second argument, ``load``: the load of
+        each state [N/m], (states,), or None for the task's.
 
         Raises:
-            SolveError: they could not be found.
+            SolveError: the states could not be solved.
         """
 
     def record(self) -> dict[str, Any]:
-        """Numbers of the work that was done, by the names of ``quantities.runs.RECORD``; or none."""
+        """Numbers of the work done, by the names of ``quantities.runs.RECORD``; may be empty."""
 
 
 class Method(Protocol):
     """A way to solve the contact, for one plan.
 
-    One that has a ``begin()`` is asked, on all ranks together, for what serves all speeds before these
-    are shared out over the ranks.
+    The ``begin()`` of a method that has it is called once, collectively over all ranks, before speeds are
+    shared out over the ranks.
     """
 
     def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
@@ -43,7 +43,7 @@ class Method(Protocol):
 
         Args:
             task: the speed.
-            g: all values of σ_XY/σ_YY that will be asked for, sorted.
+            g: all values of σ_XY/σ_YY that will be solved, sorted.
 
         Raises:
             SolveError: the equations could not be solved there.
@@ -51,7 +51,7 @@ class Method(Protocol):
 
 
 class Mode(NamedTuple):
-    """How finite elements solve one kind of contact at a speed.
+    """Functions and classes with which finite elements solve one kind of contact at a speed.
 
     Attributes:
         solver: context manager of a :class:`Solver`, by discretisation, task and frictions.

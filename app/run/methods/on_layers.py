@@ -1,15 +1,11 @@
-"""The singular integral equation of layered and graded half-planes as a method.
+"""Singular integral equation of layered and graded half-planes as a method.
 
-The singular integral equation of layered and graded half-planes.
-
-The singular integral equation of layers under punches whose contact ends where the pressure says.
-
-Every friction has a contact of its own, and lengths are over its half-width; kernels and depths are
-those of all of them, over one length.
-
-A pressure of the user's own over layers: what transforms of its tractions say, without an equation.
-
-All is linear in σ_XY/σ_YY: two frictions tell those of all states.
+Kernels are computed once a speed and pressures for a few frictions, from which those of all states are
+interpolated. A punch has two sharp edges (:class:`AtSpeed`), or a contact with free ends
+(:class:`FreeAtSpeed`): then every friction has a contact of its own, and lengths are over its half-width,
+while kernels and depths are those of all contacts, over a common length. A prescribed pressure needs no
+equation (:class:`PrescribedAtSpeed`): stresses follow from transforms of its tractions, and are linear in
+σ_XY/σ_YY, so that two frictions give those of all states.
 """
 
 from collections.abc import Callable, Iterator
@@ -50,8 +46,8 @@ def sharp_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "A
     Args:
         task: the speed.
         stack: layers with lengths over the body's half-width.
-        tolerance: relative.
-        g: all values of σ_XY/σ_YY that will be asked for, sorted.
+        tolerance: relative tolerance.
+        g: all values of σ_XY/σ_YY that will be solved, sorted.
     """
     speed = Speed(task.response, stack, task.body.slope, tolerance)
     return AtSpeed(task, speed, *speed.solved(g))
@@ -63,9 +59,9 @@ class AtSpeed:
 
     Attributes:
         task: the speed.
-        speed: kernels.
-        nodes: pressures.
-        interpolated: error that interpolation over frictions leaves, relative.
+        speed: kernels at the speed.
+        nodes: pressures at the frictions that were solved.
+        interpolated: error of the interpolation over frictions, relative.
     """
 
     task: Task
@@ -81,38 +77,38 @@ class AtSpeed:
 
     @cached_property
     def estimate(self) -> float:
-        """Of the pressure, relative."""
+        """Estimated error of the pressure, relative."""
         return float(self.nodes.change + self.interpolated.max() + self.speed.rounding)
 
     @cached_property
     def near(self) -> NDArray[np.bool_]:
-        """Positions on the surface at which the pressure without its weight is known."""
+        """True for positions on the surface at which pressures without weights are evaluated, (n,)."""
         return np.abs(self.task.places.X) <= self.nodes.near
 
-    # Whatever is read off pressures is read off those with fewer unknowns as well: (2, nodes, ...).
+    # All is evaluated for the pressures and for those with fewer unknowns: (2, nodes, ...).
 
     @cached_property
     def series(self) -> NDArray[np.float64]:
-        """Pressures without their weights there, (2, nodes, n)."""
+        """Pressures without their weights at the positions of ``near``, (2, nodes, n)."""
         X = self.task.places.X[self.near]
         return self.nodes.both(lambda pressure: pressure.series(X))
 
     @cached_property
     def rest(self) -> NDArray[np.float64]:
-        """What is regular of their Hilbert transforms, (2, nodes, n)."""
+        """Regular part of the Hilbert transforms of the pressures, (2, nodes, n)."""
         return self.nodes.both(lambda pressure: pressure.rest(self.task.places.X, self.nodes.near))
 
     def level(self, depth: float, X: NDArray) -> tuple[Level, NDArray[np.float64]]:
-        """A depth, and u,X, σ_YY and σ_XY there, (3, 2, nodes, n)."""
+        """Tables of a depth, and u,X, σ_YY and σ_XY at X there, (3, 2, nodes, n)."""
         reach = 1.0 + float(np.abs(X).max())
-        here = Level(self.speed.stack, depth, reach, self.speed.tolerance)
+        tables = Level(self.speed.stack, depth, reach, self.speed.tolerance)
         g = iter(np.tile(self.nodes.g, 2).tolist())
 
         def read(pressure: Any) -> NDArray[np.float64]:
             t, σ = pressure.points(depth)
-            return here.read(t, σ, next(g), X)
+            return tables.read(t, σ, next(g), X)
 
-        return here, np.moveaxis(self.nodes.both(read), 2, 0)
+        return tables, np.moveaxis(self.nodes.both(read), 2, 0)
 
     @cached_property
     def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -120,13 +116,13 @@ class AtSpeed:
 
         Arrays (4, 2, nodes, interfaces, n) and (interfaces,).
         """
-        places, found, errors = self.task.places, [], []
+        places, σ, errors = self.task.places, [], []
         for depth in places.interfaces.tolist():
             level, (u_X, σ_YY, σ_XY) = self.level(depth, places.along)
             both = [in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
-            found.append([σ_YY, σ_XY, *both])
+            σ.append([σ_YY, σ_XY, *both])
             errors.append(level.error * max(1.0, *(medium.modulus for medium in level.media)))
-        return np.moveaxis(np.array(found), 0, 3), np.array(errors)
+        return np.moveaxis(np.array(σ), 0, 3), np.array(errors)
 
     @cached_property
     def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -135,13 +131,13 @@ class AtSpeed:
         Arrays (3, 2, nodes, m) and (m,).
         """
         points = self.task.places.points
-        found, errors = np.empty((3, 2, len(self.nodes.g), len(points))), np.empty(len(points))
+        σ, errors = np.empty((3, 2, len(self.nodes.g), len(points))), np.empty(len(points))
         for Y in np.unique(points[:, 1]).tolist():
-            some = points[:, 1] == Y
-            level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[some, 0])
-            found[..., some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
-            errors[some] = level.error * max(1.0, level.media[0].modulus)
-        return found, errors
+            at_depth = points[:, 1] == Y
+            level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[at_depth, 0])
+            σ[..., at_depth] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+            errors[at_depth] = level.error * max(1.0, level.media[0].modulus)
+        return σ, errors
 
     @cached_property
     def regular(self) -> NDArray[np.float64]:
@@ -174,7 +170,7 @@ class Punches:
 
     @property
     def local(self) -> Any:
-        """Exponents at the ends."""
+        """Exponents of the pressure at the ends."""
         return self.edges
 
     @property
@@ -188,22 +184,22 @@ class Punches:
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:
-        """At X = -a and X = a, (states, 2)."""
+        """K_I at X = -a and X = a, (states, 2)."""
         ends = self.at.nodes.read(lambda pressure: pressure.series(np.array([-1.0, 1.0])))
         return -0.5 * self._by_nodes @ ends
 
     @cached_property
     def estimates(self) -> "Estimates":
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        """Estimated relative errors, (states,), by word of output.quantities."""
         return Estimates(self)
 
     @property
     def places(self) -> Places:
-        """Where stresses are."""
+        """Places at which stresses are evaluated."""
         return self.at.task.places
 
     def _of_both(self, by_nodes: NDArray) -> NDArray[np.float64]:
-        """Of states, and with fewer unknowns, by what was read off nodes, (..., 2, nodes, n)."""
+        """Values of states, (..., 2, states, n), interpolated from those of nodes, (..., 2, nodes, n)."""
         return np.asarray(self._by_nodes @ by_nodes)
 
     @cached_property
@@ -228,7 +224,7 @@ class Punches:
 
     @cached_property
     def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane there, (states, m)."""
+        """Normal stress out of the plane at points inside, (states, m)."""
         return self.at.task.body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
@@ -253,10 +249,10 @@ class Punches:
 
 @dataclass(frozen=True)
 class Estimates:
-    """Relative errors of the integral equation, by the word of output.quantities they belong to.
+    """Estimated relative errors of the integral equation, (states,), by word of output.quantities.
 
-    What changes with the number of unknowns, what the kernels' and the tables' errors do, and what is
-    left of the interpolation over frictions.
+    They add the change with the number of unknowns, the effect of the kernels' and the tables' errors,
+    and the error of the interpolation over frictions.
     """
 
     of: Punches
@@ -272,9 +268,9 @@ class Estimates:
         _, (now, before) = self.of.both_on_surface
         size = stresses.of_in_plane(now, self.of.places.X)
         kernel = 2.0 * self.of.at.speed.kernel.error
-        # Next to a tip stresses are infinite, and what they are is that of the distance to it.
-        told = stresses.off_tips(self.of.places.X, self.of.tips)
-        return self._changed(np.where(told, now, 0.0), np.where(told, before, 0.0), size, kernel)
+        # Next to a tip stresses are infinite, and their error is that of the distance to it.
+        off_tips = stresses.off_tips(self.of.places.X, self.of.tips)
+        return self._changed(np.where(off_tips, now, 0.0), np.where(off_tips, before, 0.0), size, kernel)
 
     def _at_interfaces(self) -> NDArray[np.float64]:
         now, before = np.moveaxis(self.of.both_interfaces, 1, 0)
@@ -289,19 +285,19 @@ class Estimates:
     def _inside(self) -> NDArray[np.float64]:
         now, before = np.moveaxis(self.of.both_inside, 1, 0)
         size = stresses.of_inside(now, *self.of.places.points.T)
-        change = stresses.largest(one - other for one, other in zip(now, before))
+        change = stresses.largest(fine - coarse for fine, coarse in zip(now, before))
         return self._changed(change, 0.0, size, self.of.at.inside[1])
 
     def _changed(self, now: NDArray, before: Any, size: NDArray, tables: Any) -> NDArray[np.float64]:
-        """What changed, and what tables add, over the size of it, (states,)."""
+        """Change and error of the tables over the sizes of stresses, plus shared errors, (states,)."""
         at = self.of.at
         shared = at.interpolated.max() + at.speed.rounding
         return ((np.abs(now - before) + tables) / size).max(axis=1) + shared
 
 
-#: By word.
+#: Estimates by word of output.quantities.
 _ESTIMATES: dict[str, Callable[[Estimates], NDArray[np.float64]]] = {
-    INTENSITIES: lambda one: one._pressure,
+    INTENSITIES: lambda estimates: estimates._pressure,
     ON_SURFACE: Estimates._on_surface,
     AT_INTERFACES: Estimates._at_interfaces,
     BELOW: Estimates._inside,
@@ -314,42 +310,42 @@ def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> ND
     return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
 
 
-def free_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FoundAtSpeed":
+def free_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FreeAtSpeed":
     """Contacts at one speed, with frictions from which all others follow.
 
     Args:
         task: the speed.
         stack: layers with lengths over the body's half-width.
-        tolerance: relative.
-        g: all values of σ_XY/σ_YY that will be asked for, sorted.
+        tolerance: relative tolerance.
+        g: all values of σ_XY/σ_YY that will be solved, sorted.
     """
     body = task.body
     punch = Punch(body.profile, body.half_width, body.compression)
     # A place inside is in one layer with one friction and in another with the next.
     every = bool(len(task.places.points))
     speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
-    nodes, left = speed.solved(g)
+    nodes, interpolated = speed.solved(g)
     assert isinstance(nodes, Contacts)
-    return FoundAtSpeed(task, speed, nodes, left)
+    return FreeAtSpeed(task, speed, nodes, interpolated)
 
 
 @dataclass(frozen=True)
-class FoundAtSpeed(AtSpeed):
-    """Contacts at one speed; positions are over each one's half-width, from its middle."""
+class FreeAtSpeed(AtSpeed):
+    """Contacts with free ends at one speed; positions are over each half-width, from its middle."""
 
     nodes: Contacts
     speed: FoundSpeed
 
     def states(self, g: NDArray) -> Any:
-        return FoundPunches(self, g)
+        return FreePunches(self, g)
 
     def _level(self, depth: float, farthest: float) -> Level:
-        """A depth over the length of all."""
+        """Tables of a depth over the common length."""
         return Level(self.speed.stack, depth, farthest, self.speed.tolerance)
 
     @cached_property
     def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        X, found, errors = self.task.places.along, [], []
+        X, σ_of_depths, errors = self.task.places.along, [], []
         largest = float(self.nodes.half_width.max())
         for depth in self.speed.stack.depths.tolist():
             level = self._level(depth, largest * (1.0 + float(np.abs(X).max())))
@@ -357,28 +353,28 @@ class FoundAtSpeed(AtSpeed):
             def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
                 t, σ = pressure.points(depth / h)  # noqa: B023
                 u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
-                return np.array([σ_YY, σ_XY, *(in_plane(one, u_X, σ_YY, σ_XY) for one in level.media)])  # noqa: B023
+                return np.array([σ_YY, σ_XY, *(in_plane(side, u_X, σ_YY, σ_XY) for side in level.media)])  # noqa: B023
 
-            found.append(self.nodes.of_each(read))
+            σ_of_depths.append(self.nodes.of_each(read))
             errors.append(largest * _error(level))
-        return np.moveaxis(np.array(found), (3, 0), (0, 3)), np.array(errors)
+        return np.moveaxis(np.array(σ_of_depths), (3, 0), (0, 3)), np.array(errors)
 
     @cached_property
     def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         points, sizes = self.task.places.points, self.nodes.half_width
-        found, errors = np.empty((3, 2, len(sizes), len(points))), np.zeros(len(points))
+        σ_inside, errors = np.empty((3, 2, len(sizes), len(points))), np.zeros(len(points))
         for Y in np.unique(points[:, 1]).tolist():
-            some = points[:, 1] == Y
-            X = points[some, 0]
-            for i, (one, h) in enumerate(zip(self.nodes.each, sizes.tolist())):
+            at_depth = points[:, 1] == Y
+            X = points[at_depth, 0]
+            for i, (contact, h) in enumerate(zip(self.nodes.each, sizes.tolist())):
                 level = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))
-                for j, pressure in enumerate((one.pressure, one.before)):
+                for j, pressure in enumerate((contact.pressure, contact.before)):
                     g = float(self.nodes.g[i])
                     t, σ = pressure.points(-Y)
                     u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)
-                    found[:, j, i, some] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
-                errors[some] = np.maximum(errors[some], h * _error(level))
-        return found, errors
+                    σ_inside[:, j, i, at_depth] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
+                errors[at_depth] = np.maximum(errors[at_depth], h * _error(level))
+        return σ_inside, errors
 
     @cached_property
     def regular(self) -> NDArray[np.float64]:
@@ -399,26 +395,26 @@ class FoundAtSpeed(AtSpeed):
 
 
 def _error(level: Level) -> float:
-    """Absolute, of stresses there over those of a contact whose half-width is the length of all."""
+    """Absolute error of stresses at a level, over those of a contact as wide as the common length."""
     return level.error * max(1.0, *(medium.modulus for medium in level.media))
 
 
 @dataclass(frozen=True)
-class FoundPunches(Punches):
-    """Punches with several frictions, each with its own half-width and middle."""
+class FreePunches(Punches):
+    """Contacts with free ends, with several frictions, each with its own half-width and middle."""
 
-    at: FoundAtSpeed
+    at: FreeAtSpeed
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """Were the left and the right end found? (states, 2)."""
+        """True where the left and the right end are free, (states, 2)."""
         return self._by_nodes @ self.at.nodes.free > 0.5
 
     @property
     def local(self) -> Exponents:
-        """Exponents at the ends."""
-        left, right = self.free.T
-        return Exponents(self.edges.α + right, self.edges.β + left)
+        """Exponents of the pressure at the ends."""
+        free_left, free_right = self.free.T
+        return Exponents(self.edges.α + free_right, self.edges.β + free_left)
 
     @property
     def tips(self) -> NDArray[np.float64]:
@@ -429,7 +425,7 @@ class FoundPunches(Punches):
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
+        """Half-width of the contact [m], (states,)."""
         return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.half_width)
 
     @property
@@ -468,7 +464,7 @@ class FoundPunches(Punches):
 
     @cached_property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end: none at those that are found, by condition, (states, 2)."""
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
         return np.where(self.free, 0.0, super().K_I)
 
     @cached_property
@@ -490,14 +486,14 @@ class FoundPunches(Punches):
 
     @property
     def _largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Of pressures that are smooth."""
+        """Largest pressure over N/(2a), and its place over a, of smooth pressures, (states,)."""
         return largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
 
     def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
-        """Of one state or of all of them, (states, n)."""
-        some = slice(None) if i is None else slice(i, i + 1)
-        p = self._by_nodes[some] @ self.at.nodes.read(lambda pressure: pressure.series(r))
-        α, β = self.edges.α[some, None], self.edges.β[some, None]
+        """Pressure over N/(2a) at r over a, (states, n), of state ``i`` alone or of all states."""
+        rows = slice(None) if i is None else slice(i, i + 1)
+        p = self._by_nodes[rows] @ self.at.nodes.read(lambda pressure: pressure.series(r))
+        α, β = self.edges.α[rows, None], self.edges.β[rows, None]
         return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
 
     @cached_property
@@ -507,42 +503,42 @@ class FoundPunches(Punches):
         return np.array([body.σ_ZZ(self.inside[:, i], h * Y) for i, h in enumerate(shares.tolist())])
 
 
-#: The frictions.
+#: The two frictions solved for a prescribed pressure.
 _NODES = np.array([0.0, 1.0])
 
 
-def prescribed_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "GivenAtSpeed":
-    """The pressure at one speed.
+def prescribed_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "PrescribedAtSpeed":
+    """Prescribed pressure at one speed.
 
     Args:
         task: the speed.
         stack: layers with lengths over the body's half-width.
-        tolerance: relative.
-        g: σ_XY/σ_YY, of which all is a linear function.
+        tolerance: relative tolerance.
+        g: σ_XY/σ_YY, in which all stresses are linear.
     """
     pressure = task.body.pressure
     assert pressure
     speed = Speed(task.response, stack, np.zeros_like, tolerance)
     kernel: Kernel = speed.kernel
     length = float(stack.layers[0].H)
-    one, other = (Given(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
-    found = Found(one, other, 0.0)  # type: ignore[arg-type]
-    return GivenAtSpeed(task, speed, Frictions(_NODES, [found] * len(_NODES)), np.zeros(1))
+    fine, coarse = (Given(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
+    at_node = Found(fine, coarse, 0.0)  # type: ignore[arg-type]
+    return PrescribedAtSpeed(task, speed, Frictions(_NODES, [at_node] * len(_NODES)), np.zeros(1))
 
 
 @dataclass(frozen=True)
-class GivenAtSpeed(AtSpeed):
-    """A pressure put in at one speed."""
+class PrescribedAtSpeed(AtSpeed):
+    """Prescribed pressure at one speed."""
 
     def states(self, g: NDArray) -> Any:
-        return GivenPressures(self, g)
+        return PrescribedPressures(self, g)
 
 
 @dataclass(frozen=True)
-class GivenPressures(Punches):
-    """States with a pressure of the user's own."""
+class PrescribedPressures(Punches):
+    """States under a prescribed pressure."""
 
-    at: GivenAtSpeed
+    at: PrescribedAtSpeed
 
     @property
     def _pressure(self) -> LinearPressure:
@@ -552,7 +548,7 @@ class GivenPressures(Punches):
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         return np.full(len(self.g), self._pressure.resultant)
 
     @cached_property
@@ -580,10 +576,10 @@ class GivenPressures(Punches):
 
 @dataclass(frozen=True)
 class Layers:
-    """Kernels are found once a speed, pressures for some frictions, from which all others follow.
+    """Method by the integral equation of layers, with kernels once a speed.
 
     Attributes:
-        tolerance: relative.
+        tolerance: relative tolerance.
     """
 
     tolerance: float

@@ -1,10 +1,8 @@
-"""A pressure of the user's own at one speed, put in: finite elements, the degree found by measuring.
+"""Prescribed pressures by finite elements at one speed, the degree raised by the measured error.
 
-Mode ``traction`` at one speed: σ_YY put in, σ_XY = g σ_YY.
-
-A pressure of the user's own over layers at one speed, put in on cells graded towards its knots.
-
-What states share whose pressure is put in: by formula, or the user's own.
+The pressure is the user's own, σ_XY = g σ_YY: over a uniform half-plane piece by piece between its knots
+(:class:`PiecesLevel`), over layers as a whole on cells graded towards its knots (:class:`LoadsLevel`). In
+mode ``traction`` it is that of a flat punch by its closed form (:class:`LoadsAtDegree`).
 """
 
 from collections.abc import Collection, Iterator
@@ -43,12 +41,12 @@ from .error import (
 from .method import Pressure
 
 
-class PutInAtSpeed:
-    """A pressure put in at one speed, solved to the tolerance.
+class PrescribedAtSpeed:
+    """Prescribed pressure at one speed, solved to the tolerance.
 
     Args:
-        ladder: climbed.
-        error: of its last level.
+        ladder: ladder at its last level.
+        error: error of that level.
     """
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
@@ -60,13 +58,13 @@ class PutInAtSpeed:
 
 
 @dataclass(frozen=True)
-class PutIn:
-    """States with a pressure that is put in.
+class PrescribedStates:
+    """States under a prescribed pressure.
 
     Attributes:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
-        body: what slides over what, under the load of each.
+        body: the sliding contact, under the load of each state.
     """
 
     at: Any
@@ -75,26 +73,26 @@ class PutIn:
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         return np.full(len(self.g), self.at.level.resultant)
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Tangential force over N/2, (states,)."""
         return self.g * self.normal_force
 
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        found: dict[str, NDArray[np.float64]] = self.at.error.of(self.g)
-        return found
+        """Estimated relative errors, (states,), by word of output.quantities."""
+        errors: dict[str, NDArray[np.float64]] = self.at.error.of(self.g)
+        return errors
 
 
 @contextmanager
-def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["OwnPressureAtSpeed"]:
+def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PiecesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
     with reached(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (ladder, error):
-        yield OwnPressureAtSpeed(ladder, error)
+        yield PiecesAtSpeed(ladder, error)
 
 
 @contextmanager
@@ -103,7 +101,7 @@ def one_state(
 ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
     """Space, fields, weights and pressure of one state: the pressure as a whole, not piece by piece."""
     # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
-    loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _put_in(task)
+    loaded, pressure = LoadedHalfPlane(work.space(degree, cuts=2), task.response), _pressure_of(task)
     try:
         loaded.load(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
@@ -114,19 +112,19 @@ def one_state(
         loaded.destroy()
 
 
-def _put_in(task: Task) -> LinearPressure:
+def _pressure_of(task: Task) -> LinearPressure:
     assert task.body.pressure
     return task.body.pressure
 
 
-class PiecesSeen:
-    """Displacement gradients of the pressure at places, of σ_YY alone and of σ_XY equal to it.
+class PieceGradients:
+    """Displacement gradients at places, under the pressure alone and under an equal σ_XY.
 
     Args:
         task: the speed, and the places.
-        pieces: of the pressure.
-        loads: with which these are made.
-        words: of output.quantities, that ask for stresses.
+        pieces: pieces of the pressure.
+        loads: linear loads that make up the pieces.
+        words: words of output.quantities that request stresses.
     """
 
     def __init__(self, task: Task, pieces: Pieces, loads: LinearLoads, words: Collection[str]) -> None:
@@ -143,24 +141,24 @@ class PiecesSeen:
         self._around = pieces.gradients(loads, places.around[: len(places.around) * (YIELD in words)])
 
     def surface(self, g: NDArray) -> Surface:
-        """The surface of states with these values of σ_XY/σ_YY."""
+        """Stresses on the surface of states with values g of σ_XY/σ_YY, (states,)."""
         places = self._task.places
         u_X, v_X = np.moveaxis(self._on_surface[:, :, 0], 1, 0)
-        σ_YY = np.tile(np.where(places.under, _put_in(self._task)(places.X), np.nan), (len(g), 1))
+        σ_YY = np.tile(np.where(places.under, _pressure_of(self._task)(places.X), np.nan), (len(g), 1))
         return Surface(places, σ_YY, _in_plane(self._task, u_X, places.X, g), None, (v_X @ _weights(g)).T)
 
     def inside(self, g: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY inside of states with these values of σ_XY/σ_YY, (3, states, m)."""
+        """σ_XX, σ_YY, σ_XY at points inside of states with values g of σ_XY/σ_YY, (3, states, m)."""
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._inside, _weights(g)))
 
     def around(self, g: NDArray) -> NDArray[np.float64]:
-        """The same where stresses are looked at for yield, (3, states, k)."""
+        """σ_XX, σ_YY, σ_XY at the points checked for yield, (3, states, k)."""
         return self._task.response.stresses(np.einsum("nijd,ds->snij", self._around, _weights(g)))
 
 
 def _in_plane(task: Task, u_X: NDArray, X: NDArray, g: NDArray) -> NDArray[np.float64]:
     """σ_XX of states on the surface, (states, n), by strains (n, 2) under σ_YY and an equal σ_XY."""
-    σ = _put_in(task)(X)
+    σ = _pressure_of(task)(X)
     return task.response.σ_XX((u_X @ _weights(g)).T, σ, g[:, None] * σ)
 
 
@@ -169,50 +167,50 @@ def _weights(g: NDArray) -> NDArray[np.float64]:
 
 
 class PiecesLevel:
-    """What finite elements of one degree make of the pressure, for every σ_XY/σ_YY.
+    """Solution of one degree under the pressure, piece by piece, for every σ_XY/σ_YY.
 
     Args:
-        work: knows what is asked for.
+        work: has the words of the requested stresses.
         task: the speed.
-        space: of the degree.
+        space: space of the degree.
 
     Attributes:
-        factor: of the linear system, with numbers of its work.
-        resultant: of the discrete loads, over N/2.
+        factor: factor of the linear system, with numbers of its work.
+        resultant: resultant of the discrete loads, over N/2.
     """
 
     def __init__(self, work: Discretisation, task: Task, space: Space) -> None:
         self._work, self._task, self.space = work, task, space
-        pressure = _put_in(task)
+        pressure = _pressure_of(task)
         self._pieces = Pieces(pressure.knots, pressure.values)
         self._loads: LinearLoads | None = LinearLoads(space, task.response)
         self.factor: Any = self._loads.factor
         self.resultant = self._pieces.resultant(self._loads)
-        self._gauged = self._seen(gauged(task))
+        self._gauged = self._gradients_at(gauged(task))
 
     @cached_property
-    def everywhere(self) -> PiecesSeen:
-        """At all places; not after the level's release."""
+    def everywhere(self) -> PieceGradients:
+        """Gradients at all places; unavailable after the level's release."""
         everywhere = gauged(self._task) is self._task
-        return self._gauged if everywhere else self._seen(self._task)
+        return self._gauged if everywhere else self._gradients_at(self._task)
 
-    def _seen(self, task: Task) -> PiecesSeen:
+    def _gradients_at(self, task: Task) -> PieceGradients:
         assert self._loads
         with self._work.clock("recovery"):
-            return PiecesSeen(task, self._pieces, self._loads, self._work.stresses)
+            return PieceGradients(task, self._pieces, self._loads, self._work.stresses)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        found, words, places = [], self._work.stresses, gauged(self._task).places
+        gauges, words, places = [], self._work.stresses, gauged(self._task).places
         if ON_SURFACE in words:
-            found.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
+            gauges.append(of_in_plane(self._gauged.surface(g).σ_XX, places.X))
         if BELOW in words:
-            found.append(of_inside(self._gauged.inside(g), places.points))
+            gauges.append(of_inside(self._gauged.inside(g), places.points))
         if YIELD in words:
-            found.append(of_inside(self._gauged.around(g), places.around, YIELD))
-        return found
+            gauges.append(of_inside(self._gauged.around(g), places.around, YIELD))
+        return gauges
 
     def at(self, points: NDArray, g: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY at points of all states, (1, n, 2), or of each, (states, n, 2)."""
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         assert self._loads
         G = self._pieces.gradients(self._loads, points.reshape(-1, 2))
         G = G.reshape(*points.shape[:2], 2, 2, -1)
@@ -229,7 +227,7 @@ class PiecesLevel:
         return True
 
     def rounding(self, g: NDArray) -> list[float]:
-        """Not seen here: the mirror images of loads are no loads."""
+        """Zeros: the mirror image of a load is no load, so rounding is not measured."""
         return [0.0] * len(self.measured(g[:1]))
 
     def release(self) -> None:
@@ -239,20 +237,20 @@ class PiecesLevel:
         self._loads = None
 
 
-class OwnPressureAtSpeed(PutInAtSpeed):
-    """A pressure of the user's own at one speed."""
+class PiecesAtSpeed(PrescribedAtSpeed):
+    """Prescribed pressure over a uniform half-plane at one speed."""
 
-    def states(self, g: NDArray, load: Any = None) -> "OwnPressures":
-        return OwnPressures(self, g, self.task.body.loaded(load))
+    def states(self, g: NDArray, load: Any = None) -> "PiecesStates":
+        return PiecesStates(self, g, self.task.body.loaded(load))
 
 
-class OwnPressures(PutIn):
-    """States with a pressure of the user's own."""
+class PiecesStates(PrescribedStates):
+    """States under a prescribed pressure over a uniform half-plane."""
 
     @cached_property
     def surface(self) -> Surface:
         level, g = self.at.level, self.g
-        turns = turns_at_knots(_put_in(self.at.task), g, lambda X: level.in_plane(X, g))
+        turns = turns_at_knots(_pressure_of(self.at.task), g, lambda X: level.in_plane(X, g))
         return replace(level.everywhere.surface(g), turns=turns)
 
     @cached_property
@@ -261,7 +259,7 @@ class OwnPressures(PutIn):
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         level, response = self.at.level, self.at.task.response
         return Strength(lambda points: level.at(points, self.g), self.body, response, self.g, None)
 
@@ -288,19 +286,19 @@ def formula_state(
 
 
 class LoadsAtDegree:
-    """The pressures of all states at one speed and degree.
+    """Solution of one degree under the flat punch's closed-form pressures of all states at a speed.
 
     Args:
-        work: gives spaces.
+        work: has the words of the requested stresses.
         task: the speed.
-        space: of the degree.
-        g: all values of σ_XY/σ_YY that will be asked for.
+        space: space of the degree.
+        g: all values of σ_XY/σ_YY that will be solved.
     """
 
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         self.task, self.space = task, space
         self.loaded = LoadedHalfPlane(space, task.response)
-        #: The first of a load's two fields, by σ_XY/σ_YY.
+        #: Index of the first of a load's two fields, by σ_XY/σ_YY.
         self._columns: dict[float, int] = {}
         for value in dict.fromkeys(g.tolist()):
             self._columns[value] = len(self.loaded.fields)
@@ -319,22 +317,22 @@ class LoadsAtDegree:
         return True
 
     def rounding(self, g: NDArray) -> list[float]:
-        """Not seen here: the mirror images of loads are no loads."""
+        """Zeros: the mirror image of a load is no load, so rounding is not measured."""
         return [0.0] * len(self.measured(g[:1]))
 
     def columns(self, g: NDArray) -> NDArray[np.int64]:
-        """The first of each state's two fields, (states,)."""
+        """Index of the first of each state's two fields, (states,)."""
         return np.array([self._columns[value] for value in g.tolist()])
 
     def weights(self, g: NDArray) -> NDArray[np.float64]:
-        """Of the fields, (states, fields)."""
+        """Weights of the fields, (states, fields)."""
         weights, columns = np.zeros((len(g), len(self.loaded.fields))), self.columns(g)
         rows = np.arange(len(g))
         weights[rows, columns], weights[rows, columns + 1] = 1.0, g
         return weights
 
     def σ_YY(self, g: NDArray) -> NDArray[np.float64]:
-        """What is put in at the places on the surface, NaN beside the punch, (states, n)."""
+        """Prescribed σ_YY over N/(2a) at the places on the surface, NaN beside the punch, (states, n)."""
         places = self.task.places
         r = places.X[places.under]
         σ_YY = np.full((len(g), len(places.X)), np.nan)
@@ -349,19 +347,19 @@ class LoadsAtDegree:
         self.loaded.destroy()
 
 
-class FormulaAtSpeed(PutInAtSpeed):
-    """Loads at one speed, solved to the tolerance."""
+class FormulaAtSpeed(PrescribedAtSpeed):
+    """Closed-form pressures at one speed, solved to the tolerance."""
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
         super().__init__(ladder, error)
         self.displacement = Displacement(ladder.task, self.level.space, self.level.loaded.fields)
 
-    def states(self, g: NDArray, load: Any = None) -> "GivenLoads":
-        return GivenLoads(self, g, self.task.body.loaded(load))
+    def states(self, g: NDArray, load: Any = None) -> "FormulaStates":
+        return FormulaStates(self, g, self.task.body.loaded(load))
 
 
-class GivenLoads(PutIn):
-    """States with given pressure."""
+class FormulaStates(PrescribedStates):
+    """States under the closed-form pressure of a flat punch."""
 
     @property
     def local(self) -> FlatPunch:
@@ -369,7 +367,7 @@ class GivenLoads(PutIn):
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         level = self.at.level
         return np.array(level.loaded.resultants)[level.columns(self.g) // 2]
 
@@ -384,7 +382,7 @@ class GivenLoads(PutIn):
 
     @property
     def places(self) -> Places:
-        """Where stresses are."""
+        """Places at which stresses are evaluated."""
         return self.at.task.places
 
     @cached_property
@@ -394,7 +392,7 @@ class GivenLoads(PutIn):
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         at, weights = self.at, self.at.level.weights(self.g)
         field = at.displacement.at
         return Strength(
@@ -410,27 +408,29 @@ def layered_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["La
 
 
 class _Displacement(Displacement):
-    """See :class:`Displacement`; slopes next to knots are continued from farther away."""
+    """Displacement with slopes next to knots continued from farther away."""
 
     @cached_property
     def _slopes(self) -> Any:
-        pressure, X = _put_in(self._task), self._task.places.X
+        pressure, X = _pressure_of(self._task), self._task.places.X
         jumps = np.zeros(len(pressure.knots), dtype=bool)
         jumps[[0, -1]] = pressure.values[[0, -1]] != 0.0
         near = np.full(len(pressure.knots), NEAR)
-        seen = rays(np.column_stack([X, np.zeros_like(X)]), pressure.knots, near, jumps)
-        of_places = seen.continued(np.eye(len(seen.owner)))
-        slopes = SurfaceSlopes(self._space, self._fields, seen.origins + seen.offsets[:, 0])
+        continuation = rays(np.column_stack([X, np.zeros_like(X)]), pressure.knots, near, jumps)
+        of_places = continuation.continued(np.eye(len(continuation.owner)))
+        slopes = SurfaceSlopes(
+            self._space, self._fields, continuation.origins + continuation.offsets[:, 0]
+        )
         return _Slopes(slopes, of_places)
 
 
 @dataclass(frozen=True)
 class _Slopes:
-    """Combinations of slopes at some places; see :class:`SurfaceSlopes`.
+    """Slopes continued from sampled places; see :class:`SurfaceSlopes`.
 
     Attributes:
-        slopes: at some places.
-        of_places: what multiplies these, (wanted, places).
+        slopes: slopes of the fields at sampled places.
+        of_places: matrix from slopes there to slopes at the requested places, (requested, places).
     """
 
     slopes: SurfaceSlopes
@@ -445,16 +445,16 @@ class _Slopes:
 
 
 class LoadsLevel:
-    """The pressure at one degree, for every σ_XY/σ_YY.
+    """Solution of one degree under the pressure over layers, for every σ_XY/σ_YY.
 
     Args:
-        work: knows what is asked for.
+        work: has the words of the requested stresses.
         task: the speed.
-        space: of the degree.
+        space: space of the degree.
     """
 
     def __init__(self, work: Discretisation, task: Task, space: Space) -> None:
-        self.task, self.space, pressure = task, space, _put_in(task)
+        self.task, self.space, pressure = task, space, _pressure_of(task)
         self.loaded = LoadedHalfPlane(space, task.response)
         self.loaded.load(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
@@ -463,7 +463,7 @@ class LoadsLevel:
         self._gauges = StressGauges(work, task, self.displaced)
 
     def displaced(self, task: Task) -> Displacement:
-        """What is read off the displacement at the places of a task."""
+        """Displacement, for stresses at the places of a task."""
         return _Displacement(task, self.space, self.loaded.fields)
 
     @property
@@ -472,24 +472,24 @@ class LoadsLevel:
 
     @property
     def resultant(self) -> float:
-        """Of the discrete loads, over N/2."""
+        """Resultant of the discrete loads, over N/2."""
         return self.loaded.resultants[0]
 
     def σ_YY(self, g: NDArray) -> NDArray[np.float64]:
-        """What is put in at the places on the surface, NaN beside it, (states, n)."""
+        """Prescribed σ_YY over N/(2a) at the places on the surface, NaN beside it, (states, n)."""
         places = self.task.places
-        return np.tile(np.where(places.under, _put_in(self.task)(places.X), np.nan), (len(g), 1))
+        return np.tile(np.where(places.under, _pressure_of(self.task)(places.X), np.nan), (len(g), 1))
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         return self._gauges.of(g, weights(g), self.σ_YY(g))
 
     @property
     def mirrored(self) -> bool:
-        """The image of the knots has another mesh."""
+        """False: the mirror image of the knots has another mesh."""
         return False
 
     def rounding(self, g: NDArray) -> list[float]:
-        """What the fields' last digits can do to stresses."""
+        """Effect of rounding of the fields on each gauge of stresses, relative."""
         return self._gauges.rounding(g, weights(g), self.σ_YY(g))
 
     def release(self) -> None:
@@ -500,12 +500,12 @@ class LoadsLevel:
 
 
 def weights(g: NDArray) -> NDArray[np.float64]:
-    """Of both fields, (states, 2)."""
+    """Weights of both fields, (states, 2)."""
     return np.column_stack([np.ones_like(g), g])
 
 
-class LayeredAtSpeed(PutInAtSpeed):
-    """A pressure of the user's own over layers at one speed."""
+class LayeredAtSpeed(PrescribedAtSpeed):
+    """Prescribed pressure over layers at one speed."""
 
     def __init__(self, ladder: Ladder, error: MeasuredError) -> None:
         super().__init__(ladder, error)
@@ -515,17 +515,17 @@ class LayeredAtSpeed(PutInAtSpeed):
         return LoadsOnLayers(self, g, self.task.body.loaded(load))
 
 
-class LoadsOnLayers(PutIn):
-    """States with a pressure of the user's own."""
+class LoadsOnLayers(PrescribedStates):
+    """States under a prescribed pressure over layers."""
 
     @property
     def places(self) -> Places:
-        """Where stresses are."""
+        """Places at which stresses are evaluated."""
         return self.at.task.places
 
     @cached_property
     def surface(self) -> Surface:
-        g, pressure = self.g, _put_in(self.at.task)
+        g, pressure = self.g, _pressure_of(self.at.task)
 
         def σ_XX(X: NDArray) -> NDArray[np.float64]:
             there = self.at.level.displaced(replace(self.at.task, places=Places(X, np.empty((0, 2)))))

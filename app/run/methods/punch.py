@@ -1,13 +1,14 @@
-"""Mode ``contact`` at one speed: a rigid punch, the pressure unknown, the degree found by measuring.
+"""Rigid punches by finite elements at one speed, mode ``contact``, to the measured error.
 
-Punches whose contact ends where the pressure says, by finite elements at one speed.
+The pressure is unknown. Punches have two sharp edges (:class:`PunchLevel`) or free ends
+(:class:`FreeLevel`).
 
-The half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its width is, and
-what is held under the punch is a combination of few shapes: 1 and s for a tilted flat base, 1, s and s²
-for a parabola, as many polynomials as it takes for any other smooth profile. Load and vanishing
-intensities at free ends are linear in their amplitudes, from which half-width and middle follow; of a
-parabola directly, of other profiles by the conditions of :mod:`galinx.postprocess.free_ends`. Every
-friction and every load is found in the basis of the speed.
+With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
+width is, and the displacement prescribed under the punch is a combination of few shapes: 1 and s for a
+tilted flat base, 1, s and s² for a parabola, as many polynomials as it takes for any other smooth
+profile. Load and vanishing intensities at free ends are linear in their amplitudes, from which half-width
+and middle follow; of a parabola directly, of other profiles by the conditions of
+:mod:`galinx.postprocess.free_ends`. Every friction and every load is solved in the basis of the speed.
 """
 
 from collections.abc import Callable, Iterator
@@ -60,12 +61,12 @@ from .method import Pressure
 #: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
 _NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
 
-#: Share of it where stresses are wanted: next to an edge a force counts by the little load there is.
+#: Share of that where stresses are requested: next to an edge a force counts by the little load there.
 _BESIDE_EDGES = 0.1
 
 
 def negligible(work: Any) -> float:
-    """Relative change of the contact forces that no result shows."""
+    """Relative change of the contact forces that affects no result."""
     least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
     return _BESIDE_EDGES * least if work.stresses else least
 
@@ -95,15 +96,15 @@ def one_state(
 
 
 class PunchLevel:
-    """A punch at one degree, and the maps that read its contact forces.
+    """Punch at one degree, and the maps from its contact forces to its pressure.
 
     Args:
-        work: gives spaces.
+        work: has the plan and the words of the requested stresses.
         task: the speed.
-        space: of the degree.
-        g: all values of σ_XY/σ_YY that will be asked for.
-        fitted: a punch that other speeds tell of; it is solved if not given.
-        recovery: the maps, where they are known for the space.
+        space: space of the degree.
+        g: all values of σ_XY/σ_YY that will be solved.
+        fitted: punch fitted through other speeds; it is solved if None.
+        recovery: maps from contact forces to pressure on this space; computed if None.
     """
 
     def __init__(
@@ -117,9 +118,9 @@ class PunchLevel:
             self.recovery = recovery
             return
         least = negligible(work)
-        # What friction leaves is alike from degree to degree: in stresses no estimate sees it.
-        left = 0.0 if work.stresses else least
-        solved = SlidingPunch(space, task.response, plan.solver, least, self.heights(), left)
+        # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
+        friction_rest = 0.0 if work.stresses else least
+        solved = SlidingPunch(space, task.response, plan.solver, least, self.heights(), friction_rest)
         self.punch, self.factor = solved, solved.factor
         more = space.degree - plan.degrees[task.number]
         self.recovery = contact_recovery(
@@ -135,16 +136,16 @@ class PunchLevel:
 
     @property
     def slopes(self) -> Any:
-        """Slopes of the fields on the surface, None where no stress is asked for."""
+        """Slopes of the fields on the surface, None where no stress is requested."""
         return self._gauges.slopes
 
     def displacement(self, at: Task | None = None) -> Displacement:
-        """What is read off the fields, at the places of the task or of another."""
+        """Displacement, for stresses at the places of the task or of another."""
         slopes = self._fitted.slopes if self._fitted else None
         return Displacement(at or self.task, self.space, self.punch.fields, slopes)
 
     def heights(self) -> NDArray[np.float64] | None:
-        """The punch's over N/(2μ) at the contact nodes, or of shapes; None for a flat punch."""
+        """Heights of the punch, or of shapes, over N/(2μ) at the contact nodes; None for a flat punch."""
         return profile_on(self.space, self.task.body)
 
     @property
@@ -168,12 +169,12 @@ class PunchLevel:
         return self.gauges(states, self.pressure(states))
 
     def gauges(self, states: ContactStates, pressure: JacobiPressure) -> list[Gauge]:
-        """What the error is measured on of states and their pressure."""
+        """Gauges of states and their pressure."""
         moments = states.tested(self.recovery.moments)
-        found = [error.of_pressure(pressure, moments, self._moved_edges)]
-        if self._gauges.wanted:
-            found += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
-        return found
+        gauges = [error.of_pressure(pressure, moments, self._moved_edges)]
+        if self._gauges.any_stress:
+            gauges += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
+        return gauges
 
     @property
     def _moved_edges(self) -> float:
@@ -184,27 +185,28 @@ class PunchLevel:
         return plan.kind.moved_edges(plan.wanted, self.space.degree, self.task.response.margin)
 
     def rounding(self, g: NDArray) -> list[float]:
-        """What is not the mirror image of itself at -g, of a flat punch: a profile need not be one.
+        """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
 
-        In a solid that is none itself K_I is the same at both ends of a flat punch for all that.
+        In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
+        under a flat punch all the same.
         """
         if not self.task.response.mirrored:
             states = self.punch.states(g, flat=True)
             pressure = self.pressure(states)
-            left, right = pressure.K_I.T
+            K_left, K_right = pressure.K_I.T
             # Over layers they differ, and what a solve leaves of its forces stands for rounding.
             layered = self.task.body.layered
-            of_edges = self.factor.largest_residual if layered else np.abs(left / right - 1.0).max()
+            of_edges = self.factor.largest_residual if layered else np.abs(K_left / K_right - 1.0).max()
             stresses = self._gauges.rounding(g, states.weights, pressure.σ_YY(self.task.places.X))
             return [float(of_edges), *stresses]
-        found = []
+        both = []
         for sign in (1.0, -1.0):
             states = self.punch.states(sign * g, flat=True)
             pressure = self.pressure(states)
             σ_YY = pressure.σ_YY(self.task.places.X)
             gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY)
-            found.append([error.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
-        return [float(one.change(other).max()) for one, other in zip(*found)]
+            both.append([error.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
+        return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
 
     def release(self) -> None:
         self.punch.release()
@@ -214,7 +216,7 @@ class PunchLevel:
 
 
 def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Functions of r with which nodal forces are tested; over layers at so many degrees more."""
+    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
     tests = plan.tests
     if tests is None:
         return chebyshev
@@ -222,17 +224,17 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
 
 
 def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
-    """The punch's height over N/(2μ) at the contact nodes; None for a flat punch, which needs none."""
+    """Height of the punch over N/(2μ) at the contact nodes; None for a flat punch, which needs none."""
     return None if body.flat else body.height(space.chart.surface_position(space.contact.s))
 
 
 class PunchesAtSpeed:
-    """Rigid punches at one speed, their pressure found to the tolerance.
+    """Rigid punches at one speed, their pressure solved to the tolerance.
 
     Args:
-        ladder: climbed.
-        error: of its last level.
-        fitted: did other speeds tell of this one?
+        ladder: ladder at its last level.
+        error: error of that level.
+        fitted: True where the speed was fitted through others.
     """
 
     def __init__(self, ladder: Any, error: Any, fitted: bool = False) -> None:
@@ -256,7 +258,7 @@ class Punches:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
         contact: nodal forces and weights.
-        body: what slides over what, under the load of each.
+        body: the sliding contact, under the load of each state.
     """
 
     at: PunchesAtSpeed
@@ -274,27 +276,27 @@ class Punches:
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At X = -a and X = a, (states, 2)."""
+        """K_I at X = -a and X = a, (states, 2)."""
         return self._pressure.K_I
 
     @cached_property
     def exponents(self) -> NDArray[np.float64]:
-        """At X = a and X = -a, fitted from the raw pressure, (states, 2)."""
+        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
         return self.at.level.recovery.exponents(self.contact.normal)
 
     @property
     def residual(self) -> NDArray[np.float64]:
-        """What the pressure leaves of the integral equation, relative, (states,)."""
+        """Residual of the integral equation under the pressure, relative, (states,)."""
         return of_contact(self.at.task.response, self.g, self.local, self.body, self._pressure.σ_YY)
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Normal force over N/2, (states,)."""
         return self.contact.load
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
+        """Tangential force over N/2, (states,)."""
         return self.contact.tangential.sum(axis=1)
 
     @property
@@ -304,12 +306,12 @@ class Punches:
 
     @property
     def fitted(self) -> NDArray[np.float64]:
-        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
         return np.full(len(self.g), float(self.at.fitted))
 
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
+        """Estimated relative errors, (states,), by word of output.quantities."""
         level = self.at.level
         return self.at.error.of(
             self.g, self.body.load, lambda: level.gauges(self.contact, self._pressure)
@@ -327,7 +329,7 @@ class Punches:
 
     @property
     def places(self) -> Places:
-        """Where stresses are."""
+        """Places at which stresses are evaluated."""
         return self.at.task.places
 
     @cached_property
@@ -342,7 +344,7 @@ class Punches:
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
+        """Yield of the states."""
         at, weights = self.at, self.contact.weights
         field = at.displacement.at
         return Strength(
@@ -350,15 +352,15 @@ class Punches:
         )
 
 
-#: Distance over a from a free end from which on stresses are looked at, the end itself besides.
+#: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
 _NEAREST = 1e-6
 
 
 @contextmanager
-def free_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FoundAtSpeed"]:
+def free_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FreeAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, g: FoundLevel(work, task, space, g)) as (ladder, error):
-        yield FoundAtSpeed(ladder, error)
+    with reached(work, task, g, lambda space, g: FreeLevel(work, task, space, g)) as (ladder, error):
+        yield FreeAtSpeed(ladder, error)
 
 
 @contextmanager
@@ -366,30 +368,30 @@ def free_state(
     work: Discretisation, task: Task, g: float, degree: int
 ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
     """Space, fields, weights and pressure of one state, lengths over its half-width from its middle."""
-    level = FoundLevel(work, task, work.space(degree, work.plan.cuts), np.array([g]))
+    level = FreeLevel(work, task, work.space(degree, work.plan.cuts), np.array([g]))
     try:
-        found = level.found(np.array([g]))
+        states = level.states(np.array([g]))
         yield (
             level.space,
             level.punch.fields,
-            found.contact.weights[0],
-            lambda X: found.pressure.σ_YY(X)[0],
+            states.contact.weights[0],
+            lambda X: states.pressure.σ_YY(X)[0],
         )
     finally:
         level.destroy()
 
 
 @dataclass(frozen=True)
-class FoundStates:
-    """States whose ends are found.
+class FreeStates:
+    """States of contacts with free ends.
 
     Attributes:
         contact: nodal forces and weights; v₀ of the punch's lowest point.
-        half_width, centre: of the contact [m], (states,).
-        free: which of the left and the right end are free, (states, 2).
+        half_width, centre: half-width and middle of the contact [m], (states,).
+        free: True where the left and the right end are free, (states, 2).
         factor: Chebyshev coefficients of the pressure over a flat punch's weight, (states, moments).
         local: exponents of a flat punch.
-        left: of the profile's slope beyond the shapes, relative, (states,).
+        unresolved: part of the profile's slope beyond the shapes, relative, (states,).
     """
 
     contact: ContactStates
@@ -398,11 +400,11 @@ class FoundStates:
     free: NDArray[np.bool_]
     factor: NDArray[np.float64]
     local: FlatPunch
-    left: NDArray[np.float64]
+    unresolved: NDArray[np.float64]
 
     @property
     def exponents(self) -> Exponents:
-        """Of the pressure at the right and the left end."""
+        """Exponents of the pressure at the right and the left end."""
         return Exponents(self.local.α + self.free[:, 1], self.local.β + self.free[:, 0])
 
     @cached_property
@@ -412,20 +414,20 @@ class FoundStates:
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end, 0 at a free one, (states, 2)."""
-        found = -0.5 * self.factor @ chebyshev(np.array([-1.0, 1.0])).T
-        return np.where(self.free, 0.0, found)
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
+        intensities = -0.5 * self.factor @ chebyshev(np.array([-1.0, 1.0])).T
+        return np.where(self.free, 0.0, intensities)
 
 
-class FoundLevel(PunchLevel):
-    """Punches at one degree; see :class:`PunchLevel`."""
+class FreeLevel(PunchLevel):
+    """Punches with free ends at one degree; see :class:`PunchLevel`."""
 
     def heights(self) -> NDArray[np.float64]:
         s = self.space.chart.surface_position(self.space.contact.s)
         return heights_of_shapes(s, self._work.plan.shapes)
 
-    def found(self, g: NDArray, load: Any = None) -> FoundStates:
-        """The states with these values of σ_XY/σ_YY, under the task's load or others [N/m].
+    def states(self, g: NDArray, load: Any = None) -> FreeStates:
+        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
 
         Raises:
             SolveError: no contact carries the load.
@@ -435,45 +437,45 @@ class FoundLevel(PunchLevel):
         loads = np.stack([part.load for part in parts], axis=1)
         body = self.task.body.loaded(load)
         solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, h, m, free, lowest, left = solve(body, loads, K, local)
+        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = combined(g, parts, amplitudes)
         factor = self._over_flat(contact, local).c
         deeper = replace(contact, v0=contact.v0 + lowest)
-        return FoundStates(deeper, h, m, free, factor, local, left)
+        return FreeStates(deeper, h, m, free, factor, local, unresolved)
 
     def _over_flat(self, part: Part, local: FlatPunch) -> JacobiPressure:
-        """Its pressure over a flat punch's weight."""
+        """Pressure of a part over a flat punch's weight."""
         return from_moments(part.tested(self.recovery.moments), local.α, local.β)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        found = self.found(g, load)
-        moments = found.contact.tested(self.recovery.moments)
-        whole = JacobiPressure(found.local.α, found.local.β, found.factor)
+        states = self.states(g, load)
+        moments = states.contact.tested(self.recovery.moments)
+        whole = JacobiPressure(states.local.α, states.local.β, states.factor)
         of_pressure = error.of_pressure(whole, moments)
-        lengths = np.column_stack([found.half_width, found.centre])
-        size = np.tile(found.half_width[:, None], 2)
+        lengths = np.column_stack([states.half_width, states.centre])
+        size = np.tile(states.half_width[:, None], 2)
         return [
             Gauge(
                 of_pressure.word,
                 np.concatenate([of_pressure.values, lengths], axis=1),
                 np.concatenate([of_pressure.scale, size], axis=1),
             ),
-            *self._gauges.of(g, found.contact.weights, found.pressure.σ_YY(self.task.places.X)),
+            *self._gauges.of(g, states.contact.weights, states.pressure.σ_YY(self.task.places.X)),
         ]
 
 
-#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, by how much the lowest point
-#: of the punch lies below the level of the first shape, over N/(2μ), and what is left of the slope.
+#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
+#: point below the level of the first shape, over N/(2μ), and slope beyond the shapes, relative.
 _Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
 
 
 def _parabola(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
-    """v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
+    """Amplitudes of v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
 
     Args:
-        body: what slides over what.
+        body: the sliding contact.
         loads: ∫σ_YY of every part, (states, parts).
         K: intensities of every part at both ends, (states, 2, parts).
         local: exponents of a flat punch.
@@ -491,12 +493,12 @@ def _parabola(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solv
 
 
 def _smooth(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
-    """v = -v₀ + the punch's height with the load, and without intensity at both ends."""
+    """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
     punch, few = body.profile, slice(1 + SHAPES)
     units = np.broadcast_to(body.displacement, len(loads)).tolist()
-    known, near = free_ends(local, K[..., few], loads[:, few]), None
+    conditions, near = free_ends(local, K[..., few], loads[:, few]), None
     ends, slopes = [], []
-    for condition, unit in zip(known, units):
+    for condition, unit in zip(conditions, units):
         near = condition.found(punch, unit, near)
         ends.append(near)
         slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
@@ -504,13 +506,14 @@ def _smooth(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved
     shapes = np.array(slopes)[:, :count]
     v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
     lowest = np.asarray(punch.height(m)) / units
-    left = size[:, count:].sum(axis=1) / size.max(axis=1)
+    unresolved = size[:, count:].sum(axis=1) / size.max(axis=1)
     free = np.ones((len(m), 2), dtype=bool)
-    return np.column_stack([v0, shapes]), h, m, free, lowest, left
+    return np.column_stack([v0, shapes]), h, m, free, lowest, unresolved
 
 
 def _tilted(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved:
-    """v = -v₀ + c₁ s with the load; c₁ is known, or what leaves no intensity at the higher edge."""
+    """Amplitudes of v = -v₀ + c₁ s with the load; c₁ is that of the tilt, or, where the higher edge is
+    lifted, that without intensity there."""
     punch = body.profile
     assert isinstance(punch, Flat)
     side = 1 if punch.rise > 0.0 else 0
@@ -527,111 +530,111 @@ def _tilted(body: Body, loads: NDArray, K: NDArray, local: FlatPunch) -> _Solved
     return amplitudes, h, centre, free, np.abs(amplitudes[:, 1]), 0.0 * h
 
 
-#: Of those profiles whose conditions are linear.
+#: Solutions for profiles whose conditions are linear.
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
-class FoundAtSpeed(PunchesAtSpeed):
-    """Punches at one speed, found to the tolerance."""
+class FreeAtSpeed(PunchesAtSpeed):
+    """Punches with free ends at one speed, solved to the tolerance."""
 
     def states(self, g: NDArray, load: Any = None) -> Any:
         body = self.task.body.loaded(load)
-        return FoundPunches(self, g, self.level.found(g, load), body)
+        return FreePunches(self, g, self.level.states(g, load), body)
 
 
 @dataclass(frozen=True)
-class FoundPunches:
-    """Punches with several frictions, each with its own half-width and middle.
+class FreePunches:
+    """Contacts with free ends, with several frictions, each with its own half-width and middle.
 
     Attributes:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
-        found: ends, nodal forces and weights.
-        body: what slides over what, under the load of each.
+        solved: ends, nodal forces and weights.
+        body: the sliding contact, under the load of each state.
     """
 
-    at: FoundAtSpeed
+    at: FreeAtSpeed
     g: NDArray[np.float64]
-    found: FoundStates
+    solved: FreeStates
     body: Body
 
     @property
     def local(self) -> Exponents:
-        return self.found.exponents
+        return self.solved.exponents
 
     @property
     def half_width(self) -> NDArray[np.float64]:
-        """Of the contact [m], (states,)."""
-        return self.found.half_width
+        """Half-width of the contact [m], (states,)."""
+        return self.solved.half_width
 
     @property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.found.centre
+        return self.solved.centre
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """At the left and the right end, (states, 2)."""
-        return self.found.K_I
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
+        return self.solved.K_I
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        σ_YY = self.found.pressure.σ_YY
+        σ_YY = self.solved.pressure.σ_YY
         value, top = largest(lambda x: -σ_YY(x), lambda i, x: -σ_YY(x)[i])
-        infinite = ~self.found.free.all(axis=1)
+        infinite = ~self.solved.free.all(axis=1)
         return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
 
     @property
     def residual(self) -> NDArray[np.float64]:
-        """What the pressure leaves of the integral equation, relative, (states,)."""
-        found = self.found
+        """Residual of the integral equation under the pressure, relative, (states,)."""
+        solved = self.solved
         return of_contact(
-            self.at.task.response, self.g, self.local, self.body, found.pressure.σ_YY,
-            (found.centre, found.half_width),
+            self.at.task.response, self.g, self.local, self.body, solved.pressure.σ_YY,
+            (solved.centre, solved.half_width),
         )  # fmt: skip
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return self.found.contact.load
+        """Normal force over N/2, (states,)."""
+        return self.solved.contact.load
 
     @property
     def tangential_force(self) -> NDArray[np.float64]:
-        """Resultant over N/2, (states,)."""
-        return self.found.contact.tangential.sum(axis=1)
+        """Tangential force over N/2, (states,)."""
+        return self.solved.contact.tangential.sum(axis=1)
 
     @property
     def v0(self) -> NDArray[np.float64]:
         """Indentation of the punch's lowest point over N/(2μ), (states,)."""
-        return self.found.contact.v0
+        return self.solved.contact.v0
 
     @property
     def fitted(self) -> NDArray[np.float64]:
-        """1 where other speeds told of the state, 0 where it was solved, (states,)."""
+        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
         return np.full(len(self.g), float(self.at.fitted))
 
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Relative errors, (states,), by the word of output.quantities that asks for what they are of."""
-        found = self.at.error.of(self.g, self.body.load)
-        return {word: values + self.found.left for word, values in found.items()}
+        """Estimated relative errors, (states,), by word of output.quantities."""
+        errors = self.at.error.of(self.g, self.body.load)
+        return {word: values + self.solved.unresolved for word, values in errors.items()}
 
     @cached_property
     def surface(self) -> Surface:
-        contact, places = self.found.contact, self.at.task.places
+        contact, places = self.solved.contact, self.at.task.places
         raw = contact.tested(self.at.level.recovery.raw)
-        σ_YY = self.found.pressure.σ_YY(places.X)
+        σ_YY = self.solved.pressure.σ_YY(places.X)
         return self.at.displacement.surface(self.g, contact.weights, σ_YY, raw)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
-        return self.at.displacement.inside(self.found.contact.weights)
+        return self.at.displacement.inside(self.solved.contact.weights)
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield."""
-        at, weights = self.at, self.found.contact.weights
+        """Yield of the states."""
+        at, weights = self.at, self.solved.contact.weights
         field = at.displacement.at
         return Strength(
             lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,

@@ -1,13 +1,11 @@
-"""Many speeds for the price of a dozen: some are solved, a rational fit tells the others.
+"""Sweeps of many speeds for the price of a dozen: a rational fit through solved speeds gives the others.
 
-What is fitted are the parts of a punch at a few frictions: nodal forces, slopes, displacements, from
-which its states of all frictions and loads follow. One rational function serves all of these numbers.
-Speeds are solved far from those before, or where the fit changed most, and each is first told by the fit:
-how far that was off, and how much the fit then changes all over the sweep, is its error.
-
-A fit through speeds that were solved: one rational function for all numbers of a punch's parts.
-
-How far punches are off that other speeds tell of: by their discretisation, and by the fit.
+The fit is of the parts of a punch at a few frictions: nodal forces, slopes, displacements, from which its
+states of all frictions and loads follow. A single rational function serves all of these numbers
+(:class:`Fit`). The next speed is solved far from those before, or where the fit changed most, and is
+predicted by the fit first: the error of that prediction, and the change of the fit all over the sweep,
+are the error of the fit. A fitted speed has that error and the error of the discretisation
+(:class:`FitError`).
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -40,10 +38,10 @@ from .discretisation import Discretisation
 from .error import PROBES, Gauge, WorkDone, climbed
 from .method import Mode
 
-#: Sum of shares in absolute value from which a fit is worth nothing: a pole is near.
+#: Sum of absolute shares from which a fit is rejected: a pole is near.
 _LARGEST = 1e4
 
-#: What may be rounding in the numbers of a sample, which are over their largest.
+#: Rounding in the numbers of a sample, relative to their largest.
 _NOISE = 3e-9
 
 
@@ -52,16 +50,17 @@ class Fit:
     """A fit through the speeds that have been solved so far.
 
     Attributes:
-        work, mode: give spaces; what the punches are.
+        work: gives spaces.
+        mode: kind of contact.
         tasks: all speeds, in the order of the plan.
-        sweep: what the plan knows of them.
-        space: of the last degree.
+        sweep: the plan's sweep.
+        space: space of the last degree.
         at: frictions at which punches are sampled.
-        recovery: how pressure is read off nodal forces.
+        recovery: maps from nodal forces to pressure.
         solved: numbers of the speeds, in the order in which they were solved.
-        samples: of these, without what edges do.
-        records: of the work, by a speed's number.
-        rational: through the samples; None for less than three.
+        samples: samples of these speeds, without the singular factors of the edges.
+        records: numbers of the work, by a speed's number.
+        rational: rational function through the samples; None for fewer than three.
     """
 
     work: Discretisation
@@ -77,11 +76,11 @@ class Fit:
     rational: Rational | None = None
 
     def singular(self, task: Task) -> Singular:
-        """What edges do at a speed: powers of the distance whose exponents the local analysis knows."""
+        """Singular factors of the edges: powers of the distance with exponents of the local analysis."""
         s, places = self.space.contact.s, task.places.X
-        left, right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
+        d_left, d_right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
         # At the edge itself the force is that of a piece of half the innermost distance or so.
-        left, right = np.maximum(left, left[1] / 2.0), np.maximum(right, right[-2] / 2.0)
+        d_left, d_right = np.maximum(d_left, d_left[1] / 2.0), np.maximum(d_right, d_right[-2] / 2.0)
         local = FlatPunch(task.response, self.at.g)
 
         def power(from_left: NDArray, from_right: NDArray) -> NDArray[np.float64]:
@@ -89,13 +88,13 @@ class Fit:
             return np.asarray(np.exp(logs))
 
         slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
-        return Singular(power(left, right), slopes if self.work.stresses else slopes[:, :0])
+        return Singular(power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0])
 
     def sampled(self, task: Task, level: Any) -> Sampled:
-        """What the fit is made of at a speed that was solved."""
+        """Sample of a solved speed for the fit, without the singular factors of the edges."""
         fields = bool({BELOW, YIELD, AT_INTERFACES} & self.work.stresses)
-        found = sampled(level.punch, self.at, level.slopes, fields)
-        return found.smooth(self.singular(task))
+        sample = sampled(level.punch, self.at, level.slopes, fields)
+        return sample.smooth(self.singular(task))
 
     def take(self, solved: Sequence[tuple[int, Sampled, dict[str, Any]]]) -> None:
         """Take in speeds that were solved: number, sample and record of each."""
@@ -107,18 +106,18 @@ class Fit:
             self.rational = self._rational()
 
     def _rational(self) -> Rational:
-        """One without poles among the speeds, else the polynomial."""
+        """Rational function without poles among the speeds, else the polynomial."""
         z = self.sweep.z[self.solved]
-        found = fitted(z, self.values, _NOISE)
-        if np.abs(found.shares(self.sweep.z)).sum(axis=1).max() < _LARGEST:
-            return found
+        rational = fitted(z, self.values, _NOISE)
+        if np.abs(rational.shares(self.sweep.z)).sum(axis=1).max() < _LARGEST:
+            return rational
         return Rational(z, polynomial_weights(z))
 
     @property
     def values(self) -> NDArray[np.float64]:
-        """All numbers of the samples, each kind over its largest, (samples, numbers)."""
+        """All numbers of the samples, each kind relative to its largest, (samples, numbers)."""
         blocks = []
-        for kinds in zip(*(one.numbers() for one in self.samples)):
+        for kinds in zip(*(sample.numbers() for sample in self.samples)):
             values = np.array(kinds)
             size = np.abs(values).max(initial=0.0)
             if size > 0.0:
@@ -126,7 +125,7 @@ class Fit:
         return np.concatenate(blocks, axis=1)
 
     def shares(self, number: int) -> NDArray[np.float64]:
-        """What of the samples makes a speed, (samples,)."""
+        """Shares of the samples in a speed, (samples,)."""
         if number in self.solved:
             return np.eye(len(self.solved))[self.solved.index(number)]
         assert self.rational
@@ -134,10 +133,10 @@ class Fit:
 
     @contextmanager
     def level(self, task: Task, shares: NDArray | None = None) -> Iterator[Any]:
-        """A speed as the fit, or other shares of the samples, tell it."""
+        """Level of a speed by the fit, or by other shares of the samples, (samples,)."""
         shares = self.shares(task.number) if shares is None else shares
-        known = together(self.samples, shares).singular(self.singular(task))
-        punch = FittedPunch(self.space, task.response, self.at, known)
+        combined = together(self.samples, shares).singular(self.singular(task))
+        punch = FittedPunch(self.space, task.response, self.at, combined)
         try:
             yield self.mode.level(self.work, task, self.space, self.at.g, punch, self.recovery)
         finally:
@@ -152,17 +151,17 @@ class Fit:
 
 def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
     """Largest relative difference of two lists of gauges, by word of output.quantities."""
-    return {one.word: float(one.change(other).max()) for one, other in zip(gauges, others)}
+    return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
 
 
 class Estimates:
-    """Estimated errors of the discretisation at some speeds and frictions.
+    """Estimated errors of the discretisation at the speeds and frictions where they were measured.
 
     Args:
         g: the frictions, rising, (frictions,).
 
     Attributes:
-        numbers: of the speeds.
+        numbers: numbers of the speeds.
     """
 
     def __init__(self, g: NDArray) -> None:
@@ -171,11 +170,12 @@ class Estimates:
         self._errors: dict[str, list[NDArray]] = {}
 
     def add(self, number: int, z: float, errors: dict[str, NDArray]) -> None:
-        """Those at a speed: its number, its place in the variable of the fit.
+        """Add the errors at a speed.
 
         Args:
-            number, z: the speed.
-            errors: by word, (n frictions,), those of some loads one after the other.
+            number: number of the speed.
+            z: the speed in the variable of the fit.
+            errors: relative errors by word, (loads × frictions,), load by load.
         """
         self.numbers.append(number)
         self._z.append(z)
@@ -184,22 +184,22 @@ class Estimates:
             self._errors.setdefault(word, []).append(of_loads)
 
     def least(self, word: str) -> float:
-        """The smallest of all."""
+        """Smallest error of a word."""
         return float(np.min(self._errors[word]))
 
     def covers(self, z: float) -> bool:
-        """Were errors measured there, or on both sides of it?"""
+        """True where errors were measured at z, or on both sides of it."""
         return min(self._z) <= z <= max(self._z)
 
     def beyond(self, tolerance: float) -> bool:
-        """Are all of a word beyond it? Then no speed can be told to the tolerance."""
+        """True where all errors of a word exceed the tolerance: then no speed can be fitted to it."""
         return any(self.least(word) > tolerance for word in self._errors)
 
     def around(self, z: float, g: NDArray) -> dict[str, NDArray[np.float64]]:
-        """The largest of those around a speed and frictions, (len(g),), by word.
+        """Largest errors around a speed z and frictions g, (len(g),), by word.
 
-        Of the solved speeds on both sides, and of the frictions: an error that falls from one to the
-        other is not told smaller than it may be.
+        They are taken over the solved speeds and the frictions on both sides, lest an error that falls
+        from one side to the other be underestimated.
         """
         order = np.argsort(self._z, kind="stable")
         places = np.array(self._z)[order]
@@ -212,49 +212,49 @@ class Estimates:
 
 
 def _around(places: NDArray, x: NDArray) -> NDArray[np.int64]:
-    """Numbers of the places on both sides of each x, twice the same where it is one, (len(x), 2)."""
+    """Indices of the places on both sides of each x, equal where x is a place, (len(x), 2)."""
     last = len(places) - 1
-    right = np.clip(np.searchsorted(places, x), 0, last)
-    left = np.where(places[right] > x, right - 1, right)
-    return np.column_stack([np.clip(left, 0, last), right])
+    above = np.clip(np.searchsorted(places, x), 0, last)
+    below = np.where(places[above] > x, above - 1, above)
+    return np.column_stack([np.clip(below, 0, last), above])
 
 
 class FitError:
-    """Errors at a speed that others tell of, as of :class:`.error.MeasuredError`.
+    """Estimated errors at a fitted speed, in the place of :class:`.error.MeasuredError`.
 
     Args:
-        estimates: of the discretisation.
+        estimates: errors of the discretisation.
         z: the speed in the variable of the fit.
-        fit: error of the fit, by word of output.quantities; none where the speed was solved.
+        fit: error of the fit, by word of output.quantities; empty where the speed was solved.
     """
 
     def __init__(self, estimates: Estimates, z: float, fit: dict[str, float]) -> None:
         self._estimates, self._z, self._fit = estimates, z, fit
 
     def of(self, g: NDArray, load: Any = None, last: Any = None) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by the word of output.quantities that asks for them."""
+        """Estimated relative errors, (states,), by word of output.quantities."""
         around = self._estimates.around(self._z, g)
         return {word: values + self._fit.get(word, 0.0) for word, values in around.items()}
 
     def record(self) -> dict[str, Any]:
-        """None: what was measured is in the records of the speeds that were solved."""
+        """Empty: measured changes are in the records of the solved speeds."""
         return {}
 
 
-#: Share of the tolerance that the discretisation may take, and that of the larger of both which the fit
-#: may: together they stay below.
+#: Share of the tolerance that the discretisation may take, and share of the larger of the tolerance and
+#: that error that the fit may take: together they stay below the tolerance.
 DISCRETISATION, FIT = 0.88, 0.1
 
-#: Speeds that are solved before the fit is looked at again: two ranks have one each, and whatever their
-#: number, the same speeds are solved.
+#: Speeds that are solved before the fit is judged again: a speed for each of two ranks. Any number of
+#: ranks solves the same speeds.
 AT_ONCE = 2
 
-#: Numbers of frictions that are tried until what lies between is known so well, relative: forces have to
-#: balance to 1e-9, and what cancels at free ends is as much larger than what is left.
+#: Numbers of frictions that are tried until the interpolation between them is so accurate, relative:
+#: forces have to balance to 1e-9, and at free ends terms cancel that are much larger than their sum.
 _FRICTIONS, _BETWEEN = (8, 12, 16, 20, 26, 34, 44, 60), 3e-12
 
 
-#: Share of what solving every speed costs that may be lost where no fit becomes good enough.
+#: Share of the cost of solving every speed that may be lost where no fit becomes good enough.
 _REGRET = 0.08
 
 #: Speeds, at both ends of the sweep, at which the discretisation's error is measured in any case.
@@ -262,18 +262,18 @@ _ENDS = 2
 
 
 class HigherDegree(Exception):
-    """One of the speeds asks for a higher degree than those before were solved with."""
+    """A speed needs a higher degree than the speeds before were solved with."""
 
 
 @dataclass(frozen=True)
 class Trained:
-    """A fit through some speeds, and how good it is.
+    """Fit through solved speeds, and its error.
 
     Attributes:
-        fit: through the speeds that were solved.
-        estimates: of the discretisation, measured at some speeds.
-        error: of the fit, by word of output.quantities; None where it is not good enough, and tells the
-            solved speeds alone.
+        fit: fit through the solved speeds.
+        estimates: errors of the discretisation at the speeds where they were measured.
+        error: error of the fit, by word of output.quantities; None where it is not good enough and serves
+            the solved speeds alone.
     """
 
     fit: Fit
@@ -284,25 +284,25 @@ class Trained:
     def at(self, task: Task, g: NDArray) -> Iterator[Any]:
         """Punches at a speed, of the fit's mode; None where they have to be solved.
 
-        That is where what is estimated there is beyond the tolerance: alone it may do better.
+        They have to be where the estimated error exceeds the tolerance: solved alone it may be smaller.
         """
         number, fit = task.number, self.fit
-        told, z = number not in fit.solved, float(fit.sweep.z[number])
-        if self.error is None and (told or not self.estimates.covers(z)):
+        fitted, z = number not in fit.solved, float(fit.sweep.z[number])
+        if self.error is None and (fitted or not self.estimates.covers(z)):
             yield None
             return
-        error = FitError(self.estimates, z, self.error if told and self.error else {})
+        error = FitError(self.estimates, z, self.error if fitted and self.error else {})
         worst = max((values.max() for values in error.of(g).values()), default=0.0)
         if worst > fit.work.plan.tolerance:
             yield None
             return
         with fit.level(task) as level:
-            yield fit.mode.at_speed(_Told(task, [level], fit.record(number)), error, told)
+            yield fit.mode.at_speed(_FittedLadder(task, [level], fit.record(number)), error, fitted)
 
 
 @dataclass(frozen=True)
-class _Told:
-    """A speed's level and record, as of a ladder."""
+class _FittedLadder:
+    """Level and record of a fitted speed, in the place of a ladder."""
 
     task: Task
     levels: list[Any]
@@ -315,15 +315,15 @@ class _Told:
 def train(
     work: Discretisation, tasks: list[Task], mode: Mode, say: Callable[[str], None]
 ) -> Trained | None:
-    """Solve speeds until a fit tells the others to the tolerance.
+    """Solve speeds until a fit through them gives the others to the tolerance.
 
-    Where that may cost too much, were it in vain, it tells those that were solved.
+    Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
 
     Args:
         work: gives spaces.
         tasks: all speeds.
-        mode: what punches are: a mode with a level and its punches at a speed.
-        say: is told what is done.
+        mode: kind of contact, with a level and its punches at a speed.
+        say: shows the work under way.
     """
     assert work.plan.sweep
     degree: int | None = None
@@ -343,15 +343,15 @@ def train(
 
 @dataclass(frozen=True)
 class _Solved:
-    """A speed that was solved.
+    """Solved speed.
 
     Attributes:
-        number: of the speed.
-        degree: of its elements.
-        sample: for the fit, None of a higher degree than its own.
-        record: of the work.
-        estimates: of the discretisation, by word, where they were measured.
-        off: how far the fit before was, by word, where it told the speed.
+        number: number of the speed.
+        degree: degree of its elements.
+        sample: sample for the fit; None of a higher degree than the fit's.
+        record: numbers of the work.
+        estimates: errors of the discretisation, by word, where they were measured.
+        off: error of the previous fit at this speed, by word, where it predicted the speed.
     """
 
     number: int
@@ -363,7 +363,7 @@ class _Solved:
 
 
 def _cost(degree: int) -> float:
-    """Of a factorisation and all that goes with it."""
+    """Cost of a factorisation and all that goes with it, in arbitrary units."""
     return float(degree**4)
 
 
@@ -372,17 +372,18 @@ def _cost_of_ladder(degree: int) -> float:
 
 
 class _Training:
-    """See :func:`train`.
+    """Training of a fit; see :func:`train`.
 
     Costs are counted in factorisations, which go with the fourth power of the degree or so.
 
     Args:
-        work, tasks, mode, sweep, say: of that.
-        degree: to begin with, the plan's if None.
-        lost: cost of what was solved before, in vain.
+        work, tasks, mode, say: as of :func:`train`.
+        sweep: the plan's sweep.
+        degree: degree to begin with; the plan's if None.
+        lost: cost of the speeds that were solved before, in vain.
 
     Attributes:
-        spent: cost of all that was solved.
+        spent: cost of all solved speeds.
         allowed: cost that may be lost.
     """
 
@@ -404,9 +405,9 @@ class _Training:
         self._fit: Fit | None = None
 
     def done(self) -> Trained | None:
-        """The fit; of the solved speeds alone where it does not become good enough."""
+        """Train the fit; it serves the solved speeds alone where it does not become good enough."""
         tasks = self._tasks
-        # The fastest asks for the highest degree: it is solved first, by every rank for itself.
+        # The fastest needs the highest degree: it is solved first, by every rank for itself.
         chosen = [int(np.argmin([task.response.margin for task in tasks]))]
         self._take([self._measured(chosen[0])])
         self.spent += self._cost(True)  # it would be solved just so by itself
@@ -423,7 +424,9 @@ class _Training:
             if error and self._good(error):
                 assert before
                 changes = {worst: self._change(before, worst) for worst in self._worst(before)}
-                error = {word: max(one[word] for one in (error, *changes.values())) for word in error}
+                error = {
+                    word: max(errors[word] for errors in (error, *changes.values())) for word in error
+                }
                 if self._good(error) and self._good(error := self._seconded(error, chosen)):
                     assert self._fit
                     return Trained(self._fit, self._estimates, error)
@@ -431,9 +434,9 @@ class _Training:
         return self.given_up()
 
     def _seconded(self, error: dict[str, float], chosen: list[int]) -> dict[str, float]:
-        """The error of a fit that is good, after that of the discretisation was measured at more speeds.
+        """Error of a good fit, after the discretisation's error was measured at more speeds.
 
-        That was put off, lest it be in vain.
+        That measurement is put off until the fit is good, lest it be in vain.
         """
         while (missing := LADDERS - len(self._estimates.numbers)) > 0:
             more = self._far([], chosen)[:missing]
@@ -445,19 +448,19 @@ class _Training:
         return error
 
     def given_up(self) -> Trained | None:
-        """What was solved tells of itself."""
+        """Fit that serves the solved speeds alone; None where no speed was solved."""
         self._say("no fit through speeds is good enough at its cost: each is solved")
         return Trained(self._fit, self._estimates, None) if self._fit else None
 
     def _next(self, chosen: list[int], number: int | None) -> dict[int, bool]:
-        """Numbers of the speeds that are solved next: the given one, and such as are far from all.
+        """Numbers of the speeds to solve next: ``number``, and speeds far from all solved ones.
 
-        Each with whether to measure its error, as at the ends of the sweep, and elsewhere as far as that
-        may be in vain. Those that would cost too much are left out.
+        Each maps to True where its error is to be measured: at the ends of the sweep, and elsewhere as
+        far as the cost may be in vain. Speeds that would cost too much are left out.
         """
-        found = self._far([] if number is None else [number], chosen)
+        numbers = self._far([] if number is None else [number], chosen)
         lost, kept = self._lost, dict[int, bool]()
-        for number in found:
+        for number in numbers:
             measured = len(self._estimates.numbers) + sum(kept.values())
             for measures in (True, False):
                 more = self._cost(measures) - self._alone[number]
@@ -468,17 +471,17 @@ class _Training:
                     break
         return kept
 
-    def _far(self, found: list[int], chosen: list[int]) -> list[int]:
-        """Numbers of as many speeds as are solved at once: some, and others that are far from all."""
-        while len(found) < AT_ONCE:
-            number = leja(self._sweep.z, chosen + found)
+    def _far(self, numbers: list[int], chosen: list[int]) -> list[int]:
+        """Numbers of as many speeds as are solved at once: the given ones, and others far from all."""
+        while len(numbers) < AT_ONCE:
+            number = leja(self._sweep.z, chosen + numbers)
             if number is None:
                 break
-            found = [*found, number]
-        return found
+            numbers = [*numbers, number]
+        return numbers
 
     def _cost(self, measures: bool) -> float:
-        """Of a speed at the fit's degree, with or without all that measures its error."""
+        """Cost of a speed at the fit's degree, with or without the measurement of its error."""
         assert self._degree
         return _cost_of_ladder(self._degree) if measures else _cost(self._degree)
 
@@ -486,10 +489,10 @@ class _Training:
         """Solve speeds, shared out over the ranks, and take them in.
 
         Args:
-            numbers: of the speeds, and whether to measure the error there.
+            numbers: numbers of the speeds; True where the error is to be measured.
 
         Returns:
-            The fit before; how far it was off at most, by word, nothing where there was none.
+            The previous fit; its largest error at these speeds, by word, empty where there was no fit.
         """
         for number, measures in numbers.items():
             cost = self._cost(measures)
@@ -499,20 +502,20 @@ class _Training:
             return self._measured(number) if numbers[number] else self._checked(number)
 
         before = self._fit.rational if self._fit else None
-        found = by_turns(list(numbers), solve, not self._work.plan.shared_speeds)
-        self._take(found)
-        off = [one.off for one in found if one.off]
-        return before, {word: max(one[word] for one in off) for word in off[0]} if off else {}
+        speeds = by_turns(list(numbers), solve, not self._work.plan.shared_speeds)
+        self._take(speeds)
+        off = [speed.off for speed in speeds if speed.off]
+        return before, {word: max(errors[word] for errors in off) for word in off[0]} if off else {}
 
-    def _take(self, found: list["_Solved"]) -> None:
+    def _take(self, speeds: list["_Solved"]) -> None:
         fit = self._fit
         assert fit
-        if (degree := max(one.degree for one in found)) > fit.space.degree:
+        if (degree := max(speed.degree for speed in speeds)) > fit.space.degree:
             raise HigherDegree(degree)
-        for one in found:
-            if one.estimates:
-                self._estimates.add(one.number, self._sweep.z[one.number], one.estimates)
-        fit.take([(one.number, one.sample, one.record) for one in found if one.sample])
+        for speed in speeds:
+            if speed.estimates:
+                self._estimates.add(speed.number, self._sweep.z[speed.number], speed.estimates)
+        fit.take([(speed.number, speed.sample, speed.record) for speed in speeds if speed.sample])
 
     def _frictions(self, count: int) -> Frictions:
         if self._sweep.few:
@@ -521,14 +524,14 @@ class _Training:
 
     @property
     def _all(self) -> NDArray[np.float64]:
-        """Frictions for which punches are solved: all at which one is ever looked at."""
+        """Frictions for which punches are solved: the probes, and all sets of frictions to try."""
         if self._sweep.few:
             return self._sweep.g
         tried = [self._frictions(count).g for count in _FRICTIONS]
         return np.unique(np.concatenate([self._probes, *tried]))
 
     def _measured(self, number: int) -> "_Solved":
-        """Solve a speed with all that measures its error."""
+        """Solve a speed and measure its error."""
         work, mode, task = self._work, self._mode, self._tasks[number]
         self._tell(task)
         expected = self._expected(task)
@@ -548,14 +551,14 @@ class _Training:
             )  # fmt: skip
 
     def _expected(self, task: Task) -> list[Gauge] | None:
-        """What the fit says of a speed, None where there is none yet."""
+        """Gauges of a speed predicted by the fit; None where there is no fit yet."""
         if not self._fit or not self._fit.rational:
             return None
-        with self._fit.level(task) as told:
-            return told.measured(self._probes, self._loads)
+        with self._fit.level(task) as level:
+            return level.measured(self._probes, self._loads)
 
     def _off(self, level: Any, expected: list[Gauge] | None) -> dict[str, float] | None:
-        """How far that is from what was solved, by word."""
+        """Largest relative difference of predicted from solved gauges, by word; None if none."""
         if expected is None:
             return None
         return largest_changes(level.measured(self._probes, self._loads), expected)
@@ -564,21 +567,21 @@ class _Training:
         self._say(f"finite elements at c = {task.response.c:g}, of the fit")
 
     def _begun(self, level: Any) -> Fit:
-        """A fit without samples: at as many frictions as tell those between."""
+        """Fit without samples, at as many frictions as give those between them accurately."""
         at = self._frictions(_FRICTIONS[-1])
         if not self._sweep.few:
             true = [part.normal for part in level.punch.parts(self._probes)]
             for count in _FRICTIONS:
                 at = self._frictions(count)
                 shares = at.shares(self._probes)
-                told = [shares @ part.normal for part in level.punch.parts(at.g)]
-                off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(told, true))
+                interpolated = [shares @ part.normal for part in level.punch.parts(at.g)]
+                off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(interpolated, true))
                 if off <= _BETWEEN:
                     break
         return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
-        """Solve a speed alone."""
+        """Solve a speed without measuring its error."""
         work, fit, task = self._work, self._fit, self._tasks[number]
         assert fit
         self._tell(task)
@@ -594,16 +597,16 @@ class _Training:
             level.destroy()
 
     def _good(self, error: dict[str, float]) -> bool:
-        """Is an error of the fit, by word, small enough?"""
+        """True where an error of the fit, by word, is small enough."""
         return self._excess(error) <= 1.0
 
     def _excess(self, error: dict[str, float]) -> float:
-        """An error of the fit, by word, over what it may be, the largest."""
+        """Largest error of the fit over its allowed value, among the words; dimensionless."""
         tolerance, least = self._work.plan.tolerance, self._estimates.least
         return max(value / (FIT * max(tolerance, least(word))) for word, value in error.items())
 
     def _worst(self, before: Rational) -> list[int]:
-        """Numbers of the speeds whose fit changed most, one in each gap between solved ones."""
+        """Numbers of the speeds whose fit changed most, a speed for each gap between solved ones."""
         fit = self._fit
         assert fit and fit.rational
         z, solved = self._sweep.z, np.sort(self._sweep.z[fit.solved])
@@ -613,12 +616,12 @@ class _Training:
         change = np.linalg.norm(shares @ values, axis=1)
         change[fit.solved] = -1.0
         gap = np.searchsorted(solved, z)
-        worst = [np.flatnonzero(gap == one) for one in np.unique(gap)]
-        found = [int(some[change[some].argmax()]) for some in worst]
-        return [number for number in found if change[number] >= 0.0]
+        gaps = [np.flatnonzero(gap == index) for index in np.unique(gap)]
+        worst = [int(numbers[change[numbers].argmax()]) for numbers in gaps]
+        return [number for number in worst if change[number] >= 0.0]
 
     def _change(self, before: Rational, number: int) -> dict[str, float]:
-        """How much a speed changed with the last sample, by word."""
+        """Largest relative change of a speed's gauges with the last sample, by word."""
         fit, task = self._fit, self._tasks[number]
         assert fit
         shares = before.shares(self._sweep.z[[number]])[0]

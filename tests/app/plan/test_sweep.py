@@ -62,8 +62,8 @@ def test_a_plan_says_what_it_will_do():
     speeds = {"motion.c": {"from": 0.0, "to": 0.9, "number": 40}}
     few = make_plan(template("tables4_5", speeds))
     each = make_plan(template("tables4_5", speeds | {"solve.sweep": "every"}))
-    (told,) = [line for line in lines(template("tables4_5", speeds), few) if "tell the others" in line]
+    (told,) = [line for line in lines(template("tables4_5", speeds), few) if "give the others" in line]
     assert "40 speeds, c = 0 to 0.9" in told
-    assert not any("tell the others" in line for line in lines(template("tables4_5", speeds), each))
+    assert not any("give the others" in line for line in lines(template("tables4_5", speeds), each))
     seconds = [float(expense(plan).split()[1]) for plan in (few, each)]
     assert seconds[0] < 0.6 * seconds[1]

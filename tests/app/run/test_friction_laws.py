@@ -146,7 +146,7 @@ def test_a_motion_may_be_given_point_by_point():
         ("speed = 1, strokes = [{speed = 1}]", "found a stroke without to"),
         ("speed = 1, strokes = [{to = 0.1}], X_over_L = 0.5", "no position that a stroke passes"),
         ("speed = 1, strokes = [{to = 1, speed = 1e9}]", "found a stroke at 1e"),
-        ("speed = 1, path = [[0, 0], [1, 1e-5]]", "path tells the speed"),
+        ("speed = 1, path = [[0, 0], [1, 1e-5]]", "path gives the speed"),
         ("path = [[0, 0], [0, 1e-5]]", "times that do not grow"),
         ("path = [[0, 0], [1, 1e-3]]", "the position 0.001 m, expected 0 to"),
         ("path = [[0, 0], [1, 0]]", "found one position in all rows"),

@@ -138,7 +138,7 @@ def test_rows_by_depth_are_linear_grading():
         ("layer = 3\n", "layer: found 3, expected tables [[layer]]"),
         ("[[layer]]\nproperties = [[0, 1, 0.3, 1]]\n", "at least 2 rows"),
         ("[[layer]]\nproperties = [[0, 1, 0.3, 1], [0, 1, 0.3, 1]]\n", "depths rising from 0"),
-        (ROWS + "thickness = 1\n", "properties tells thickness, too"),
+        (ROWS + "thickness = 1\n", "properties gives thickness, too"),
     ],
 )
 def test_layers_with_a_fault_are_told_once(layers, told):

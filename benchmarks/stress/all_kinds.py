@@ -23,11 +23,9 @@ from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import values
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
-from galinx.solvers.profiles.power import Power
+from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.rounded_flat import RoundedFlat
 from galinx.solvers.profiles.table import Table
-from galinx.solvers.profiles.wedge import Wedge
 from galinx.solvers.solids import SOLIDS
 from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic

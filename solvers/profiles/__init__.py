@@ -2,11 +2,9 @@
 
 from . import (  # noqa: F401 - each adds its profile
     flat,
-    parabolic,
     power,
     rounded_flat,
     table,
-    wedge,
 )
 from .profile import (
     PROFILES,

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps, kinks
 from ..profiles.flat import Flat
-from ..profiles.parabolic import Parabolic
+from ..profiles.power import Parabolic
 from ..solids.solid import Response
 from .closed_form import FlatPunch, Weighted
 from .panels import FreeEnds, Panels, ends_of_panels

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from galinx.meshes import MESHES, Wanted
-from galinx.meshes.graded import BOX_DEPTH, BOX_WIDTH
+from galinx.meshes.half_plane import BOX_DEPTH, BOX_WIDTH
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS, QuadMesh
 

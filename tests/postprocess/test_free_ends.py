@@ -8,11 +8,9 @@ from scipy.integrate import quad
 
 from galinx.postprocess.free_ends import SHAPES, FreeEnds
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles.parabolic import Parabolic
-from galinx.solvers.profiles.power import Power
+from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.rounded_flat import RoundedFlat
 from galinx.solvers.profiles.table import Table
-from galinx.solvers.profiles.wedge import Wedge
 
 #: a + b = 1, exponents of the pressure at the right and the left end.
 A = 0.37

@@ -43,7 +43,7 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
 from galinx.solvers.fem.space import Space
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles.power import Parabolic
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Exponents
 from galinx.solvers.sie.residual import of_contact

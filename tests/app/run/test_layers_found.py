@@ -18,7 +18,7 @@ from galinx.app.scene.read import parse
 from galinx.postprocess import stresses
 from galinx.solvers.layers.contact import Equation
 from galinx.solvers.layers.free_contact import FoundSpeed, Punch, conditions
-from galinx.solvers.profiles.parabolic import Parabolic
+from galinx.solvers.profiles.power import Parabolic
 from galinx.solvers.solution import Body
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))

@@ -7,10 +7,8 @@ from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.parabolic import Parabolic
-from galinx.solvers.profiles.power import Power
+from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.table import Table
-from galinx.solvers.profiles.wedge import Wedge
 from galinx.solvers.sie.free_contact import contacts
 from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
 

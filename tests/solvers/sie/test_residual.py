@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from random_solids import random_solid
 
-from galinx.solvers.profiles.parabolic import Parabolic
-from galinx.solvers.profiles.wedge import Wedge
+from galinx.solvers.profiles.power import Parabolic, Wedge
 from galinx.solvers.sie import residual
 from galinx.solvers.sie.free_contact import contacts
 from galinx.solvers.solids.isotropic import Isotropic

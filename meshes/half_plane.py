@@ -1,4 +1,10 @@
-"""Meshes of straight-sided cells in the physical half-plane: graded, and the study's block."""
+"""Meshes of the half-plane that scenes name.
+
+Confocal ones are drawn in the rectangle of elliptic coordinates, where edge singularities are nearly
+smooth; cells of graded ones and of the study's block have straight sides in the physical half-plane.
+"""
+
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +39,15 @@ def box(points: NDArray, refinement: Refinement) -> NDArray[np.float64]:
     return X
 
 
+CONFOCAL = MeshKind(
+    "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=2.2,
+    stressed=0.5, tight=0.6,
+)  # fmt: skip
+
+UNIFORM = MeshKind(
+    "confocal, squares all over", Confocal(), ratio=0.5, column=pi / 4.0, rings=False
+)  # fmt: skip
+
 GRADED = MeshKind(
     "straight-sided, graded towards the edges",
     Physical(contracts=True),
@@ -51,5 +66,7 @@ BOX = MeshKind(
     beside=6.0, gentle=1.0, smallest=1e-5, walls=BOX_DEPTH,
 )  # fmt: skip
 
+MESHES.register("confocal", CONFOCAL)
+MESHES.register("uniform", UNIFORM)
 MESHES.register("graded", GRADED)
 MESHES.register("box", BOX)

@@ -17,16 +17,13 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from galinx import files
 from galinx.clock import Clock
 
 from . import process, ranks
 from .errors import MachineFailure
-
-if TYPE_CHECKING:  # a process starts with this module, before any library is imported that could fail
-    from galinx.postprocess.tables import Sheet
 
 #: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
 #: and what names of files have for bytes that are not UTF-8.
@@ -268,7 +265,7 @@ def new_console(file: Any = None, colours: bool = False) -> Any:
     )  # fmt: skip
 
 
-def print_sheet(console: Any, sheet: "Sheet") -> None:
+def print_sheet(console: Any, sheet: Any) -> None:
     """Print a table, labels to the left and numbers to the right, in parts where it is too wide."""
     from rich import box
     from rich.table import Table
@@ -289,7 +286,7 @@ def print_sheet(console: Any, sheet: "Sheet") -> None:
         console.print(text)
 
 
-def _parts(sheet: "Sheet", width: int) -> list[list[int]]:
+def _parts(sheet: Any, width: int) -> list[list[int]]:
     """Columns that stand side by side, the first of all in every part."""
     from rich.cells import cell_len
 
@@ -337,7 +334,6 @@ def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool 
 
 def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
     """Print tables of an archive, its comparisons and its verdict."""
-
     console = new_console(colours=colours())
     for sheet in sheets:
         print_sheet(console, sheet)

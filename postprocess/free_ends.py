@@ -677,6 +677,13 @@ class KinkedPressure:
         """Positions over a between which it is a polynomial but for the chart's stretch, (n,)."""
         return np.asarray(self._chart.surface_position(self._start[1:]))
 
+    def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
+        """Lengths over a of the longer of both facets that meet at ends or kinks (n,), (n,)."""
+        edges = np.concatenate([[-1.0], self.breaks, [1.0]])
+        lengths = np.pad(np.diff(edges), 1)
+        i = np.abs(edges[:, None] - places).argmin(axis=0)
+        return np.asarray(np.maximum(lengths[i], lengths[i + 1]))
+
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at positions over a, (n,); NaN beside the contact."""
         σ, inside = np.full(len(r), np.nan), under_punch(r)

@@ -76,7 +76,6 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Verdict and states as HTML, for notebooks."""
-
         return html(self.data, self.attributes)
 
     @cached_property

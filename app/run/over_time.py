@@ -1,8 +1,7 @@
 """Motions in time of a scene: both methods, speed by speed.
 
 Beside each motion stands the steady motion with the friction of every moment (:class:`QuasiSteady`).
-Finite elements in time give works, energies and stresses on the surface besides the contact
-(:class:`TimeProbes`).
+Finite elements in time are in a module of their own, so that nothing else imports dolfinx.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,29 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
-from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.postprocess import over_time, surface_over_time
-from galinx.postprocess.over_time import TOLD, contact_numbers, largest_change
-from galinx.postprocess.quantities import over_time as beside
-from galinx.postprocess.quantities import over_time as energy
+from galinx.postprocess.over_time import TOLD, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.surface_over_time import named
-from galinx.solvers.fem.dynamic import Energies, Motion
-from galinx.solvers.fem.in_time import Steps, SurfaceInTime, Watch
 from galinx.solvers.layers.contact import Pressure, Speed
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.late_time import approach
-from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
+from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
 
 from .. import ranks
 from ..errors import finite_elements_installed
-from ..plan.over_time import Drive, Level, Starts
+from ..plan.over_time import Drive, Starts
 
 #: Length over a of the quadrature rule for a pressure over layers.
 _FINEST = 0.5
@@ -80,69 +72,6 @@ def _centre(pressure: Pressure) -> NDArray[np.float64]:
 
 
 _Datasets = dict[str, NDArray[np.float64]]
-
-
-class TimeProbes:
-    """Probes of all motions at a speed: beside the ends, along the surface, and of energies.
-
-    Args:
-        starts: the motions and the datasets requested.
-        level: mesh, degree and steps.
-        motion: the equations of motion.
-    """
-
-    def __init__(self, starts: Starts, level: Level, motion: Motion) -> None:
-        self._starts, self._level, self._motion = starts, level, motion
-        self._ends = SurfaceInTime(motion, np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
-        self._along = SurfaceInTime(motion, ON_SURFACE) if starts.every else None
-        self._energies = Energies(motion) if starts.every and level.every == 1 else None
-
-    @property
-    def watching(self) -> tuple[Watch, ...]:
-        """Functions that are evaluated at each step."""
-        watches: list[Watch] = [lambda u, w, way: self._ends.strain(u)]
-        if (along := self._along) is not None:
-            watches.append(lambda u, w, way: along.strain(u))
-        return (*watches, *filter(None, [self._energies]))
-
-    def datasets(self, run: Steps, g: Drive) -> _Datasets:
-        """Datasets of a motion by path."""
-        ends, *rest = run.watched
-        σ = self._motion.response.σ_XX(ends[1:], np.zeros_like(ends[1:]), np.zeros_like(ends[1:]))
-        datasets = {
-            rows.WORK.path: run.work, rows.ENERGY.path: run.energy, rows.ABSORBED.path: run.absorbed,
-            beside.OF_LOAD[FEM].path: run.work_of_load,
-            beside.OF_FRICTION[FEM].path: run.work_of_friction,
-            beside.LEFT[FEM].path: σ[:, 0], beside.RIGHT[FEM].path: σ[:, 1],
-        }  # fmt: skip
-        if self._along is not None:
-            datasets |= self._on_surface(rest[0], run, g)
-        if self._energies is not None:
-            datasets |= self._of_energies(rest[1], run, g)
-        return datasets
-
-    def _on_surface(self, strains: NDArray, run: Steps, g: Drive) -> _Datasets:
-        assert self._along is not None
-        σ_YY, ratios = [], []
-        for n in (at := self._starts.outputs // self._level.every):
-            steady = FlatPunch(self._motion.response, ratio := g(float(run.t[n - 1])))
-            σ_YY.append(self._along.pressure(run.forces[n - 1], steady.α, steady.β))
-            ratios.append(ratio)
-        pressure = np.array(σ_YY)
-        shear = np.array(ratios)[:, None] * pressure
-        σ_XX = self._motion.response.σ_XX(strains[at], pressure, shear)
-        return named(FEM, np.array([σ_XX, pressure, shear]))
-
-    def _of_energies(self, watched: NDArray, run: Steps, g: Drive) -> _Datasets:
-        """Energies by path, as changes since t = 0; the energy carried along is added up step by step."""
-        ways = self._starts.directions(g)
-        strain, kinetic, all_strain, all_kinetic, momentum = (watched - watched[0])[1:].T
-        steps = np.diff(momentum, prepend=0.0)
-        return {
-            energy.CARRIED.path: np.cumsum(self._motion.response.c * ways * steps),
-            energy.STRAIN.path: strain, energy.KINETIC.path: kinetic,
-            energy.RADIATED.path: all_strain - strain + all_kinetic - kinetic + run.absorbed,
-        }  # fmt: skip
 
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
@@ -208,7 +137,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
                 rows.STEADY_K_I.path: np.array(quasi_steady.K_I(g[-1])),
                 rows.CENTRES.path: centres,
                 APPROACH.path: np.array(_within(solid, c, g[-1])),
-                energy.DISSIPATED.path: starts.dissipated(c, drive),
+                rows.DISSIPATED.path: starts.dissipated(c, drive),
                 rows.DIRECTION.path: starts.directions(drive),
             }  # fmt: skip
             for method in (SIE, FEM):
@@ -219,7 +148,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     if starts.every:
         whole |= surface_over_time.where(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
-        whole[beside.PLACES.path] = PLACES
+        whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= over_time.distances_from_steady(whole, name)
     return whole
@@ -259,7 +188,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                     course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
                     course.σ_XX_right,
                 )  # fmt: skip
-                datasets |= {row.path: value for row, value in zip(beside.ALL, works)}
+                datasets |= {row.path: value for row, value in zip(rows.ALL, works)}
             datasets = {
                 path: _until_the_end(value[finer - 1 :: finer], starts)
                 for path, value in datasets.items()
@@ -313,7 +242,9 @@ def _named(method: str, values: Any) -> _Datasets:
 
 
 def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
-    coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
+    from .time_fem import at_level
+
+    coarse, fine = (at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
     load = starts.load(starts.times(2))
     motions = []
     for drive, (before, probed_before), (values, probed) in zip(starts.drives[c], coarse, fine):
@@ -336,48 +267,4 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
 def _import(clock: Clock) -> None:
     """Import dolfinx on every rank: PETSc begins on all of them, or waits for the others for ever."""
     with clock("import of dolfinx"), finite_elements_installed():
-        import galinx.solvers.fem.in_time  # noqa: F401
-
-
-def _at_level(level: Level, starts: Starts, solid: Solid, c: float, clock: Clock) -> list[Any]:
-    """Contact values and datasets of the probes, a pair for each friction at a speed."""
-    from mpi4py import MPI
-
-    from galinx.solvers.fem.dynamic import Motion
-    from galinx.solvers.fem.in_time import Phase, SlidingInTime
-    from galinx.solvers.fem.space import Space, distribute
-
-    response = starts.response(solid, c)
-    with clock("mesh"):
-        mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)
-    motion = Motion(space, response, starts.sharp)
-    solver, probes = SlidingInTime(motion, clock), TimeProbes(starts, level, motion)
-    motions = []
-    with clock("steps in time"):
-        for g in starts.drives[c]:
-            phases = [
-                Phase(g.way * way.direction, way.duration, way.steps // level.every)
-                for way in starts.ways
-            ]
-            run = solver.run(phases, g, lambda t: float(starts.load(t)), starts.steady, probes.watching)
-            values = _read(run, g, motion, level.degree, starts.tells_K_I)
-            motions.append((values, probes.datasets(run, g)))
-    solver.destroy()
-    return motions
-
-
-def _read(run: Any, g: Drive, motion: Any, degree: int, tells_K_I: bool) -> tuple[NDArray, ...]:
-    """v₀, centre, and K_I at both ends, by the exponents of the friction at each time.
-
-    K_I is NaN where the motion has none.
-    """
-    ratios = np.array([g(t) for t in run.t])
-    read = np.empty((3, len(ratios)))
-    for ratio in np.unique(ratios):
-        at, steady = ratios == ratio, FlatPunch(motion.response, ratio)
-        numbers = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, degree)
-        read[:, at] = numbers.centre, numbers.K_left, numbers.K_right
-    if not tells_K_I:
-        read[1:] = np.nan
-    return run.v0, *read
+        from . import time_fem  # noqa: F401

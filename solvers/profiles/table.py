@@ -66,8 +66,8 @@ class Table:
         return self.shape[0][0], self.shape[-1][0]
 
     @cached_property
-    def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Knots [m] between which the slope is linear, slopes and heights [m] there, (knots,) each."""
+    def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Knots [m] between which the slope is linear, and slopes there, (knots,) each."""
         X, P = self._points
         δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
         d = np.empty(len(X))
@@ -84,9 +84,31 @@ class Table:
                 slopes.append((2.0 * δ[i] * Δ[i] - (ξ - x0) * d0 - (x1 - ξ) * d1) / Δ[i])
             knots.append(x1)
             slopes.append(d1)
-        x, s = np.array(knots), np.array(slopes)
-        heights = P[0] + np.append(0.0, np.cumsum(np.diff(x) * (s[1:] + s[:-1]) / 2.0))
-        return x, s, heights
+        return np.array(knots), np.array(slopes)
+
+    @cached_property
+    def _pieces(self) -> tuple[NDArray[np.float64], ...]:
+        """Lowest places [m] of pieces; heights [m], slopes, curvatures [1/m] there, (knots - 1,) each.
+
+        Heights are summed from the lowest point on, where no term takes away from another: rounding of
+        the height of a far point would be a step at the next kink, under which the pressure is infinite.
+        """
+        x, s = self._knots
+        lowest = np.interp(0.0, s, x)
+        at = np.asarray(np.clip(lowest, x[:-1], x[1:]))
+        slope = np.where(x[1:] <= lowest, s[1:], np.where(x[:-1] >= lowest, s[:-1], 0.0))
+        rises = (x[1:] - at) * (slope + s[1:]) / 2.0
+        falls = (x[:-1] - at) * (slope + s[:-1]) / 2.0
+        height = np.append(0.0, np.cumsum(rises[:-1])) + np.append(np.cumsum(falls[:0:-1])[::-1], 0.0)
+        return at, height, slope, np.asarray(np.diff(s) / np.diff(x))
+
+    def _piece(self, X: NDArray) -> tuple[NDArray[np.float64], ...]:
+        """Distance [m] of X [m] from its piece's lowest place; height, slope and curvature there."""
+        x, _ = self._knots
+        X = np.asarray(X, dtype=float)
+        i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
+        at, height, slope, curvature = (each[i] for each in self._pieces)
+        return np.asarray(X - at), height, slope, curvature
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -94,20 +116,13 @@ class Table:
         return tuple(self._knots[0].tolist())
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
-        x, s, P = self._knots
-        X = np.asarray(X, dtype=float)
-        i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
-        curvature = (s[i + 1] - s[i]) / (x[i + 1] - x[i])
-        height = P[i] + s[i] * (X - x[i]) + curvature * (X - x[i]) ** 2 / 2.0
-        lowest = np.interp(0.0, s, x)
-        j = np.clip(np.searchsorted(x, lowest) - 1, 0, len(x) - 2)
-        return height - (P[j] + s[j] * (lowest - x[j]) / 2.0)
+        d, height, slope, curvature = self._piece(X)
+        return height + slope * d + curvature * d**2 / 2.0
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
         """Slope at X [m], linear between knots; beyond the table as in its first and last piece."""
-        x, s, _ = self._knots
-        i = np.clip(np.searchsorted(x, X) - 1, 0, len(x) - 2)
-        return s[i] + (s[i + 1] - s[i]) * (X - x[i]) / (x[i + 1] - x[i])
+        d, _, slope, curvature = self._piece(X)
+        return slope + curvature * d
 
     def words(self) -> str:
         first, last = self.reach

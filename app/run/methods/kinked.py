@@ -285,6 +285,10 @@ class OnOwnMeshes:
 #: Most kinks in a contact, and their largest distance from its middle over the half-width.
 _MOST, _NEXT_TO_END = 12, 0.98
 
+#: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
+#: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
+_CELLS, _DIGITS = 3.0, 1e-5
+
 #: Places under the punch at which the pressure is measured.
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
@@ -447,6 +451,12 @@ class KinkedLevel:
     def destroy(self) -> None:
         self.field.destroy()
 
+    @property
+    def nearest(self) -> float:
+        """Distance over a from an end or a kink from which on stresses are good."""
+        at = np.concatenate([[-1.0], self.kinks, [1.0]])
+        return max(_CELLS * float(self.pressure.cells_beside(at).max()), _DIGITS)
+
     def _on_surface(self) -> NDArray[np.float64]:
         return self.pressure.σ_YY(self._task.places.X)[None]
 
@@ -574,10 +584,6 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
     return KinkedState(task, ends, last, estimates, size | error.record())
 
 
-#: Least distance over a from an end or a kink at which stresses are evaluated, besides the place itself.
-_NEAREST = 1e-2
-
-
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["KinkedAtSpeed"]:
     """Solver whose states are solved when first needed, each on meshes of its own."""
@@ -662,7 +668,7 @@ class KinkedPunches(OnOwnMeshes):
         """Yield of the states."""
         return Strength(
             self._stresses, self.body, self.task.response, self.g, self.local, self.half_width,
-            self.surface.turns, _NEAREST,
+            self.surface.turns, max(state.level.nearest for state in self.contacts),
         )  # fmt: skip
 
     def _stresses(self, points: NDArray) -> NDArray[np.float64]:

@@ -33,7 +33,7 @@ def table(rng):
     return [[x, 12.0 * x**2] for x in X.tolist()]
 
 
-def random_scene(seed, profile, methods, strokes=("forward", "backward")):
+def random_scene(seed, profile, methods, strokes):
     """States of a punch with free ends on an isotropic or orthotropic solid, two a stroke of two."""
     rng = np.random.default_rng(seed)
     plane = rng.choice(["strain", "stress"])
@@ -111,26 +111,34 @@ NAMES = ("von_mises", "max_shear", "sigma_XX_max", "sigma_XX_min", "largest_pres
 #: Signs with which these are highest.
 SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0])
 BOTH = ["closed_form", "fem"]
-CASES = [(seed, tuple(PUNCHES)[seed % 4]) for seed in range(50 if THOROUGH else 4)]
+STROKES = ("forward", "backward")
+#: Seeds, methods and strokes; finite elements under most profiles take their time.
+CASES = [
+    (0, BOTH, STROKES),
+    *((seed, BOTH[:1], STROKES[:1]) for seed in (1, 2, 3)),
+    (11, BOTH, STROKES[:1]),
+]
+if THOROUGH:
+    CASES = [(seed, BOTH, STROKES) for seed in range(50)]
 
 
-@pytest.mark.parametrize("seed, profile", CASES)
-def test_no_sample_is_larger_than_the_largest(seed, profile):
-    whole = THOROUGH or profile == "parabolic"  # the others take their time
-    methods = BOTH if whole else BOTH[:1]
-    scene = random_scene(seed, profile, methods, ("forward", "backward")[: 1 + whole])
+@pytest.mark.parametrize("seed, methods, strokes", CASES, ids=[str(case[0]) for case in CASES])
+def test_largest_values_are_those_of_samples(seed, methods, strokes):
+    scene = random_scene(seed, tuple(PUNCHES)[seed % 4], methods, strokes)
     result = galinx.compute(scene)
     data, body = result.data, scene.body
     response = scene.solid.response(float(data["states/c"][0]))
     allowed = NEXT_TO_CUSP if cusp(body.profile) else MISSED
     for i in range(len(data["states/g"])):
         contact = contacts(response, data["states/g"][i : i + 1], body.profile, body.compression)
-        largest = sampled(contact, scene.solid, np.random.default_rng(seed), 1 + whole)
+        largest = sampled(contact, scene.solid, np.random.default_rng(seed), len(strokes))
         size = np.array([*largest[:2], *[np.abs(largest[2:]).max()] * 2, largest[4]])
         for method in methods:
             found = np.array([data[f"states/{method}/{name}"][i] for name in NAMES])
             missed = SIGNS * (largest - found) / size
             assert (missed <= allowed).all(), (method, missed)
+            # In the plane samples may miss the top: there the largest has to be the stress at its place.
+            assert (missed[2:] >= -allowed).all(), (method, missed)
             for name, value in zip(NAMES[:2], found):
                 X, Y = (data[f"states/{method}/{name}_{axis}_over_a"][i : i + 1] for axis in "XY")
                 there = MEASURES[name](scene.solid, *contact.stresses(X, Y)[:, 0])

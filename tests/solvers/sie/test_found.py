@@ -83,7 +83,7 @@ def profiles():
     yield "power 1.5", power(1.5, 0.02), lambda X: mp.mpf(0.03) * mp.sign(X) * mp.sqrt(abs(X))
     b, R = mp.mpf(1e-4), mp.mpf(0.2)
     yield "rounded", rounded(1e-4, 0.2), lambda X: mp.sign(X) * max(abs(X) - b, 0 * one) / R
-    yield "table", table(SHAPE), _linear(*table(SHAPE)._knots[:2])
+    yield "table", table(SHAPE), _linear(*table(SHAPE)._knots)
 
 
 def _linear(x, s):
@@ -236,6 +236,20 @@ def test_the_mirror_image_swaps_the_ends():
     two = contacts(response, np.array([-0.6]), mirrored, LOAD)
     assert one.of("half_width") == pytest.approx(two.of("half_width"), rel=1e-12)
     assert one.of("centre") == pytest.approx(-two.of("centre"), rel=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_far_points_of_a_table_leave_no_step_under_a_kink(seed):
+    """A step of the height, however small, is an infinite pressure there."""
+    rng = np.random.default_rng(seed)
+    X = np.sort(np.append(rng.choice([-1.0, 1.0], 5) * 10.0 ** rng.uniform(-6.0, -3.0, 5), [-0.2, 0.2]))
+    punch = table(tuple(zip(X.tolist(), (12.0 * X**2).tolist())))
+    at = np.array(punch.kinks)
+    before, after = (punch.height(np.nextafter(at, side)) for side in (-np.inf, np.inf))
+    np.testing.assert_allclose(before, after, rtol=1e-13)
+    slope, heights = punch.slope(at), punch.height(at)
+    rises = np.diff(at) * (slope[1:] + slope[:-1]) / 2.0
+    np.testing.assert_allclose(np.diff(heights), rises, rtol=1e-12, atol=1e-12 * heights[1:-1].max())
 
 
 def test_what_has_no_contact_says_so():

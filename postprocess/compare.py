@@ -1,14 +1,12 @@
-"""How far finite elements and closed form agree, and whether the forces balance.
+"""Comparisons of finite elements with other methods, and the figures by which they are judged.
 
-What a comparison is, and by which figure it is judged.
+A rule measures one figure of disagreement: between finite elements and the closed form, or the integral
+equation over layers, in stress intensities, stresses, ends of the contact and yield; of nodal forces with
+their balance; and of each method with its own estimated error. Rules are registered by name, and
+quantities say which of them apply.
 
-How far finite elements agree with other methods about contacts whose ends are found.
-
-How far finite elements and the integral equation agree over layers, and what each says of itself.
-
-Where nothing is compared: next to the tip of a punch, at which stresses are infinite.
-
-Where a NaN or an infinity is no answer.
+Nothing is compared next to a tip of a punch, at which stresses are infinite. A NaN or an infinity is a
+fault wherever the table of quantities does not allow it.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -51,17 +49,17 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Rule:
-    """How quantities are compared, and what decides the verdict.
+    """A rule of comparison: the quantities compared, the figure measured, and its limit for a PASS.
 
     Attributes:
         text: what the figure says.
         needs: the quantities that are compared.
         measure: the figure (1) from datasets by path and the load N per depth [N/m], that of each state
             where they differ in it; None where there is nothing to say.
-        limit: largest value of a PASS; None where it is no fixed one.
-        tolerances: the same in units of the scene's tolerance.
+        limit: largest value of a PASS; None where it is no fixed number.
+        tolerances: largest value of a PASS in units of the scene's tolerance.
         mode: in which it is judged, as of a quantity; "" for each.
-        own_pressure: judged also where the pressure is the user's own.
+        own_pressure: judged also under a prescribed pressure.
     """
 
     text: str
@@ -73,21 +71,21 @@ class Rule:
     own_pressure: bool = False
 
     def allowed(self, tolerance: float) -> float | None:
-        """Largest value of a PASS; None where the figure is only told."""
+        """Largest value of a PASS; None where the figure is reported and not judged."""
         return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
 def largest_of(row: Quantity) -> Callable[[dict[str, Any], Any], float]:
-    """The figure that is the largest of a quantity."""
+    """Measure that is the largest value of a quantity."""
     return lambda data, _: float(data[row.path].max())
 
 
 def next_to_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
-    """Which positions on the surface are next to an infinite pressure of the closed form, (states, n).
+    """Mask of positions next to an infinite pressure of the closed form, (states, n).
 
     Args:
         data: datasets by path.
-        inside: that pressure is further in than this, over a.
+        inside: only places of infinite pressure nearer to the middle than this count, over a.
     """
     X = data[SURFACE_X.path]
     if LARGEST[CLOSED_FORM].path not in data or PRESSURE[CLOSED_FORM].path not in data:
@@ -104,19 +102,19 @@ def not_finite(data: dict[str, Any]) -> list[str]:
     Args:
         data: datasets of some states by path, the positions on the surface among them.
     """
-    known, found = table(), []
+    rows, paths = table(), []
     for path, values in data.items():
         if np.asarray(values).dtype.kind != "f":
             continue
-        allowed = known[path].nan_allowed if path in known else NEVER
+        allowed = rows[path].nan_allowed if path in rows else NEVER
         bad = ~np.isfinite(values)
         if allowed == ANYWHERE:
             bad = np.isinf(values)
         elif allowed == BESIDE:
             bad &= np.isinf(values) | under_punch(data[SURFACE_X.path])
         if bad.any():
-            found.append(path)
-    return found
+            paths.append(path)
+    return paths
 
 
 def _ends(other: str) -> Callable[[dict[str, Any], Any], float]:
@@ -172,13 +170,13 @@ OF_ENDS: dict[str, Rule] = {
 }
 
 
-#: Share of the larger intensity, or of the mean pressure, below which the other is not measured against
-#: itself.
+#: Share of the larger intensity, or of the mean pressure, below which an error is over this share rather
+#: than over the value itself.
 _VANISHING = 0.1
 
 
 def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
-    """Ends that are found have none."""
+    """Largest error of K_I at both ends, relative; None for free ends, at which it vanishes."""
     sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
     fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
     if not sie.any():
@@ -192,8 +190,8 @@ def _pressures(data: dict[str, Any]) -> tuple[Any, Any]:
     return data[at.PRESSURE[FEM].path][:, under], data[on_layers.PRESSURE[SIE].path][:, under]
 
 
-def _found_pressure_of_layers(data: dict[str, Any], _: float) -> float:
-    """Over each state's largest: next to free ends it vanishes."""
+def _pressure_between_free_ends_on_layers(data: dict[str, Any], _: float) -> float:
+    """Error of σ_YY over each state's largest, since it vanishes next to free ends."""
     fem, sie = _pressures(data)
     return float((np.abs(fem - sie) / np.abs(sie).max(axis=1, keepdims=True)).max())
 
@@ -217,9 +215,9 @@ def _at_interfaces(data: dict[str, Any], _: float) -> float:
 
 def _inside_layers(data: dict[str, Any], _: float) -> float:
     rows = at.STRESSES_INSIDE[FEM], on_layers.STRESSES_INSIDE[SIE]
-    fem, sie = ([data[row.path] for row in some] for some in rows)
+    fem, sie = ([data[row.path] for row in of_method] for of_method in rows)
     places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    off = stresses.largest(one - other for one, other in zip(fem, sie))
+    off = stresses.largest(σ_fem - σ_sie for σ_fem, σ_sie in zip(fem, sie))
     return float((off / stresses.of_inside(sie, *places)).max())
 
 
@@ -241,11 +239,11 @@ ON_LAYERS: dict[str, Rule] = {
         (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
         tolerances=1.0,
     ),
-    # As under punches on uniform solids whose ends are found.
+    # As on uniform solids under contacts with free ends.
     "sigma_YY of found ends over layers": Rule(
         "σ_YY of contacts whose ends are found against the integral equation, over the largest",
         (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X, of.LARGEST[SIE]),
-        _found_pressure_of_layers, tolerances=10.0,
+        _pressure_between_free_ends_on_layers, tolerances=10.0,
     ),
     "sigma_XX of layers": Rule(
         "σ_XX against the integral equation, over itself or the largest",
@@ -295,13 +293,13 @@ def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[C
         load: N per depth [N/m], or that of each state, (states,).
         names: of the rules of the quantities that the data hold.
     """
-    found, wanted = [], set(names)
+    figures, applicable = [], set(names)
     for name, rule in RULES.items():
-        if name in wanted and all(row.path in data for row in rule.needs):
+        if name in applicable and all(row.path in data for row in rule.needs):
             value = rule.measure(data, load)
             if value is not None:
-                found.append(Comparison(name, rule.text, float(value)))
-    return found
+                figures.append(Comparison(name, rule.text, float(value)))
+    return figures
 
 
 def _imbalance(data: dict[str, Any], load: Any) -> float:
@@ -321,9 +319,9 @@ def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
 
 
 def _intensities(data: dict[str, Any], _: float) -> float | None:
-    """Ends that are found have none."""
-    some = any(data[side[CLOSED_FORM].path].any() for side in (of.K_I_LEFT, of.K_I_RIGHT))
-    return float(of.K_I_error(data).max()) if some else None
+    """Largest error of K_I at both ends, relative; None for free ends, at which it vanishes."""
+    any_sharp = any(data[side[CLOSED_FORM].path].any() for side in (of.K_I_LEFT, of.K_I_RIGHT))
+    return float(of.K_I_error(data).max()) if any_sharp else None
 
 
 def _exponents(data: dict[str, Any], _: float) -> float | None:
@@ -347,8 +345,8 @@ def _pressure(data: dict[str, Any], _: float) -> float:
     return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING)).max()
 
 
-def _found_pressure(data: dict[str, Any], _: float) -> float:
-    """Over each state's largest; next to a tip, where it is infinite, nothing is compared."""
+def _pressure_between_free_ends(data: dict[str, Any], _: float) -> float:
+    """Error of σ_YY over each state's largest, except next to a tip, where it is infinite."""
     under = under_punch(data[at.SURFACE_X.path])
     fem, exact = _both(data, at.PRESSURE, under)
     left_out = next_to_tips(data)[:, under]
@@ -357,7 +355,7 @@ def _found_pressure(data: dict[str, Any], _: float) -> float:
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
-    """Next to a tip inside the contact nothing is compared; edges stand for themselves."""
+    """Error of σ_XX, except next to a tip inside the contact; at edges relative to itself."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
     off = np.abs(fem - exact) / stresses.of_in_plane(exact, data[at.SURFACE_X.path])
     return np.where(next_to_tips(data, 1.0 - stresses.NEAR_TIP), 0.0, off).max()
@@ -366,7 +364,7 @@ def _in_plane(data: dict[str, Any], _: float) -> float:
 def _inside(data: dict[str, Any], _: float) -> float:
     fem, exact = ([data[row.path] for row in at.STRESSES_INSIDE[method]] for method in (FEM, CLOSED_FORM))
     places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    off = stresses.largest(one - other for one, other in zip(fem, exact))
+    off = stresses.largest(σ_fem - σ for σ_fem, σ in zip(fem, exact))
     return (off / stresses.of_inside(exact, *places)).max()
 
 
@@ -377,7 +375,7 @@ def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
 
 
 def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
-    """As a stress: at a distance d from an edge that is a power of d."""
+    """Error of the reach of yield, as a stress, which at a distance d from an edge is a power of d."""
     off = []
     for rows, exponent in ((to.REACH_LEFT, of.BETA), (to.REACH_RIGHT, of.ALPHA)):
         power = -data[exponent.path]
@@ -399,8 +397,6 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
 #: Distance over a from an edge that is as good as none.
 _NO_REACH = 1e-300
 
-#: Pressure over N/(2a) below which it is not compared with itself: it may vanish under a profile.
-
 #: The rule by which every quantity is judged.
 FINITE = "finite"
 
@@ -410,7 +406,7 @@ BALANCE = Rule(
     (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RATIO), _imbalance, limit=1e-9,
 )  # fmt: skip
 
-#: Rules by the name that quantities give, in the order in which they are told.
+#: Rules by the name that quantities give, in the order in which they are reported.
 RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
@@ -458,15 +454,15 @@ RULES: Registry[Rule] = Registry(
             "tension under the punch, over N/(2a)",
             (at.PRESSURE[FEM],), _tension, limit=0.0, own_pressure=True,
         ),
-        # Where the pressure was put in there is no raw one, and nothing to compare.
+        # Under a prescribed pressure there is no raw one, and nothing to compare.
         "sigma_YY": Rule(
             "σ_YY pointwise, relative",
             (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure, tolerances=1.0,
         ),
-        # Where exponents are not assumed; at a sharp edge the rule before is the stricter one.
+        # Where exponents are not assumed; at a sharp edge sigma_YY is the stricter rule.
         "sigma_YY of found ends": Rule(
             "σ_YY of contacts whose ends are found, over the largest further than 0.02 a from a tip",
-            (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _found_pressure,
+            (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _pressure_between_free_ends,
             tolerances=10.0,
         ),
         "sigma_XX": Rule(

@@ -1,7 +1,4 @@
-"""Failures of archives, apart from the library that reads them so that naming one costs nothing.
-
-What the file system says when it refuses.
-"""
+"""Failures of archives and other files, without the library that reads them, which is slow to import."""
 
 import shutil
 from contextlib import suppress
@@ -29,12 +26,12 @@ class LeftOver(UnwritableArchive):
 
 
 def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchive:
-    """The failure to raise, with the reason, and the space that is needed and free.
+    """Failure to raise where the file system refuses a file, with the reason, and space needed and free.
 
     Args:
         target: the file.
         error: what the file system or HDF5 raised.
-        needed: bytes, where they are known.
+        needed: size of the file in bytes; 0 where it is not known.
     """
     reason = getattr(error, "strerror", None) or str(error)
     space = f"; it needs {_size(needed)}" if needed else ""

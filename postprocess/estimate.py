@@ -19,11 +19,11 @@ SAFETY = 2.0
 
 @dataclass(frozen=True)
 class Rate:
-    """How fast errors fall from one level to the next.
+    """Rate at which errors fall from one level to the next.
 
     Attributes:
-        usual: ratio of successive differences that is counted on, at least.
-        believed: what is seen below it is a lucky coincidence or a level that was too coarse.
+        usual: least ratio of successive differences that is assumed.
+        believed: a ratio below it is a lucky coincidence, or a level was too coarse.
         least: a second difference below this share of the first is not believed itself.
     """
 
@@ -32,18 +32,18 @@ class Rate:
     least: float = 0.0
 
 
-#: Differences of less than so many times what rounding is seen to do are rounding; from twice that on
+#: Differences of less than so many times the measured rounding are rounding; from twice that on
 #: they are none. In between the estimate passes from one to the other: were it to jump, so would what
 #: is archived, with the last digit of anything.
 _NOISE = 5.0
 
 #: Ratio of successive differences below which those of derivatives are not believed: what one cell does
-#: at the places that are looked at is not what the next one does.
+#: at the sampled places is not what the next one does.
 _ERRATIC = 0.1
 
 
 def of_degrees(order: int) -> Rate:
-    """From one degree to the next.
+    """Rate at which errors fall from one degree to the next.
 
     Args:
         order: 2 for resultants and moments, 1 for derivatives.
@@ -51,10 +51,10 @@ def of_degrees(order: int) -> Rate:
     return Rate(0.16, 0.16) if order == 2 else Rate(0.5, 0.5, _ERRATIC)
 
 
-#: The same of moments where convergence was seen to be uneven.
+#: Rate for moments where convergence was seen to be uneven.
 SLOWER = Rate(0.3, 0.3)
 
-#: The same of derivatives at depths, away from all singularities, which many cells tell and evenly.
+#: Rate for derivatives at depths, away from all singularities, where many cells contribute evenly.
 AT_DEPTHS = Rate(0.3, 0.3, _ERRATIC)
 
 
@@ -65,7 +65,7 @@ def remaining(
     rate: Rate,
     rounding: float = 0.0,
 ) -> NDArray[np.float64]:
-    """What is left of the errors after two successive differences, by a geometric series.
+    """Errors that remain after two successive differences, by a geometric series, (states,).
 
     d₁ ρ/(1 - ρ), with ``SAFETY``. A state's own ratio ρ = d₁/d₀ shows where its singularity is too strong
     for the degree; but its first difference may happen to vanish, so that it is not taken for smaller
@@ -73,9 +73,9 @@ def remaining(
 
     Args:
         first, second: successive differences of each state, (states,).
-        sample: the same of states that stand for all of them.
-        rate: that is counted on.
-        rounding: of which a few times are no difference that could be summed.
+        sample: both successive differences of states that stand for all of them.
+        rate: assumed rate of convergence.
+        rounding: differences of less than a few times this are not summed.
 
     Returns:
         Errors of the last level, (states,).
@@ -93,5 +93,5 @@ def remaining(
 
 
 def before(difference: NDArray, rate: Rate) -> NDArray[np.float64]:
-    """The errors of a level from its differences from the next one, (states,), with ``SAFETY``."""
+    """Errors of a level from its differences from the next one, (states,), with ``SAFETY``."""
     return SAFETY * difference / (1.0 - rate.usual)

@@ -1,7 +1,8 @@
-"""Where a contact between two free ends ends, from solutions of a few polynomial shapes.
+"""Free ends of contacts, and what is singular there and at kinks, from solutions of finite elements.
 
-With v = P - v₀ held from m - h to m + h the load and the intensities K at both ends are linear in P, and
-v₀ follows from the load. A half-plane has no length, so what is then left of the intensities is
+**Ends.** A contact between two free ends follows from solutions of a few polynomial shapes. With
+v = P - v₀ held from m - h to m + h the load and the intensities K at both ends are linear in P, and v₀
+follows from the load. A half-plane has no length, so what then remains of the intensities is
 
     B(P) = ∫ h P'(m + h s) b(s) ds - 2 K(1)/N(1),        s over h from m,
 
@@ -9,19 +10,17 @@ where b are two functions of s alone. By the local analysis of the ends they are
 smooth ones, α and β the exponents of a flat punch; shapes whose slopes are Chebyshev polynomials give the
 moments of b, and thereby these. B = 0 is solved for m and h of any profile under any load, by quadrature.
 
-Pressure and slopes next to the free ends and the cusps of a contact, from a little farther away.
+**Next to ends and kinks.** Pressure and slopes are continued from a little farther away to free ends and
+kinks, where finite elements have few digits. By the local analysis they are sums of two smooth functions
+there, one of them times a power of the distance, or its logarithm.
 
-By the local analysis they are smooth functions there, one of them times a power of the distance.
+**Extremes.** The highest and the lowest in-plane stress on the surface include free ends and kinks. The
+curve is known at samples. Between those next to its tops it is a polynomial of the confocal coordinate,
+in which it is smooth up to a free end; at the end itself, and at kinks, it is a limit. Places next to
+sharp edges and tips, where it is infinite, do not count.
 
-The highest and the lowest in-plane stress on the surface, free ends and kinks included.
-
-The curve is known at samples. Between those next to its tops it is a polynomial of the confocal
-coordinate, in which it is smooth up to a free end; at the end itself, and at kinks, it is a limit. Places
-next to sharp edges and tips, where it is infinite, do not count.
-
-The pressure of a contact with free ends and kinks, from its nodal forces alone.
-
-Its moments converge slowly where it has a logarithm. Cells are small and many there instead, so that the
+**Pressure.** The pressure of a contact with free ends and kinks follows from its nodal forces alone. Its
+moments converge slowly where it has a logarithm. Cells are small and many there instead, so that the
 piecewise polynomial that has the nodal forces is as good as they are; towards the ends it falls as the
 local analysis says.
 """
@@ -52,37 +51,37 @@ from .pressure import (
 )
 from .stresses import NEAR, NEAR_TIP
 
-#: Shapes: of two the factors would be known, the third says how good they are.
+#: Shapes: two determine the factors, the third says how good they are.
 SHAPES = 3
 
 #: Gauss points of a panel; sizes of panels towards a kink and towards an end, over the next larger one's.
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
 
-#: First half-width that is tried [m], doublings of it, and of the middle over it; halvings.
+#: First half-width tried [m], doublings of it, and of the middle over it; halvings.
 _FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
-#: Steps of Newton's method, the largest of m/h and of log h, difference for derivatives; residuals that
-#: are met, and those that are rounding.
+#: Steps of Newton's method, the largest of m/h and of log h, difference for derivatives; residual at
+#: which it stops, and residuals of rounding.
 _STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11
 
 
 def heights_of_shapes(s: NDArray, count: int = SHAPES) -> NDArray[np.float64]:
-    """Shapes whose slopes are T_0, T_1, …, and which are 0 at s = 0, at s, (count, n)."""
+    """Heights at s, (count, n), of shapes whose slopes are T_0, T_1, …, and which are 0 at s = 0."""
     T = np.polynomial.chebyshev
     return np.array([T.chebval(s, T.chebint([0.0] * k + [1.0])) for k in range(count)])
 
 
 def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int) -> NDArray[np.float64]:
-    """How much of each of so many shapes a profile is: dP/ds [m] at centre + half_width·s, (count,)."""
+    """Coefficients of a profile in so many shapes: dP/ds [m] at centre + half_width·s, (count,)."""
     s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
     slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
     T = np.cos(np.outer(np.arange(count), np.arccos(s)))
-    found = 2.0 / count * (T @ slope)
-    found[0] /= 2.0
-    return found
+    coefficients = 2.0 / count * (T @ slope)
+    coefficients[0] /= 2.0
+    return coefficients
 
 
 def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[FreeEnds]":
-    """The conditions of some frictions.
+    """Conditions on free ends, one for each state's friction.
 
     Args:
         local: exponents α and β of a flat punch, (states,) each.
@@ -91,40 +90,42 @@ def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "li
         N: loads of these, (states, parts).
     """
     share = K[..., :1] / N[:, None, :1]
-    moments, wanted = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
-    return [FreeEnds(*one) for one in zip(local.α.tolist(), local.β.tolist(), moments, wanted)]
+    moments, constants = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
+    return [
+        FreeEnds(*condition) for condition in zip(local.α.tolist(), local.β.tolist(), moments, constants)
+    ]
 
 
 @dataclass(frozen=True)
 class FreeEnds:
-    """The conditions of one friction at one speed.
+    """Conditions on both free ends of a contact at one friction and one speed.
 
     Attributes:
         α, β: exponents of a flat punch at the right and at the left end.
         moments: B without its constant part, of every shape at both ends, (2, ``SHAPES``).
-        wanted: 2 K(1)/N(1) at both ends, (2,).
+        constants: 2 K(1)/N(1) at both ends, (2,).
     """
 
     α: float
     β: float
     moments: NDArray[np.float64]
-    wanted: NDArray[np.float64]
+    constants: NDArray[np.float64]
 
     @cached_property
     def factors(self) -> NDArray[np.float64]:
         """Chebyshev coefficients of smooth factors, (2, ``SHAPES``): of the combination of both ends that
-        does not know the load, and of the one that is 1 under it."""
-        known = np.s_[0, :SHAPES, :SHAPES]
+        does not depend on the load, and of the one that is 1 under it."""
+        block = np.s_[0, :SHAPES, :SHAPES]
         ends = np.array([self.β]), np.array([self.α])
-        P, norms = jacobi_in_chebyshev(*ends)[known], jacobi_norms(*ends)[0, :SHAPES]
+        P, norms = jacobi_in_chebyshev(*ends)[block], jacobi_norms(*ends)[0, :SHAPES]
         c = (self.moments @ P.T / norms) @ P
-        r = self.wanted / (self.wanted @ self.wanted)
+        r = self.constants / (self.constants @ self.constants)
         lean = np.array([-r[1], r[0]]) @ c
         return np.array([lean / lean[0], r @ c])
 
     @property
     def unseen(self) -> float:
-        """What is left beyond the first two coefficients, relative: of a half-plane nothing is."""
+        """Relative size of coefficients beyond the first two, which are 0 for a half-plane."""
         return float((np.abs(self.factors[:, 2:]).sum(axis=1) / np.abs(self.factors).max(axis=1)).max())
 
     def found(
@@ -135,10 +136,10 @@ class FreeEnds:
         Args:
             profile: of the punch.
             unit: N/(2μ) [m].
-            start: middle and half-width near by.
+            start: middle and half-width [m] of a contact like it.
 
         Raises:
-            SolveError: there is none, or it reaches beyond what is known of the punch.
+            SolveError: there is none, or it reaches beyond where the profile of the punch is given.
         """
         point = self._first(profile, unit) if start is None else np.array(start) / [start[1], 1.0]
         point[1] = np.log(point[1])
@@ -165,8 +166,8 @@ class FreeEnds:
                 f"conditions are left at {np.abs(value).max():.3g}, wanted {_ROUNDING:g}"
             )
         h = float(np.exp(point[1]))
-        left, right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
-        check_reach(profile, left, right, "finite elements found a contact")
+        X_left, X_right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
+        check_reach(profile, X_left, X_right, "finite elements found a contact")
         return float(point[0]) * h, h
 
     def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
@@ -180,12 +181,12 @@ class FreeEnds:
         return step / max(1.0, np.abs(step).max() / _LARGEST)
 
     def _residual(self, profile: Any, unit: float, point: NDArray) -> NDArray[np.float64]:
-        """Both conditions at m/h and log h, 0 where they are met; infinite where nothing is carried."""
+        """Residuals of both conditions at m/h and log h, (2,); infinite where no load is carried."""
         lifted, carried = self._conditions(profile, unit, float(point[0]), float(np.exp(point[1])))
         return np.array([lifted, np.log(carried) if carried > 0.0 else np.inf])
 
     def _conditions(self, profile: Any, unit: float, lean: float, h: float) -> tuple[float, float]:
-        """How far the ends are from balance, over what they could be, and the load over that wanted."""
+        """Imbalance of the ends over its largest value, and the load over the prescribed one."""
         at = np.array(kinks(profile), dtype=float) / h - lean
         s, weights = _rule(at[np.abs(at) < 1.0], self.α, self.β)
         slope = np.asarray(profile.slope(h * (lean + s)), dtype=float)
@@ -195,7 +196,7 @@ class FreeEnds:
         return float(lifted / whole) if whole > 0.0 else 0.0, float(h * carried / unit)
 
     def _first(self, profile: Any, unit: float) -> NDArray[np.float64]:
-        """A contact that carries about the load: m/h and h."""
+        """Middle over half-width, and half-width [m], of a contact that carries about the load, (2,)."""
         h, narrow, wide = _FIRST, 0.0, np.inf
         for _ in range(_DOUBLINGS):
             lean = self._lean(profile, unit, h)
@@ -210,7 +211,7 @@ class FreeEnds:
         )
 
     def _lean(self, profile: Any, unit: float, h: float) -> float:
-        """m/h at which the ends are in balance, roughly; in the middle of such places in a flat part."""
+        """Rough m/h at which the ends are in balance; in the middle of such places in a flat part."""
         far = 1.0
         while far < 2.0**_FARTHER and not (
             self._conditions(profile, unit, -far, h)[0] < 0.0 < self._conditions(profile, unit, far, h)[0]
@@ -250,135 +251,134 @@ def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
             t, w = _towards(exponent, _TO_END if exponent else _TO_KINK)
             points = x + sign * half * t
             w = w * half ** (exponent + 1.0)
-            right = 1.0 if exponent and sign < 0.0 else (1.0 - points) ** β
-            left = 1.0 if exponent and sign > 0.0 else (1.0 + points) ** α
+            factor_right = 1.0 if exponent and sign < 0.0 else (1.0 - points) ** β
+            factor_left = 1.0 if exponent and sign > 0.0 else (1.0 + points) ** α
             s.append(points)
-            weights.append(w * left * right)
+            weights.append(w * factor_left * factor_right)
     return np.concatenate(s), np.concatenate(weights)
 
 
-#: Distances from an end, over that of the nearest kink, between which its pressure is looked at; places
+#: Distances from an end, over that of the nearest kink, between which its pressure is sampled; places
 #: there, and the degree of the polynomial through them.
-_LOOKED_AT, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
+_SAMPLED_AT_END, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
 
 
 def places_at_end(gap: float) -> NDArray[np.float64]:
-    """Distances over a from an end at which the pressure tells how it falls to it, growing.
+    """Distances over a from an end at which the pressure is sampled to continue it, growing, (n,).
 
     Args:
         gap: distance of the nearest kink, or of the other end.
     """
-    near, far = (share * min(gap, 1.0) for share in _LOOKED_AT)
+    near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)
     t = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES))
     return (near + far) / 2.0 + (far - near) / 2.0 * t
 
 
-def towards_end(d: NDArray, known: NDArray, σ_YY: NDArray, exponent: float) -> NDArray[np.float64]:
-    """A pressure d^a times a smooth function, nearer to the end than where it is known.
+def towards_end(d: NDArray, samples: NDArray, σ_YY: NDArray, exponent: float) -> NDArray[np.float64]:
+    """Pressure d^a times a smooth function, nearer to the end than its samples, (n,).
 
     Args:
-        d: distances that are wanted, over a.
-        known: those of :func:`places_at_end`.
-        σ_YY: at these.
+        d: distances over a, (n,).
+        samples: distances of :func:`places_at_end`.
+        σ_YY: pressure at these.
         exponent: a, at the free end.
     """
-    smooth = np.polynomial.Chebyshev.fit(known, σ_YY / known**exponent, _DEGREE)
+    smooth = np.polynomial.Chebyshev.fit(samples, σ_YY / samples**exponent, _DEGREE)
     return d**exponent * smooth(d)
 
 
-#: Distances from an end, over that of the nearest kink, between which what is known to be A(d) + d^a B(d)
-#: on one side, A and B smooth, is looked at: slopes next to an end, the pressure next to a cusp. Places
-#: there, even in the root of d; terms of each of the two series.
-_SEEN, _SEEN_AT, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
+#: Distances from an end, over that of the nearest kink, between which a function A(d) + d^a B(d) on one
+#: side, A and B smooth, is sampled: slopes next to an end, the pressure next to a cusp. Number of
+#: samples, even in the root of d; terms of each of the two series.
+_RANGE_AT_END, _SAMPLES, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
 #: Next to a kink: the nearest of these distances over the farthest, the least and the most of that, and
 #: what the series leave out there over its cube, whose tenth of the tolerance is small enough.
 _NEAREST_AT_KINK, _FARTHEST_AT_KINK, _LEFT_OUT = 0.015, (5e-3, 2e-2), 7e-4
-#: Distance over the usual one up to which a kink is looked at to see what its series leave out.
+#: Distance over the usual one up to which a kink is sampled to measure what its series leave out.
 FARTHER = 2.0
-#: Distance over a from an end within which stresses beside it tell what they are at it; singular values
-#: below which terms are one.
+#: Distance over a from an end within which stresses beside it give the limit at it; singular values below
+#: which terms are dependent.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
 #: Powers of the distance, over d^a, with which solids graded from the surface on add logarithms.
 _LOGS = (1.0, 2.0)
-#: Distance from an end, over that of the nearest kink, up to which what is left of an intensity is more
-#: than it is elsewhere.
+#: Distance from an end, over that of the nearest kink, up to which a remaining intensity shows.
 _CLEARED = 0.1
 
 
 def _two_series(
-    gap: float, seen: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
+    gap: float, span: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
 ) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
-    """Where A(d) + d^a B(d) is to be known, and what it is by what it is there.
+    """Distances at which A(d) + d^a B(d) is sampled, its terms, and the map from samples to amplitudes.
 
     Args:
-        gap: that distances are over.
-        seen: the nearest and the farthest.
+        gap: distance over a to which the others are relative.
+        span: the nearest and the farthest sample, over the gap.
         exponent: a.
-        logs: are the second series' terms times log d?
-        at_end: are there what solids graded from the surface on add, d^(a + 1) log d and d^(a + 2) log d,
-            and what is left of an intensity, d^(a - 1), the last of the terms?
+        logs: the second series' terms are times log d.
+        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
+            and that of a remaining intensity, d^(a - 1), the last of the terms.
 
     Returns:
-        Distances (m,), the terms at other distances, of (n,) (n, terms), and what gives their amplitudes,
-        (terms, m).
+        Distances (m,), a function that gives the terms at others, (n,) to (n, terms), and the map from
+        samples to amplitudes, (terms, m).
     """
-    low, high = (np.sqrt(share * min(gap, 1.0)) for share in seen)
-    t = np.cos(np.pi * (np.arange(_SEEN_AT) + 0.5) / _SEEN_AT)
-    known = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
+    t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
+    samples = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
     powers = np.arange(_TERMS_OF_EACH)
 
     def terms(d: NDArray) -> NDArray[np.float64]:
         x = d / high**2
-        found = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        powers_of_d = np.power.outer(x, np.concatenate([powers, exponent + powers]))
         if logs:
-            found[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
+            powers_of_d[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
         if not at_end:
-            return found
+            return powers_of_d
         more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
         more[:, :-1] *= np.log(x)[:, None]
-        return np.concatenate([found, more], axis=1)
+        return np.concatenate([powers_of_d, more], axis=1)
 
-    return known, terms, np.asarray(np.linalg.pinv(terms(known)), dtype=np.float64)
+    return samples, terms, np.asarray(np.linalg.pinv(terms(samples)), dtype=np.float64)
 
 
 @dataclass(frozen=True)
 class Series:
-    """A(d) + d^a B(d), A and B smooth, from what it is at some distances d.
+    """Continuation of A(d) + d^a B(d), A and B smooth, from samples at some distances d.
 
     Attributes:
-        known: these distances over a, (m,).
-        terms: the two series' terms at other distances, of (n,) (n, terms).
-        amplitudes: what gives the terms' amplitudes by values at these, (terms, m).
+        known: distances of the samples over a, (m,).
+        terms: gives the two series' terms at other distances, (n,) to (n, terms).
+        amplitudes: map from values at the samples to the terms' amplitudes, (terms, m).
     """
 
     known: NDArray[np.float64]
     terms: Callable[[NDArray], NDArray]
     amplitudes: NDArray[np.float64]
 
-    def by_known(self, d: NDArray) -> NDArray[np.float64]:
-        """What multiplies values at the known distances to give those at others, (n, m)."""
+    def by_samples(self, d: NDArray) -> NDArray[np.float64]:
+        """Map from values at the samples to those at distances d, (n, m)."""
         return np.asarray(self.terms(d) @ self.amplitudes)
 
     def through(self, values: NDArray) -> Callable[[NDArray], NDArray]:
-        """The sum by distance, from its values at the known ones, (m,)."""
-        return lambda d: self.by_known(d) @ values
+        """Function of the distance that continues its values at the samples, (m,)."""
+        return lambda d: self.by_samples(d) @ values
 
 
 def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 1.0) -> Series:
-    """Pressure or slopes next to a kink where they are finite.
+    """Continuation of pressure or slopes to a kink where they are finite.
 
     Args:
         gap: distance of the next kink or end, over a.
         exponent: of the distance d from the kink, in (0, 1) at a cusp; 1 where they go as d log d.
         farthest: distance over the gap from :func:`farthest_at_kink`.
-        farther: distance up to which they are looked at, over that.
+        farther: distance up to which they are sampled, over that.
     """
-    seen = _NEAREST_AT_KINK * farthest, farther * farthest
-    return Series(*_two_series(gap, seen, exponent, logs=exponent == 1.0))
+    span = _NEAREST_AT_KINK * farthest, farther * farthest
+    return Series(*_two_series(gap, span, exponent, logs=exponent == 1.0))
 
 
 def farthest_at_kink(tolerance: float) -> float:
-    """Distance from a kink, over that of the next kink or end, up to which it is looked at.
+    """Distance from a kink, over that of the next kink or end, up to which it is sampled.
 
     Nearer to it finite elements have less digits, farther away the series leave out more.
     """
@@ -388,26 +388,26 @@ def farthest_at_kink(tolerance: float) -> float:
 def left_at_kink(usual: NDArray, farther: NDArray) -> float:
     """Error of the limits from the left and the right of a kink.
 
-    Terms that the series have not grow with their order, and both limits are to be one: half of what
-    they differ by is what else is wrong.
+    Terms that the series lack grow with their order. Both limits should be equal: half of their
+    difference is the other error.
 
     Args:
-        usual: both limits, (2,), from series that are looked at as far as usual.
-        farther: the same from ones looked at up to ``FARTHER`` times that distance.
+        usual: both limits, (2,), from series sampled up to the usual distance.
+        farther: both limits, (2,), from series sampled up to ``FARTHER`` times that distance.
     """
     left_out = np.abs(farther - usual).max() / (FARTHER**_TERMS_OF_EACH - 1.0)
     return float(SAFETY * left_out + np.ptp(usual) / 2.0)
 
 
 def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[np.float64]:
-    """σ_XX at the ends of contacts by the limit from beside them, NaN at sharp ones, (states, 2).
+    """In-plane stress at the ends of contacts by the limit from outside, NaN at sharp ones, (states, 2).
 
     Args:
         X: positions over a, (n,).
         σ_XX: there, (states, n).
         exponents: of the pressure at the left and the right end, (states, 2).
     """
-    found = np.full(exponents.shape, np.nan)
+    limits = np.full(exponents.shape, np.nan)
     for i, side in enumerate((-1.0, 1.0)):
         d = side * X - 1.0
         beside = (d > 0.0) & (d < _BESIDE_END)
@@ -415,8 +415,8 @@ def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[
             a = exponents[row, i]
             x = d[beside] / _BESIDE_END
             terms = np.column_stack([np.ones_like(x), x, x**a, x ** (1.0 + a)])
-            found[row, i] = np.linalg.lstsq(terms, σ_XX[row, beside], rcond=_NO_DIGIT)[0][0]
-    return found
+            limits[row, i] = np.linalg.lstsq(terms, σ_XX[row, beside], rcond=_NO_DIGIT)[0][0]
+    return limits
 
 
 def turns_at_ends(surface: Surface, local: Any) -> Turns:
@@ -435,7 +435,7 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
 #: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
 #: stress is interpolated.
 _COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
-#: Highest and lowest places among the few next to which the many are looked at.
+#: Highest and lowest places among the few next to which the many are evaluated.
 _TOPS = 4
 
 
@@ -467,8 +467,8 @@ def turns_at_knots(
 
 def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
     """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
-    left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
-    return np.asarray(left + width / (1.0 + np.exp(-x)))
+    X_left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+    return np.asarray(X_left + width / (1.0 + np.exp(-x)))
 
 
 def _tops(values: NDArray) -> NDArray[np.int64]:
@@ -482,44 +482,44 @@ def _tops(values: NDArray) -> NDArray[np.int64]:
 def slopes_towards_ends(
     X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How displacement gradients next to free ends follow from those a little farther away.
+    """Map from displacement gradients a little farther away to those next to free ends.
 
-    Nearer than ``_SEEN`` a derivative of finite elements has less digits left than these two series have.
-    What is left of an intensity, d^(a - 1), which the pressure's few moments do not see and a free end
-    does not have, is taken away up to ``_CLEARED``.
+    Nearer than ``_RANGE_AT_END`` a derivative of finite elements has less digits than these two series.
+    A remaining intensity, d^(a - 1), which the pressure's few moments do not contain and a free end does
+    not have, is subtracted up to ``_CLEARED``.
 
     Args:
-        X: positions that are wanted, over a, (n,).
+        X: positions over a, (n,).
         gaps: distances of the left and the right end from the nearest kink, over a.
         exponents: a, at the left and at the right end.
 
     Returns:
-        Positions (m,) at which gradients are to be known, and what multiplies these, (n, m).
+        Positions (m,) of the gradients that are needed, and the map from these, (n, m).
     """
     places, rows = [X], [np.eye(len(X))]
     for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
         for side in (-1.0, 1.0):
             d = side * (X - end)
             length = min(gap, 1.0)
-            near, cleared = ((d > 0.0) & (d < share * length) for share in (_SEEN[0], _CLEARED))
+            near, cleared = ((d > 0.0) & (d < share * length) for share in (_RANGE_AT_END[0], _CLEARED))
             if cleared.any():
-                known, terms, amplitudes = _two_series(gap, _SEEN, a, at_end=True)
+                samples, terms, amplitudes = _two_series(gap, _RANGE_AT_END, a, at_end=True)
                 rows[0][near] = 0.0
-                more = np.zeros((len(X), len(known)))
+                more = np.zeros((len(X), len(samples)))
                 more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
                 more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
-                places.append(end + side * known)
+                places.append(end + side * samples)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)
 
 
-#: Tops of the samples that are looked at more nearly; samples that a polynomial goes through; places
-#: between the neighbours of a top.
+#: Tops of the samples that are refined; samples that a polynomial goes through; places between the
+#: neighbours of a top.
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
 
 
 def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
-    """The highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
+    """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
 
     Args:
         solution: of one method, see :class:`galinx.solvers.solution.Solution`.
@@ -547,13 +547,13 @@ def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
 
 
 def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
-    """Which positions, (n,) or (states, n), are off all places of :func:`_infinite`, (states, n)."""
+    """Mask of positions, (n,) or (states, n), off all places of :func:`_infinite`, (states, n)."""
     each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
     return np.logical_and.reduce(each)
 
 
 def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Both ends and kinks, where the curve may turn, and its limits there or NaN, (states, k) each."""
+    """Both ends and kinks, where the curve may turn, and its limits or NaN, (states, k) each."""
     surface, ends = solution.surface, np.tile([-1.0, 1.0], (len(solution.g), 1))
     if surface.turns is not None:
         at = np.concatenate([ends, surface.turns.X], axis=1)
@@ -563,16 +563,16 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
 
 
 def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.float64], float]]:
-    """Where stresses are infinite, NaN for nowhere, (states,) each; and within which distance of it."""
+    """Places of infinite stresses, (states,), NaN for none, with the distance that does not count."""
     if body.pressure:
         sharp = np.tile(body.pressure.values[[0, -1]] != 0.0, (states, 1))
     else:
         sharp = np.column_stack([solution.local.β, solution.local.α]) < 0.0
-    found = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
+    places = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
     if body.found and jumps(body.profile):
         for kink in kinks(body.profile):
-            found.append(((kink - solution.centre) / solution.half_width, NEAR_TIP))
-    return found
+            places.append(((kink - solution.centre) / solution.half_width, NEAR_TIP))
+    return places
 
 
 def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
@@ -580,8 +580,8 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
 
     Args:
         u: coordinate in which they are smooth, growing, (n,).
-        values: there, -inf where the curve is not told, (states, n).
-        pieces: which smooth piece of the curve a sample belongs to, (states, n).
+        values: values of the curves, -inf where they do not count, (states, n).
+        pieces: number of the smooth piece of the curve to which a sample belongs, (states, n).
     """
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
     inner = values[:, 1:-1]
@@ -598,9 +598,11 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]
         if usable.any():
-            some = usable.nonzero()[0]
-            found = _between(u, values[some[:, None], window[some]], window[some], i[some])
-            best[some] = np.maximum(best[some], found)
+            rows_of_top = usable.nonzero()[0]
+            refined = _between(
+                u, values[rows_of_top[:, None], window[rows_of_top]], window[rows_of_top], i[rows_of_top]
+            )
+            best[rows_of_top] = np.maximum(best[rows_of_top], refined)
     return best
 
 
@@ -615,15 +617,15 @@ def _between(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArra
         factors = (at[:, :, None] - others[:, None]) / (nodes[:, k, None, None] - others[:, None])
         curve += values[:, k, None] * factors.prod(axis=-1)
     k = np.clip(curve.argmax(axis=1), 1, _BETWEEN - 2)[:, None]
-    left, middle, right = (np.take_along_axis(curve, k + step, 1)[:, 0] for step in (-1, 0, 1))
-    bend = left - 2.0 * middle + right
+    y_left, y, y_right = (np.take_along_axis(curve, k + step, 1)[:, 0] for step in (-1, 0, 1))
+    bend = y_left - 2.0 * y + y_right
     with np.errstate(divide="ignore", invalid="ignore"):
-        vertex = middle - (right - left) ** 2 / (8.0 * bend)
-    inside = (bend < 0.0) & (np.abs(right - left) <= -2.0 * bend)
+        vertex = y - (y_right - y_left) ** 2 / (8.0 * bend)
+    inside = (bend < 0.0) & (np.abs(y_right - y_left) <= -2.0 * bend)
     return np.where(inside, vertex, curve.max(axis=1))
 
 
-#: Most tops that are looked at more nearly; places at a time; steps between them that are small enough.
+#: Most tops that are refined; places at a time; steps between them that are small enough.
 _KINKED_TOPS, _PLACES_AT_A_TIME, _STEP = 4, 41, 2e-5
 
 
@@ -633,7 +635,7 @@ def gaps_of(kinks: NDArray) -> tuple[float, float]:
 
 
 class KinkedPressure:
-    """σ_YY over N/(2a) of one state.
+    """Pressure σ_YY over N/(2a) of one state, with free ends and kinks.
 
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
@@ -664,12 +666,15 @@ class KinkedPressure:
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
         self._density = density_of_forces(s, facets, forces)[facets]
-        self._known = [places_at_end(gap) for gap in gaps_of(kinks)]
-        self._there = [self._piecewise(self._known[0] - 1.0), self._piecewise(1.0 - self._known[1])]
+        self._samples = [places_at_end(gap) for gap in gaps_of(kinks)]
+        self._at_samples = [
+            self._piecewise(self._samples[0] - 1.0),
+            self._piecewise(1.0 - self._samples[1]),
+        ]
 
     @property
     def breaks(self) -> NDArray[np.float64]:
-        """Positions over a between which it is a polynomial but for the chart's stretch."""
+        """Positions over a between which it is a polynomial but for the chart's stretch, (n,)."""
         return np.asarray(self._chart.surface_position(self._start[1:]))
 
     def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
@@ -680,33 +685,33 @@ class KinkedPressure:
         return np.asarray(np.maximum(lengths[i], lengths[i + 1]))
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """At positions over a, (n,); NaN beside the contact."""
-        found, inside = np.full(len(r), np.nan), under_punch(r)
-        found[inside] = self._piecewise(r[inside])
-        ends = zip((1.0 + r, 1.0 - r), self._known, self._there, self._exponents)
-        for d, known, values, exponent in ends:
-            near = (d > 0.0) & (d < known[0])
-            found[near] = towards_end(d[near], known, values, exponent)
+        """Contact stress over N/(2a) at positions over a, (n,); NaN beside the contact."""
+        σ, inside = np.full(len(r), np.nan), under_punch(r)
+        σ[inside] = self._piecewise(r[inside])
+        ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, self._exponents)
+        for d, samples, values, exponent in ends:
+            near = (d > 0.0) & (d < samples[0])
+            σ[near] = towards_end(d[near], samples, values, exponent)
         for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)
                 near = (d >= 0.0) & (d < series.known.min())
                 if near.any():
-                    found[near] = series.through(self._piecewise(at + side * series.known))(d[near])
-        return found
+                    σ[near] = series.through(self._piecewise(at + side * series.known))(d[near])
+        return σ
 
     def largest(self) -> tuple[float, float]:
-        """Largest pressure over N/(2a), and its place over a: nearer and nearer to the best nodes."""
+        """Largest pressure over N/(2a), and its place over a, by refinement around the best nodes."""
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         r = r[under_punch(r)]
         p = -self.σ_YY(r)
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
-        found = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
+        peaks = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
         if self._exponent:
-            found += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
-        return max(found)
+            peaks += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
+        return max(peaks)
 
     def _nearer(self, low: float, high: float) -> tuple[float, float]:
         step = 1.0
@@ -720,13 +725,13 @@ class KinkedPressure:
         return float(p[i]), float(r[i])
 
     def at_kink(self, number: int) -> float:
-        """σ_YY over N/(2a) at a kink."""
+        """Contact stress σ_YY over N/(2a) at a kink."""
         return self.limit_at_kink(number, self._piecewise)
 
     def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
-        """A stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
+        """Stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
 
-        The innermost cells are so small that rounding of the nodal forces shows in what they tell.
+        The innermost cells are so small that rounding of the nodal forces shows in their values.
 
         Args:
             number: of the kink.
@@ -750,14 +755,14 @@ class KinkedPressure:
         self, number: int, values: Callable[[NDArray], NDArray], farther: float = 1.0
     ) -> NDArray[np.float64]:
         """Limits from the left and the right of a kink, (2,), see :func:`towards_kink`."""
-        at, found = self.kinks[number], np.empty(2)
+        at, limits = self.kinks[number], np.empty(2)
         for i, side in enumerate((-1.0, 1.0)):
             series = self._series(number, side, farther)
-            found[i] = series.through(values(at + side * series.known))(np.zeros(1))[0]
-        return found
+            limits[i] = series.through(values(at + side * series.known))(np.zeros(1))[0]
+        return limits
 
     def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
-        """Of the pressure on one side of a kink."""
+        """Continuation of the pressure to a kink from one side."""
         ends = np.concatenate([[-1.0], self.kinks, [1.0]])
         gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
         return towards_kink(float(gap), self._exponent, self._farthest, farther)

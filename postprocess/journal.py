@@ -23,18 +23,18 @@ from .compare import Comparison
 from .errors import ArchiveInUse, LeftOver, refused
 
 _SUFFIX = ".part"
-#: Name of the file that tells which archive a run was about to publish.
+#: Name of the file that identifies the archive that a run was about to publish.
 _MARK = "published"
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some states' results.
+    """Results of some states.
 
     Attributes:
         rows: which rows of the archive.
         data: datasets by path.
-        comparisons: what comparing them found.
+        comparisons: figures of comparisons over these states.
         record: of the speed that ends with these rows, else None; numbers by name.
     """
 
@@ -45,14 +45,14 @@ class Part:
 
 
 def joined(parts: Sequence[Part]) -> Part:
-    """Parts that follow one another as one; of a comparison the worst is kept, the last's record."""
+    """Single part from parts that follow one another, with the worst comparisons and the last record."""
     if len(parts) == 1:
         return parts[0]
     data = {name: np.concatenate([part.data[name] for part in parts]) for name in parts[0].data}
     worst: dict[tuple[str, str], float] = {}
-    for found in (found for part in parts for found in part.comparisons):
-        which = found.name, found.text
-        worst[which] = float(np.max([worst.get(which, found.value), found.value]))  # NaN stays
+    for comparison in (figure for part in parts for figure in part.comparisons):
+        which = comparison.name, comparison.text
+        worst[which] = float(np.max([worst.get(which, comparison.value), comparison.value]))  # NaN stays
     comparisons = [Comparison(*which, value) for which, value in worst.items()]
     return Part(slice(parts[0].rows.start, parts[-1].rows.stop), data, comparisons, parts[-1].record)
 
@@ -163,18 +163,18 @@ class Journal:
 
     def _check_left_over(self) -> None:
         there = self._files()
-        left = [(key, part.rows) for key, part in filter(None, map(_load, there))]
-        own = {(rows.start, rows.stop) for key, rows in left if key == self._key}
+        parts = [(key, part.rows) for key, part in filter(None, map(_load, there))]
+        own = {(rows.start, rows.stop) for key, rows in parts if key == self._key}
         self.damaged = len(there) - len(own) if self._resume else 0
-        if left and self._resume:
+        if parts and self._resume:
             if not own:
                 raise LeftOver(
                     f"what an interrupted run left of {self.target} belongs to another scene or version "
                     "of the program; give that back, or start anew with --overwrite"
                 )
             self._rows = own
-        elif left and not self._overwrite:
-            states = sum(rows.stop - rows.start for _, rows in left)
+        elif parts and not self._overwrite:
+            states = sum(rows.stop - rows.start for _, rows in parts)
             raise LeftOver(
                 f"an interrupted run left {states} finished states of {self.target}; "
                 "go on with --resume, or start anew with --overwrite"
@@ -196,7 +196,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _identity(archive: Path) -> str:
-    """What tells a file from all others, whatever its name is."""
+    """Device, number, size and time of a file, which tell it from all others whatever its name is."""
     about = archive.stat()
     return f"{about.st_dev} {about.st_ino} {about.st_size} {about.st_mtime_ns}"
 
@@ -206,21 +206,21 @@ def _name(rows: slice) -> str:
 
 
 def _packed(part: Part, key: str) -> Iterator[Any]:
-    told = {
+    header = {
         "key": key,
         "rows": [part.rows.start, part.rows.stop],
-        "comparisons": [asdict(found) for found in part.comparisons],
+        "comparisons": [asdict(figure) for figure in part.comparisons],
         "record": part.record,
     }
-    return sealed.packed(told, part.data)
+    return sealed.packed(header, part.data)
 
 
 def _load(path: Path) -> tuple[str, Part] | None:
-    """The key of a part's run, and the part; None where it is damaged or bears another's name."""
-    told, data = sealed.read(path) or ({}, {})
+    """Key of a part's run, and the part; None where it is damaged or bears another's name."""
+    header, data = sealed.read(path) or ({}, {})
     with suppress(Exception):  # whatever is wrong with a part, it is not there
-        rows = slice(*told["rows"])
+        rows = slice(*header["rows"])
         if path.name == _name(rows):
-            comparisons = [Comparison(**found) for found in told["comparisons"]]
-            return told["key"], Part(rows, data, comparisons, told["record"])
+            comparisons = [Comparison(**figure) for figure in header["comparisons"]]
+            return header["key"], Part(rows, data, comparisons, header["record"])
     return None

@@ -22,17 +22,17 @@ _POSITIONS = {
 
 
 def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
-    """Arrays over ``state``, and ``X_over_a`` or ``point``; paths become names, without ``states``.
+    """Dataset over ``state``, and ``X_over_a`` or ``point``; paths become names, without ``states``.
 
     Args:
         data: datasets by path.
         attributes: of the archive's root.
     """
-    known, apart = table(), parameters(data)
+    rows, apart = table(), parameters(data)
     variables: dict[str, Any] = {}
     coordinates: dict[str, Any] = dict.fromkeys(path.rpartition("/")[2] for path in apart)
     for path, values in data.items():
-        row = known.get(path)
+        row = rows.get(path)
         if row is None or not of_states(path) or not _has_names(row):
             continue
         dims = tuple(_DIMENSIONS[dimension] for dimension in row.over)
@@ -54,6 +54,6 @@ def _has_names(row: Quantity) -> bool:
 
 
 def over_parameters(states: xarray.Dataset) -> xarray.Dataset:
-    """The arrays over ``c``, the law's parameters, ``motion`` and ``X_over_L``."""
+    """Dataset of arrays over ``c``, the law's parameters, ``motion`` and ``X_over_L``."""
     apart = [name for name in states.coords if states[name].dims == ("state",)]
     return states.set_index(state=apart).unstack("state")

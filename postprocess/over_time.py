@@ -1,8 +1,8 @@
-"""What is read off contact forces that change in time: centre of the pressure, and K_I at both ends.
+"""Motions in time: numbers from contact forces, comparison of both methods, distance from steady motion.
 
-How far two methods agree on starts from rest; their rules are among those of all comparisons.
-
-How far a start from rest is from steady motion, and when it is near.
+Nodal forces that change in time give the centre of the pressure, and K_I at both ends. The rules by which
+two methods are compared on starts from rest are among those of all comparisons. How far a start is from
+steady motion, and when it is near, follows from the same numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,17 +20,17 @@ from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
 
-#: Moments of the pressure that elements tell, over their degree: what they are tested with has to be held
-#: by them, too. And how many fewer polynomials the smooth factor has: a wave that runs little faster than
-#: the punch is short under it.
+#: Moments of the pressure that elements give, over their degree: they have to represent the polynomials
+#: with which forces are tested, too. And how many fewer polynomials the smooth factor has: a wave that
+#: runs little faster than the punch is short under it.
 _MOMENTS, _FEWER = 2.5, 4
 #: Points that give moments of r log r.
 _POINTS = 400
 
 
 @dataclass(frozen=True)
-class Told:
-    """Of nodal forces at several times, (times,) each.
+class ContactNumbers:
+    """Load, centre of the pressure and K_I from nodal forces at several times, (times,) each.
 
     Attributes:
         load: over N.
@@ -45,8 +45,10 @@ class Told:
     K_right: NDArray[np.float64]
 
 
-def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> Told:
-    """What consistent nodal forces of σ_YY say; tested with smooth functions they give its moments.
+def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> ContactNumbers:
+    """Load, centre and K_I from consistent nodal forces of σ_YY.
+
+    Tested with smooth functions, the forces give moments of the pressure.
 
     Args:
         X: contact nodes over a, (nodes,).
@@ -61,12 +63,12 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
         invalid="ignore", divide="ignore"
     ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
         r, w = roots_jacobi(_POINTS, α, β)
-    known = np.column_stack([np.eye(moments, polynomials), _tests(r, α, β, moments).T @ (w * _logs(r)).T])
-    factors = np.linalg.lstsq(known, a.T, rcond=None)[0]
+    basis = np.column_stack([np.eye(moments, polynomials), _tests(r, α, β, moments).T @ (w * _logs(r)).T])
+    factors = np.linalg.lstsq(basis, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])
-    left, right = -0.5 * np.column_stack([_tests(ends, α, β, polynomials), _logs(ends).T]) @ factors
+    K_left, K_right = -0.5 * np.column_stack([_tests(ends, α, β, polynomials), _logs(ends).T]) @ factors
     total = forces.sum(axis=1)
-    return Told(-total / 2.0, (forces @ X) / total, left, right)
+    return ContactNumbers(-total / 2.0, (forces @ X) / total, K_left, K_right)
 
 
 def _tests(X: NDArray, α: float, β: float, count: int) -> NDArray[np.float64]:
@@ -97,14 +99,14 @@ _NO_LEAN = 1e-2
 #: Indentation over N/(2μ) that is as good as none.
 _NO_SINKING = 1e-2
 
-#: What both methods tell.
+#: Numbers that both methods give.
 TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
 
 def largest_change(
     found: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray, lean: ArrayLike = 0.0
 ) -> float:
-    """How far v₀, centre, K_I left and right (starts, times) are apart, over the largest of a start.
+    """Largest difference of v₀, centre, K_I left and right (starts, times), over a start's largest.
 
     The centre is multiplied by the load: where there is hardly any, it says hardly anything. K_I is over
     that of the stronger end, and left out where it is NaN.
@@ -116,9 +118,9 @@ def largest_change(
             taken.
     """
     off, sizes = [], []
-    for n, (one, other) in enumerate(zip(found, expected)):
+    for n, (values, other) in enumerate(zip(found, expected)):
         share = load if n == 1 else np.ones_like(load)
-        off.append(np.abs((one - other) * share).max(axis=-1))
+        off.append(np.abs((values - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
     sizes[0] = np.maximum(sizes[0], _NO_SINKING)
     sizes[1] = np.maximum(np.maximum(sizes[1], _NO_LEAN), np.abs(np.atleast_1d(lean)).max(axis=-1))
@@ -127,12 +129,12 @@ def largest_change(
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float:
-    """Up to where the integral equation knows them."""
-    known = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
-    if not known.any():
+    """Largest difference of both methods, up to where the integral equation has numbers."""
+    solved = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
+    if not solved.any():
         return np.inf
-    fem, sie = ([data[row[method].path][:, known] for row in TOLD] for method in (FEM, SIE))
-    return largest_change(fem, sie, data[rows.LOAD.path][known], lean_of_steady(data)[:, known])
+    fem, sie = ([data[row[method].path][:, solved] for row in TOLD] for method in (FEM, SIE))
+    return largest_change(fem, sie, data[rows.LOAD.path][solved], lean_of_steady(data)[:, solved])
 
 
 def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
@@ -164,7 +166,7 @@ RULES.register(
 
 #: How much the distance times the time may change over the second half of a motion that comes to steady
 #: motion like 1/t.
-_ALIKE = 0.1
+_STEADY_TAIL = 0.1
 
 
 def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
@@ -182,9 +184,9 @@ def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
 def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     """Times from which on starts are within ``SHARES`` of steady motion, (starts, shares).
 
-    Where that is later than the last time what is left is taken to fall like 1/t from there on, t from
+    Where that is later than the last time, the distance is taken to fall like 1/t from there on, t from
     when the load was half, if it does so to a tenth in the second half of that time; else it is NaN:
-    too little of the motion is known.
+    the motion is too short.
 
     Args:
         t: times over a/c_s, (times,).
@@ -193,28 +195,28 @@ def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     """
     lacks, steps = np.concatenate([[1.0], 1.0 - load]), np.diff(t, prepend=0.0)
     begun = float(steps @ (lacks[1:] + lacks[:-1])) / 2.0
-    found = np.empty((len(off), len(SHARES)))
+    times = np.empty((len(off), len(SHARES)))
     tail, since = t >= (begun + t[-1]) / 2.0, t - begun
-    for i, one in enumerate(off):
-        left = since[tail] * one[tail]
-        like = np.isfinite(left).all() and np.ptp(left) <= _ALIKE * left[-1]
+    for i, distance in enumerate(off):
+        scaled = since[tail] * distance[tail]
+        like = np.isfinite(scaled).all() and np.ptp(scaled) <= _STEADY_TAIL * scaled[-1]
         for n, share in enumerate(SHARES):
-            far = np.flatnonzero(one > share)
+            far = np.flatnonzero(distance > share)
             last = int(far[-1]) if len(far) else -1
             if last == len(t) - 1:
-                found[i, n] = begun + left[-1] / share if like else np.nan
+                times[i, n] = begun + scaled[-1] / share if like else np.nan
             elif last < 0:
-                found[i, n] = t[0]
+                times[i, n] = t[0]
             else:
-                a, b = one[last], one[last + 1]
-                found[i, n] = t[last] + (t[last + 1] - t[last]) * (a - share) / (a - b)
-    return found
+                a, b = distance[last], distance[last + 1]
+                times[i, n] = t[last] + (t[last + 1] - t[last]) * (a - share) / (a - b)
+    return times
 
 
 def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDArray[np.float64]]:
-    """Datasets of a method by path: how far at the end, and when near."""
+    """Datasets of a method by path: distance from steady motion at the end, and times when near."""
     off = from_steady(data, method)
-    off = np.where(np.isnan(off), np.inf, off)  # where K_I cannot be told, nothing is known to be near
+    off = np.where(np.isnan(off), np.inf, off)  # without K_I nothing is known to be near
     times, load = data[rows.TIMES.path], data[rows.LOAD.path]
-    found = {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
-    return {path: np.where(np.isfinite(values), values, np.nan) for path, values in found.items()}
+    datasets = {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
+    return {path: np.where(np.isfinite(values), values, np.nan) for path, values in datasets.items()}

@@ -3,14 +3,14 @@
 Nodal forces tested with smooth functions give moments of the pressure that converge at twice the
 rate of the displacement. So K_I and the smooth pressure are taken from Jacobi moments, whose weight
 uses the exponents of the local edge analysis; the exponents reported for the finite elements are
-fitted from the raw pressure, which uses none.
+fitted from the raw pressure, which uses none. The largest contact pressure and its place follow from the
+smooth pressure.
 
 All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
 
-Pressures that change fast towards the ends of the contact, as over thin layers, from moments.
-
-Without its weight such a pressure varies over a length h next to the ends, and over the distance from the
-end farther away. In
+**Pressures that change fast towards the ends**, as over thin layers, have functions of their own. Without
+its weight such a pressure varies over a length h next to the ends, and over the distance from the end
+farther away. In
 
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
@@ -18,9 +18,7 @@ it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h
 graded from the surface on it has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end besides,
 which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where
 constants change much within h the powers left out fall slowly with the number of functions, and the last
-of these tell what they add to the intensities.
-
-The largest contact pressure, and where it is.
+of these show what they add to the intensities.
 """
 
 from collections.abc import Callable
@@ -43,7 +41,7 @@ MOMENTS = 9
 
 @dataclass(frozen=True)
 class JacobiPressure:
-    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r) of several states.
+    """Pressure of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r).
 
     Attributes:
         α, β: exponents at X = a and X = -a, (states,).
@@ -55,16 +53,16 @@ class JacobiPressure:
     c: NDArray[np.float64]
 
     def factor(self, r: NDArray) -> NDArray[np.float64]:
-        """Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
+        """Smooth factor Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
         return np.asarray(self.c @ chebyshev(r).T)
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
         r = np.asarray(r, dtype=float)
         inside = under_punch(r)
-        left, right = np.log1p(r[inside]), np.log1p(-r[inside])
+        log_left, log_right = np.log1p(r[inside]), np.log1p(-r[inside])
         result = np.full((len(self.c), len(r)), np.nan)
-        weight = np.exp(np.outer(self.α, right) + np.outer(self.β, left))
+        weight = np.exp(np.outer(self.α, log_right) + np.outer(self.β, log_left))
         result[:, inside] = weight * self.factor(r[inside])
         return result
 
@@ -84,20 +82,20 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
 
     Args:
         p: of the factors, (states, ``MOMENTS``).
-        zeros: does each vanish at r = -1 and at r = 1, (states, 2)?
+        zeros: true where a factor vanishes at r = -1 and at r = 1, (states, 2).
     """
-    found = np.array(p)
+    coefficients = np.array(p)
     for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
         quotient = np.zeros((MOMENTS, MOMENTS))
         for k, row in enumerate(np.eye(MOMENTS)):
             part = np.polynomial.chebyshev.chebdiv(row[: k + 1], divisor)[0]
             quotient[k, : len(part)] = part
-        found = np.where(zeros[:, [end]], found @ quotient, found)
-    return found
+        coefficients = np.where(zeros[:, [end]], coefficients @ quotient, coefficients)
+    return coefficients
 
 
 def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
-    """T_0, T_1, … at r in [-1, 1]: (len(r), count)."""
+    """Chebyshev polynomials T_0, T_1, … at r in [-1, 1], (len(r), count)."""
     return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
 
 
@@ -272,10 +270,11 @@ def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
     return at_t @ np.linalg.inv(at_nodes)
 
 
-#: Positions at which it is looked for, rounds nearer to it, by how much nearer in each, and how near.
-_LOOKED_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+#: Positions at which the largest pressure is sought first, rounds of refinement, by how much each
+#: refines, and the least distance.
+_SOUGHT_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
 _ROUNDS, _NEARER, _NEAREST = 6, 8.0, 1e-4
-#: Most tops that are looked at more nearly, and three places around each.
+#: Most tops that are refined, and three places around each.
 _TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
 
 
@@ -285,10 +284,10 @@ def largest(
     """Largest value and its place over a, (states,) each, of a pressure that is smooth.
 
     Args:
-        pressure: of all states at positions (n,), (states, n).
-        of_state: of one, by its number.
+        pressure: gives it for all states at positions (n,), (states, n).
+        of_state: gives it for a state, by its number.
     """
-    p = pressure(_LOOKED_AT)
+    p = pressure(_SOUGHT_AT)
     inner = p[:, 1:-1]
     top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
     best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
@@ -301,7 +300,7 @@ def _nearer(
     of_state: Callable[[int, NDArray], NDArray], i: NDArray
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Largest value and its place between the neighbours of a position of each state, (states,) each."""
-    places = _LOOKED_AT[i[:, None] + [-1, 0, 1]]
+    places = _SOUGHT_AT[i[:, None] + [-1, 0, 1]]
     for _ in range(_ROUNDS):
         three = np.stack([of_state(k, x) for k, x in enumerate(places)])
         half = (places[:, 2] - places[:, 0]) / 2.0
@@ -320,10 +319,10 @@ def _nearer(
 
 #: Longest panel of the rule for products of polynomials, over 1 and over h.
 _FINE = 0.3
-#: Polynomials that tell how well a pressure is resolved, and over graded solids, where what is left falls
-#: like a power of their number.
+#: Polynomials that measure how well a pressure is resolved, and over graded solids, where the remainder
+#: falls like a power of their number.
 _LAST, _LAST_GRADED = 2, 4
-#: What is left there over what these add, measured on layers whose moduli grow three to a hundred times.
+#: Remainder there over what these add, measured on layers whose moduli grow three to a hundred times.
 _TAIL = 4.0
 #: Highest power of the distance from an end that stands before polynomials with its logarithms.
 _POWERS = 3
@@ -338,24 +337,24 @@ _TIMES = 2
 
 @dataclass(frozen=True)
 class Stretch:
-    """Functions that follow a pressure without its weight.
+    """Functions of a coordinate stretched towards the ends, which follow a pressure without its weight.
 
     Attributes:
         h: length over a.
-        graded: is the solid graded from the surface on?
+        graded: the solid is graded from the surface on.
     """
 
     h: float
     graded: bool = False
 
     def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
-        """ζ."""
+        """Stretched coordinate ζ in [-1, 1] at r."""
         r = np.asarray(r, dtype=float)
-        found = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
-        return np.asarray(np.clip(found / np.arcsinh(2.0 / self.h), -1.0, 1.0))
+        ζ = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
+        return np.asarray(np.clip(ζ / np.arcsinh(2.0 / self.h), -1.0, 1.0))
 
     def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """So many polynomials of ζ, after what belongs to the ends, (len(r), functions)."""
+        """Functions of the ends, then so many polynomials of ζ, (len(r), functions)."""
         if not self.graded:
             return chebyshev(self(r), count)
         with np.errstate(divide="ignore"):
@@ -363,17 +362,17 @@ class Stretch:
         return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)
 
     def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """What belongs to the ends, then polynomials: nearly dependent."""
-        found = []
+        """Functions of the ends before they are orthonormal, then polynomials: nearly dependent."""
+        columns = []
         for d in (1.0 - r, 1.0 + r):
             d = np.maximum(d, 0.0)
             u = d / (d + _SHARE * self.h)
             log = np.log(np.maximum(u, np.finfo(float).tiny))
-            found += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
-        return np.column_stack([*found, chebyshev(self(r), count)])
+            columns += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
+        return np.column_stack([*columns, chebyshev(self(r), count)])
 
     def polynomials(self, functions: int) -> int:
-        """How many of these functions are polynomials."""
+        """Number of polynomials among so many functions."""
         return functions - _OF_ENDS * self.graded
 
 
@@ -383,7 +382,7 @@ def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
 
     The functions depend on one another nearly, and what rounds their combinations is different at every
     place. So combinations are those polynomials on panels that have these values at the rule's points,
-    wherever they are asked for: pressure and tests then know the same functions.
+    wherever they are evaluated: pressure and tests then have the same functions.
 
     Returns:
         Values at the points of the rule, (points, functions).
@@ -397,7 +396,7 @@ def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class StretchedPressure(JacobiPressure):
-    """σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r) of several states, f of :class:`Stretch`."""
+    """Pressure of several states, (1 - r)^α (1 + r)^β Σ c_k f_k(r), f of :class:`Stretch`."""
 
     stretch: Stretch = Stretch(1.0)
 
@@ -418,13 +417,13 @@ class StretchedPressure(JacobiPressure):
         count = self.c.shape[1]
         f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
         at_r = self.stretch.functions(r, functions)
-        found = np.empty((len(self.c), len(r)))
+        change = np.empty((len(self.c), len(r)))
         for i, c in enumerate(self.c):
             weights = _rule(float(self.α[i]), float(self.β[i]), self.stretch).weights
             moments = _moved(self.stretch, count, length) @ (weights * (f @ c))
             to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
-            found[i] = np.abs(at_r @ to_factor).sum(axis=1)
-        return found
+            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
+        return change
 
     @property
     def unresolved(self) -> NDArray[np.float64]:
@@ -441,20 +440,20 @@ def stretched_from_moments(
 ) -> StretchedPressure:
     """Pressure that has the given moments ∫ σ_YY f_k dr, (states, moments)."""
     c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
-    for i, one in enumerate(moments):
+    for i, row in enumerate(moments):
         weights = _rule(float(α[i]), float(β[i]), stretch).weights
-        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, one)
+        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, row)
     return StretchedPressure(α, β, c, stretch)
 
 
 def _rule(α: float, β: float, stretch: Stretch) -> Panels:
-    """For products of functions under the weight of these exponents; all have the same points."""
+    """Quadrature of products of functions under the weight of these exponents, all at the same points."""
     return Panels(α, β, _FINE * min(1.0, stretch.h))
 
 
 @lru_cache(maxsize=8)
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
-    """So many functions at the points of the rule, (points, count)."""
+    """Functions at the points of the rule, (points, count)."""
     return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
 
 
@@ -465,4 +464,4 @@ def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
     t = _rule(-0.5, -0.5, stretch).t
     inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
     moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]
-    return np.array([(one - _at_points(stretch, count)).T for one in moved])
+    return np.array([(functions - _at_points(stretch, count)).T for functions in moved])

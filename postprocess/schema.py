@@ -1,9 +1,7 @@
-"""What an archive has to be: names, types, shapes, units and values; no command sees one that is not so.
+"""Schema of archives: names, types, shapes, units and values; no command reads one that does not fit.
 
-All follows from the table of quantities and that of attributes. A fault is a sentence that names the
-dataset or attribute, what was found and what was expected.
-
-Attributes of an archive's root: what each says, and what it may be.
+All follows from the table of quantities and from ``ATTRIBUTES``, the table of the root's attributes. A
+fault is a sentence that names the dataset or attribute, what was found and what was expected.
 """
 
 import hashlib
@@ -28,13 +26,13 @@ from .quantities.quantity import ALONG, INSIDE, POINT
 
 @dataclass(frozen=True)
 class Attribute:
-    """What is known of an attribute.
+    """Attribute of an archive's root: its meaning, and the values that it may have.
 
     Attributes:
         about: what it says.
         expected: what it may be, in words.
-        fits: may it be this? For whatever HDF5 gives.
-        since: schema version from which on it is there.
+        fits: true of the values that it may have, for whatever HDF5 gives.
+        since: first schema version that has it.
     """
 
     about: str
@@ -44,7 +42,7 @@ class Attribute:
 
 
 def is_text(value: Any) -> bool:
-    """A text that can be written anywhere: HDF5 and JSON have some that UTF-8 has not."""
+    """True of a text that can be written anywhere: HDF5 and JSON have some that UTF-8 has not."""
     try:
         return isinstance(value, str) and bool(value.encode() or True)
     except UnicodeEncodeError:
@@ -83,12 +81,12 @@ def _from_json(value: Any) -> Any:
 
 
 def _list(value: Any) -> bool:
-    found = _from_json(value)
-    return isinstance(found, list) and all(map(is_text, found))
+    texts = _from_json(value)
+    return isinstance(texts, list) and all(map(is_text, texts))
 
 
 def _constant(value: Any, depth: int = 2) -> bool:
-    """A text or a number, a list of them, or a table: what parameters of a solid may be."""
+    """True of a text or a number, a list of them, or a table: what parameters of a solid may be."""
     if isinstance(value, list) and depth:
         return all(_constant(entry, depth - 1) for entry in value)
     return is_text(value) or _number(value)
@@ -96,8 +94,8 @@ def _constant(value: Any, depth: int = 2) -> bool:
 
 def _object(fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
     def entries_fit(value: Any) -> bool:
-        found = _from_json(value)
-        return isinstance(found, dict) and all(is_text(key) and fits(found[key]) for key in found)
+        entries = _from_json(value)
+        return isinstance(entries, dict) and all(is_text(key) and fits(entries[key]) for key in entries)
 
     return entries_fit
 
@@ -128,7 +126,7 @@ ATTRIBUTES = {
         since=3,
     ),
     "half_width": Attribute(
-        "a, half the width of the contact [m]; where ends are found, at rest without friction",
+        "a, half the width of the contact [m]; with free ends, at rest without friction",
         "a finite number",
         _finite,
         since=3,
@@ -152,25 +150,21 @@ ATTRIBUTES = {
         _one_of("PASS", "FAIL", "not judged"),
     ),
     "verdict_reasons": Attribute("the comparisons that it rests on", _LIST, _list),
-    "warnings": Attribute(
-        "what was told before the run, and where its answers do not hold", _LIST, _list
-    ),
+    "warnings": Attribute("warnings before the run, and where its answers do not hold", _LIST, _list),
     "versions": Attribute("of libraries", "a JSON object of texts", _object(is_text)),
     "machine": Attribute("that it ran on", "a text", is_text),
 }
 
 
-# Each adds its rules.
-
 #: Version of the layout, and the first whose archives carry a digest of their bytes.
 VERSION, SEALED = 4, 2
 
-#: What every run writes.
+#: Datasets that every run writes.
 _ALWAYS = (
     runs.SCENE, states.MOTION, states.POSITION, states.SPEED, states.FRICTION, states.RATIO,
     runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F, runs.DONE, runs.SKIPPED, runs.SECONDS, runs.STEPS,
 )  # fmt: skip
-#: What says where values of these dimensions are.
+#: Positions of the values of these dimensions.
 _POSITIONS = {
     POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y),
     ALONG: (layers.ALONG_X,),
@@ -179,13 +173,13 @@ _POSITIONS = {
 
 @dataclass(frozen=True)
 class Described:
-    """A dataset as a file describes it.
+    """Dataset as a file describes it.
 
     Attributes:
         type: ``"text"``, or numpy's name of its numbers' type.
-        shape: of it.
+        shape: numbers of rows, columns, ….
         attributes: its own, by name.
-        whole: are all its values in the file, numbers with a checksum?
+        whole: all its values are in the file, numbers with a checksum.
     """
 
     type: str
@@ -195,18 +189,18 @@ class Described:
 
 
 def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Described]) -> list[str]:
-    """What is wrong with an archive before any of its values is read.
+    """Faults of an archive that show before any of its values is read, one sentence each.
 
     Args:
         attributes: of the root, ``schema_version`` an integer.
         datasets: by path.
     """
-    known = table()
-    found = [*_of_attributes(attributes), *_of_names(attributes, datasets, known)]
-    mine = {name: dataset for name, dataset in datasets.items() if name in known}
-    for name, dataset in mine.items():
-        found += _of_dataset(name, dataset, known[name])
-    return [*found, *_of_shapes(mine, known)]
+    rows = table()
+    sentences = [*_of_attributes(attributes), *_of_names(attributes, datasets, rows)]
+    declared = {name: dataset for name, dataset in datasets.items() if name in rows}
+    for name, dataset in declared.items():
+        sentences += _of_dataset(name, dataset, rows[name])
+    return [*sentences, *_of_shapes(declared, rows)]
 
 
 def _of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
@@ -222,18 +216,18 @@ def _of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _of_names(
-    attributes: Mapping[str, Any], datasets: Mapping[str, Described], known: Mapping[str, Quantity]
+    attributes: Mapping[str, Any], datasets: Mapping[str, Described], rows: Mapping[str, Quantity]
 ) -> Iterator[str]:
-    for name in sorted(datasets.keys() - known.keys()):
+    for name in sorted(datasets.keys() - rows.keys()):
         yield (
             f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         )
     listed = {row.path for row in _ALWAYS}
-    for name in datasets.keys() & known.keys():
-        listed |= {row.path for over in known[name].over for row in _POSITIONS.get(over, ())}
+    for name in datasets.keys() & rows.keys():
+        listed |= {row.path for over in rows[name].over for row in _POSITIONS.get(over, ())}
     if "datasets" in attributes and ATTRIBUTES["datasets"].fits(attributes["datasets"]):
         listed |= set(json.loads(attributes["datasets"]))
-        for name in sorted(datasets.keys() & known.keys() - listed):
+        for name in sorted(datasets.keys() & rows.keys() - listed):
             yield f"{name}: not in the attribute datasets, which lists all"
     for name in sorted(listed - datasets.keys()):
         yield f"{name!r}: missing"
@@ -252,17 +246,19 @@ def _of_dataset(name: str, dataset: Described, row: Quantity) -> Iterator[str]:
         yield f"{name}: {there} {other!r}, expected units and long_name"
 
 
-def _of_shapes(datasets: Mapping[str, Described], known: Mapping[str, Quantity]) -> Iterator[str]:
-    """The same word means the same number everywhere; what most datasets say it is."""
+def _of_shapes(datasets: Mapping[str, Described], rows: Mapping[str, Quantity]) -> Iterator[str]:
+    """Faults of shapes: one dimension has one size everywhere, that of most datasets."""
     sizes: dict[str, Counter[int]] = {}
-    fitting = {name: one for name, one in datasets.items() if len(one.shape) == len(known[name].over)}
+    fitting = {
+        name: dataset for name, dataset in datasets.items() if len(dataset.shape) == len(rows[name].over)
+    }
     for name, dataset in fitting.items():
-        for dimension, size in zip(known[name].over, dataset.shape):
+        for dimension, size in zip(rows[name].over, dataset.shape):
             sizes.setdefault(dimension, Counter())[size] += 1
     most = {dimension: counter.most_common(1)[0][0] for dimension, counter in sizes.items()}
     most |= {dimension: int(dimension) for dimension in most if dimension.isdecimal()}
     for name, dataset in datasets.items():
-        over = known[name].over
+        over = rows[name].over
         words = " × ".join(over) or "a single one"
         expected = tuple(most.get(dimension, 1) for dimension in over)
         if runs.LINE in over:  # each has as many as it has to say
@@ -274,19 +270,19 @@ def _of_shapes(datasets: Mapping[str, Described], known: Mapping[str, Quantity])
 
 
 def faults_of_values(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
-    """What is wrong with the values of some datasets.
+    """Faults of the values of some datasets, one sentence each.
 
     Args:
         data: by path, of all states or some; the positions on the surface and the failures among them.
         attributes: of the root, without faults.
     """
-    known = table()
-    found = [fault for name, values in data.items() for fault in _out_of_range(values, known[name])]
+    rows = table()
+    sentences = [fault for name, values in data.items() for fault in _out_of_range(values, rows[name])]
     excused = _says_so_itself(data, attributes)
-    return found + [
+    return sentences + [
         f"{name}: found a number that is not finite, expected none"
         for name in not_finite(dict(data))
-        if not (excused and known[name].solved)
+        if not (excused and rows[name].solved)
     ]
 
 
@@ -298,13 +294,13 @@ def _out_of_range(values: Any, row: Quantity) -> Iterator[str]:
 
 
 def _says_so_itself(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> bool:
-    """Does the archive tell of states that have no solution, or a wrong one?"""
-    told = json.loads(attributes["comparisons"])
-    return len(data.get(runs.FAILURES.path, ())) > 0 or bool(told.get(RULES[FINITE].text))
+    """True where the archive reports states that have no solution, or a wrong one."""
+    comparisons = json.loads(attributes["comparisons"])
+    return len(data.get(runs.FAILURES.path, ())) > 0 or bool(comparisons.get(RULES[FINITE].text))
 
 
 def faults_between(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> Iterator[str]:
-    """Where one dataset does not fit another.
+    """Faults where one dataset does not fit another, one sentence each.
 
     Args:
         data: by path, of all states.

@@ -1,6 +1,7 @@
-"""What follows from stresses and slopes that are known.
+"""Measures of stresses and slopes: invariants, extremes, tension, flatness under the punch.
 
-What stresses are measured against: what a relative error of theirs is relative to.
+A relative error of stresses is relative to the sizes of :func:`of_in_plane`, :func:`of_inside`,
+:func:`of_interfaces` and :func:`of_factor`.
 """
 
 from collections.abc import Iterable
@@ -74,19 +75,21 @@ def tension(surface: Any) -> NDArray[np.float64]:
     return np.array([size, np.where(size > 0.0, X[under.argmax(axis=1)], np.nan)])
 
 
-#: Distance over a from a punch edge within which stresses, infinite there, stand for themselves only.
+#: Distance over a from a punch edge within which stresses, infinite there, are no measure of others.
 NEAR = 1e-2
 
-#: Distance over a from a tip of the punch, where stresses are infinite, within which none is measured.
+#: Distance over a from a tip of the punch, where stresses are infinite, within which none is compared.
 NEAR_TIP = 0.02
 
-#: Share of the largest below which the smooth factor of a pressure, which may vanish, is not measured
-#: against itself.
+#: Share of the largest below which an error of a pressure's smooth factor, which may vanish, is over this
+#: share rather than over the factor itself.
 _VANISHING = 0.1
 
 
 def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
-    """The larger of each value and a state's largest further than ``NEAR`` from the edges.
+    """Size of in-plane stresses on the surface: the larger of each and the largest far from the edges.
+
+    Far from the edges is further than ``NEAR``.
 
     Args:
         σ_XX: on the surface, (states, n).
@@ -99,7 +102,7 @@ def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
 
 
 def off_tips(X: NDArray, tips: NDArray, Y: Any = 0.0) -> NDArray[np.bool_]:
-    """Which places are further than ``NEAR_TIP`` from all tips.
+    """Mask of places further than ``NEAR_TIP`` from all tips.
 
     Args:
         X, Y: of the places over a, (n,).
@@ -113,7 +116,9 @@ def off_tips(X: NDArray, tips: NDArray, Y: Any = 0.0) -> NDArray[np.bool_]:
 
 
 def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-    """The same of stresses inside, the largest component at a point taken for all: (states, m).
+    """Size of stresses inside: the larger of each point's largest component and that far from the edges.
+
+    Far from the edges is further than ``NEAR``; the result has the shape (states, m).
 
     Args:
         σ: components, each (states, m).
@@ -123,7 +128,7 @@ def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float
 
 
 def of_interfaces(σ: NDArray) -> NDArray[np.float64]:
-    """The largest along each interface of tractions, and of these or the in-plane stress on each side.
+    """Size of stresses at interfaces: the largest along each of tractions, or of these and σ_XX.
 
     Args:
         σ: σ_YY, σ_XY, σ_XX above and below, (4, states, interfaces, n).
@@ -142,7 +147,7 @@ def largest(components: Iterable[NDArray]) -> NDArray[np.float64]:
 
 
 def of_factor(f: NDArray) -> NDArray[np.float64]:
-    """The larger of each value of a smooth factor and a tenth of a state's largest, (states, n)."""
+    """Size of a smooth factor: the larger of each value and a tenth of a state's largest, (states, n)."""
     return np.maximum(np.abs(f), _VANISHING * np.abs(f).max(axis=1, keepdims=True))
 
 

@@ -1,6 +1,8 @@
-"""Stresses along the surface over time: what is told of them, and how well.
+"""Rules of motions in time: works and energies, and stresses along the surface by both methods.
 
-Where energy goes over time: do works and energies balance, and do both methods tell the same works?
+Works and energies have to balance, and both methods have to give the same works. Along the surface the
+stresses of finite elements are compared with the integral equation's, and with those of a coarser motion
+for an estimate of their error.
 """
 
 from collections.abc import Mapping
@@ -26,8 +28,8 @@ _HELD = energy.STRAIN, energy.KINETIC, energy.RADIATED
 
 
 def left_over(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Work that is nowhere to be found, over the largest work of a motion, (motions, times)."""
-    done, held = (sum(data[row.path] for row in some) for some in (_DONE, _HELD))
+    """Work that no energy accounts for, over the largest work of a motion, (motions, times)."""
+    done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
 
@@ -40,20 +42,20 @@ def _works(data: Mapping[str, Any], _: Any) -> float | None:
 
 
 def off_until_turn(data: Mapping[str, Any], rows: tuple[dict[str, Quantity], ...]) -> float | None:
-    """How far both methods' histories are apart up to the first turn, over the largest of a motion.
+    """Largest difference of both methods' histories up to the first turn, over a motion's largest.
 
     Args:
         data: datasets by path.
         rows: histories by method, (motions, times) each.
 
     Returns:
-        None where the integral equation knows none of them.
+        Dimensionless; None where the integral equation has none of them.
     """
     fem, sie = (np.array([data[row[method].path] for row in rows]) for method in (FEM, SIE))
-    known = np.isfinite(sie).all(axis=(0, 1))
-    if not known.any():
+    solved = np.isfinite(sie).all(axis=(0, 1))
+    if not solved.any():
         return None
-    off, size = (np.abs(of[..., known]).max(axis=(0, 2)) for of in (fem - sie, sie))
+    off, size = (np.abs(of[..., solved]).max(axis=(0, 2)) for of in (fem - sie, sie))
     return float((off / size).max())
 
 
@@ -78,12 +80,12 @@ RULES.register(
 
 #: Distance over a from the edges, where stresses are infinite, further than which they are compared.
 NEAR = 0.01
-#: What is compared; friction's stress is the pressure's by a factor.
-TOLD = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
+#: Stresses that are compared; friction's stress is the pressure's by a factor.
+COMPARED = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
 
 
 def largest_change(found: Any, expected: Any) -> float:
-    """How far stresses along the surface are apart, over the largest of each of a motion.
+    """Largest difference of stresses along the surface, over a motion's largest of each.
 
     Args:
         found, expected: of σ_XX and σ_YY, (motions, times, places) each.
@@ -97,8 +99,10 @@ def largest_change(found: Any, expected: Any) -> float:
 
 
 def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict[str, NDArray]:
-    """The estimated error of a motion that two solutions tell, none where they tell no stresses."""
-    of_both = [[of[row[FEM].path] for row in TOLD] for of in (before, now) if TOLD[0][FEM].path in of]
+    """Estimated error of a motion from two solutions; none where they have no stresses."""
+    of_both = [
+        [of[row[FEM].path] for row in COMPARED] for of in (before, now) if COMPARED[0][FEM].path in of
+    ]
     return {rows.SURFACE_ESTIMATE.path: np.array(largest_change(*of_both))} if len(of_both) == 2 else {}
 
 
@@ -116,16 +120,18 @@ def named(method: str, stresses: NDArray) -> dict[str, NDArray]:
 
 
 def where(t: NDArray) -> dict[str, NDArray]:
-    """Datasets of the times and places at which they are told."""
+    """Datasets of the times and places of stresses along the surface."""
     return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float | None:
-    """Up to the first turn; None where the surface is not looked at before it."""
-    known = np.isfinite(data[TOLD[0][SIE].path]).all(axis=(0, 2))
-    if not known.any():
+    """Difference of both methods up to the first turn; None where no time of output is before it."""
+    solved = np.isfinite(data[COMPARED[0][SIE].path]).all(axis=(0, 2))
+    if not solved.any():
         return None
-    return largest_change(*([data[row[method].path][:, known] for row in TOLD] for method in (FEM, SIE)))
+    return largest_change(
+        *([data[row[method].path][:, solved] for row in COMPARED] for method in (FEM, SIE))
+    )
 
 
 def _estimate(data: Mapping[str, Any], _: Any) -> float:
@@ -133,13 +139,13 @@ def _estimate(data: Mapping[str, Any], _: Any) -> float:
 
 
 def _beside(data: Mapping[str, Any], _: Any) -> float | None:
-    """Over the largest at either end."""
+    """Difference of both methods beside the ends, over the largest at either end."""
     return off_until_turn(data, ENDS)
 
 
 #: Rules by name: of the surface by both methods, and by finite elements; of what is beside both ends.
 ALONG, OF_FEM, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
-#: σ_XX beside both ends, which is told and not judged: waves ahead of a fast punch are short.
+#: σ_XX beside both ends, which is reported and not judged: waves ahead of a fast punch are short.
 ENDS = LEFT, RIGHT
 
 RULES.register(
@@ -147,7 +153,7 @@ RULES.register(
     Rule(
         "σ_XX and σ_YY along the surface over time against the integral equation, over the largest "
         "further than 0.01 a from the edges",
-        tuple(row[method] for row in TOLD for method in (FEM, SIE)), _both, tolerances=1.0,
+        tuple(row[method] for row in COMPARED for method in (FEM, SIE)), _both, tolerances=1.0,
     ),
 )  # fmt: skip
 RULES.register(

@@ -1,8 +1,7 @@
-"""Tables as text.
+"""Tables as text: states, limits of the answers, friction loops, sliders, motions in time.
 
-What tells an archive's states apart.
-
-How quantities are told: as archived, or scaled.
+Quantities are written as archived, or scaled to other units. The states of an archive are told apart by
+their parameters: speed, load, the law's constants, motion and position.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -30,21 +29,21 @@ from .quantities.states import LOAD, MOTION, POSITION, SPEED
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
-    """What tells an archive's states apart, by its dataset's path, slowest first.
+    """Parameters that tell an archive's states apart, by their datasets' paths, slowest first.
 
     Args:
         data: datasets by path.
     """
-    known = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = [SPEED.path, *({LOAD.path} & known.keys())], [MOTION.path, POSITION.path]
-    own = [path for path in known if path not in (*first, *last)]
-    return {path: known[path] for path in (*first, *own, *last)}
+    rows = {path: row for path, row in table().items() if row.symbol and path in data}
+    first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
+    own = [path for path in rows if path not in (*first, *last)]
+    return {path: rows[path] for path in (*first, *own, *last)}
 
 
 class Scaled(NamedTuple):
-    """What a quantity is called where it is told, its unit, and how its numbers are told.
+    """Name, unit and scale with which a quantity is written.
 
-    They are multiplied by the factor, then the offset is added: one number, or one of each state,
+    Numbers are multiplied by the factor, then the offset is added: one number, or one of each state,
     (states,), where contacts of states differ.
     """
 
@@ -55,11 +54,11 @@ class Scaled(NamedTuple):
 
     @property
     def head(self) -> str:
-        """Of a column."""
+        """Head of a column: name and unit."""
         return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
 
     def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
-        """Numbers as they are told.
+        """Numbers in this scale.
 
         Args:
             values: as archived, (states, …).
@@ -67,23 +66,23 @@ class Scaled(NamedTuple):
         """
         if np.ndim(self.factor):
             factor, offset = (
-                np.broadcast_to(one, self.factor.shape)[states].reshape(-1, *(1,) * (values.ndim - 1))
-                for one in (self.factor, self.offset)
+                np.broadcast_to(scale, self.factor.shape)[states].reshape(-1, *(1,) * (values.ndim - 1))
+                for scale in (self.factor, self.offset)
             )
             return values * factor + offset
         return values if self.factor == 1.0 else self.factor * values
 
 
-#: How a quantity of some name is told; None where it is not, since another becomes the same.
+#: Scale of a quantity of some name; None where it is left out, since another becomes the same.
 Scaling = Callable[[Quantity, str], Scaled | None]
 
 
 def as_archived(row: Quantity, name: str) -> Scaled:
-    """In its own unit."""
+    """Scale of a quantity in its own unit."""
     return Scaled(name, row.unit, 1.0)
 
 
-#: Numbers of states that are lengths over the half-width.
+#: Quantities of states that are lengths over the half-width.
 LENGTHS = (
     *validity.STRAINED,
     *states.LARGEST_X.values(),
@@ -98,14 +97,14 @@ LIMIT, _VARIABLES = 24, 6
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table as text: the first column is a label, the others are numbers.
+    """Table as text: the first column is a label, the others are numbers.
 
     Attributes:
         title: of the table.
         columns: their heads, with units.
         rows: cells as text.
         notes: lines below.
-        words: are all cells words, which may take several lines?
+        words: all cells are words, which may take several lines.
     """
 
     title: str
@@ -137,17 +136,17 @@ _BOTH = [
 
 
 def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archived) -> Sheet:
-    """The first states of an archive: what tells them apart, and the main results."""
+    """Table of the first states of an archive: their parameters, and the main results."""
     apart = {path: row for path, row in parameters(data).items() if path != of.MOTION.path}
     varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
     shown = {_head(row, scaling): (row, _form(row)) for row in varied.values()}
     results = _EITHER if of.K_I_BOTH.path in data else _ALONE
     shown["f"] = of.FRICTION, "{:+.4f}"
     for head, row, form in (*results, *_ENDS, *_BOTH):
-        # Nothing but zeros are the intensities of ends that are found.
+        # Intensities at free ends are zeros.
         if row.path in data and head not in shown and data[row.path].any():
             shown[head] = row, form
-    factors = {path: _told(row, scaling).factor for path, row in apart.items() if row.type != TEXT}
+    factors = {path: _scaled(row, scaling).factor for path, row in apart.items() if row.type != TEXT}
     series = [
         [value if row.type == TEXT else factors.get(row.path, 1.0) * value for value in values]
         for row, _ in shown.values()
@@ -170,12 +169,12 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
     ]
     if same:
         notes.append(f"the same in all: {', '.join(same)}")
-    of_speed = "; c is the speed over the shear wave speed" * (_told(of.SPEED, scaling).unit == "1")
+    of_speed = "; c is the speed over the shear wave speed" * (_scaled(of.SPEED, scaling).unit == "1")
     notes.append(f"dimensionless where no unit stands{of_speed}")
     if "error" in shown:
         notes.append("K_I: closed form, at both edges; error and estimate: of finite elements, relative")
-    if told := solved_speeds(data):
-        notes.append(told)
+    if speeds := solved_speeds(data):
+        notes.append(speeds)
     if "a (m)" in shown:
         notes.append("a, centre: half-width of the contact, and its middle from the punch's axis")
     if "α" in shown:
@@ -184,32 +183,32 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
-    """How many speeds finite elements solved, in words; "" where they solved each."""
+    """Number of speeds that finite elements solved, in words; "" where they solved each."""
     if of.FITTED.path not in data:
         return ""
     c, fitted = data[of.SPEED.path], data[of.FITTED.path]
     solved = len(np.unique(c[fitted == 0.0]))
-    return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, a fit tells the others"
+    return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, the others by a fit"
 
 
 def _form(row: Quantity) -> str:
     return "{}" if row.type == TEXT else "{:.4g}"
 
 
-def _told(row: Quantity, scaling: Scaling) -> Scaled:
+def _scaled(row: Quantity, scaling: Scaling) -> Scaled:
     symbol = plain(f"${row.symbol}$")
     return scaling(row, symbol) or as_archived(row, symbol)
 
 
 def _head(row: Quantity, scaling: Scaling) -> str:
-    told = _told(row, scaling)
-    return told.name + ("" if told.unit in ("1", "none") else f" ({told.unit})")
+    scaled = _scaled(row, scaling)
+    return scaled.name + ("" if scaled.unit in ("1", "none") else f" ({scaled.unit})")
 
 
 #: By method.
 _TENSION = validity.TENSION | layers.TENSION
 
-#: What tells where a solid yields and where answers do not hold, by what a table calls it.
+#: Quantities of yield and of where answers do not hold, by their labels in a table.
 _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
     ("largest von Mises", yielding.VON_MISES),
     ("  at X", yielding.VON_MISES_X),
@@ -236,14 +235,14 @@ _CALLED = {"exact": "closed form", "SIE": "singular integral equation", "FE": "f
 
 
 def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
-    """Where the solid yields, and where answers do not hold: least and most of all states."""
+    """Table of yield, and of where answers do not hold: least and most of all states."""
     rows = []
     for label, by_method in _LIMITS:
         for method, row in by_method.items():
-            told = scaling(row, "")
-            if row.path in data and told and np.isfinite(values := data[row.path]).any():
-                ends = (f"{end(told.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
-                unit = "a" if told.unit == row.unit and row in LENGTHS else told.unit
+            scaled = scaling(row, "")
+            if row.path in data and scaled and np.isfinite(values := data[row.path]).any():
+                ends = (f"{end(scaled.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
+                unit = "a" if scaled.unit == row.unit and row in LENGTHS else scaled.unit
                 rows.append([label, _METHODS[method], unit, *ends])
     notes = ["left, right: how far from X = -a and X = a; waves: how often one crosses the contact"]
     used = {row[1] for row in rows}
@@ -253,7 +252,7 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
 
 
 def loops_sheet(data: dict[str, Any]) -> Sheet:
-    """What the first friction laws take and bear."""
+    """Table of the first friction loops: work, breakaway force and stiffness."""
     varied = [
         row
         for path, row in parameters(data).items()
@@ -281,15 +280,15 @@ def loops_sheet(data: dict[str, Any]) -> Sheet:
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
-    """What the law remembers at the first states; no rows where that is nothing, or f itself."""
+    """Table of the law's inner state at the first states; no rows where there is none, or it is f."""
     z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
     rows: list[list[str]] = []
     count = min(0 if z is None else z.shape[1], _VARIABLES)
     if z is not None and z.any() and not (z.shape[1] == 1 and np.allclose(z[:, 0], f, rtol=1e-12)):
         columns = data[of.MOTION.path], data[of.POSITION.path], f, z
         for n, (motion, X, of_state, inner) in enumerate(zip(*(values[:LIMIT] for values in columns))):
-            told = (f"{value:.6g}" for value in inner[:count].tolist())
-            rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *told])
+            components = (f"{value:.6g}" for value in inner[:count].tolist())
+            rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *components])
     notes = ["z: dimensionless, as the law's file says"]
     if z is not None and z.shape[1] > count:
         notes.append(f"and {z.shape[1] - count} more; show --json lists all")
@@ -297,7 +296,7 @@ def inner_sheet(data: dict[str, Any]) -> Sheet:
     return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
-#: Of loops, by what a table calls them, and what it tells of the strokes.
+#: Quantities of loops by their labels in a table, and how it sums up the strokes.
 _OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
     ("work (J/m)", runs.LOOP_WORK, np.sum),
     ("closed loop (J/m)", runs.LOOP_CYCLE, float),
@@ -311,7 +310,7 @@ _OF_SLIDERS = (
 
 
 def sliders_sheet(data: dict[str, Any]) -> Sheet:
-    """Stick-slip of the first sliders, one for each law."""
+    """Table of the stick-slip of the first sliders, one for each law."""
     columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
     outcomes = map(str, data[runs.OUTCOME.path]) if columns else []
     rows = [
@@ -323,7 +322,7 @@ def sliders_sheet(data: dict[str, Any]) -> Sheet:
 
 
 def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
-    """Where the first starts have come to at the end, by the better method that there is.
+    """Table of the first starts at the end of the motion, by the better method that there is.
 
     Args:
         data: datasets by path.
@@ -345,12 +344,12 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
     rows = [
         [
             way,
-            *(_known(value, 5) for value in row),
-            _known(far, 3),
-            _when(seen, end, unit),
+            *(_number(value, 5) for value in row),
+            _number(far, 3),
+            _when(within, end, unit),
             _rounded(by_formula, unit),
         ]
-        for way, *row, far, seen, by_formula in zip(ways, *columns, near, data[over_time.APPROACH.path])
+        for way, *row, far, within, by_formula in zip(ways, *columns, near, data[over_time.APPROACH.path])
     ]
     heads = ["way", "c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady"]
     heads += ["off (%)", "within 1 % from", "by formula"]
@@ -364,19 +363,19 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
     return Sheet(title, heads, rows, notes)
 
 
-def _known(value: float, digits: int) -> str:
+def _number(value: float, digits: int) -> str:
     return "" if isnan(value) else f"{value:.{digits}g}"
 
 
 def _when(time: float, end: float, unit: float) -> str:
-    """A time over a/c_s: as it was met by the end, or about."""
+    """Time over a/c_s in words: as it was met by the end, or about."""
     if isnan(time):
         return "too short to tell"
     return f"{time:.3g} ({_seconds(time * unit)})" if time <= end else f"~ {_rounded(time, unit)}"
 
 
 def _rounded(time: float, unit: float) -> str:
-    """A time over a/c_s that is known to two digits."""
+    """Time over a/c_s that has two digits, in words."""
     return "" if isnan(time) else f"{float(f'{time:.1e}'):g} ({_seconds(time * unit, 2)})"
 
 

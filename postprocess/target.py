@@ -1,4 +1,4 @@
-"""Where a command writes: what is there already is not lost, and what it reads is not written over."""
+"""Targets that a command writes to: existing files are not lost, and inputs are not overwritten."""
 
 import mmap
 import os
@@ -15,14 +15,14 @@ from .errors import Occupied, UnwritableArchive, refused
 
 @dataclass(frozen=True)
 class Kind:
-    """Files that a command makes, and so may make again.
+    """Kind of file that a command makes, and so may make again.
 
     Attributes:
         noun: what messages call one.
-        looks: what the whole of one matches from its beginning.
-        option: how another name is given.
-        asked: may a file of another kind be replaced where that is asked for?
-        endings: that names may have, by which other programs know the kind; none for any.
+        looks: pattern that the whole of such a file matches from its beginning.
+        option: option by which another name is given.
+        asked: --overwrite may replace a file of another kind.
+        endings: endings that names may have, by which other programs know the kind; none for any.
     """
 
     noun: str
@@ -32,7 +32,7 @@ class Kind:
     endings: tuple[str, ...] = ()
 
     def of(self, path: Path) -> bool:
-        """Is a file one of these?"""
+        """True where a file is of this kind."""
         with open(files.open_file(path), "rb") as file:
             if not os.fstat(file.fileno()).st_size:  # which cannot be mapped
                 return bool(self.looks.match(b""))
@@ -44,9 +44,9 @@ def _kind(noun: str, looks: bytes, *endings: str) -> Kind:
     return Kind(noun, re.compile(looks, re.DOTALL), endings=endings)
 
 
-#: How HDF5 files begin, and how the names in the root of one go on whose only group is VTK's.
+#: First bytes of HDF5 files, and names in the root of one whose only group is VTK's.
 _HDF5, _VTK = rb"\x89HDF\r\n\x1a\n", rb".{,2000}HEAP.{,60}\0VTKHDF\0"
-#: With its digest before it, or without.
+#: Archives begin with their digest, or with HDF5's own bytes.
 ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
 FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK, ".hdf", ".vtkhdf")
 PAGE = _kind(
@@ -67,11 +67,11 @@ LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3}
 
 
 class Target:
-    """A file to be made; whether it may be is found out here, before any work is done.
+    """File to be made; whether it may be is checked here, before any work is done.
 
     Args:
         path: its name; where that is a link, what it points to is meant.
-        kind: of file that it replaces unasked; none at all if not given.
+        kind: kind of file that it replaces without --overwrite; none at all if not given.
         overwrite: it replaces any file.
         inputs: files that are read, and never replaced.
 
@@ -98,7 +98,7 @@ class Target:
         self._earlier = self._there()
         if not self._earlier and not self.place.parent.is_dir():
             raise Occupied(f"the folder {self.place.parent} does not exist; make it, or {self._another}")
-        if any(_same(self.place, one) for one in inputs):
+        if any(_same(self.place, file) for file in inputs):
             raise Occupied(f"{path} is also a file that this command reads or writes; {self._another}")
         if self._earlier:
             self._check_replaceable()
@@ -112,7 +112,7 @@ class Target:
         """Write the file, whole or not at all.
 
         Args:
-            data: all of it, or pieces, of which the next is asked for when one is written.
+            data: all of it, or pieces, each of which is made when the one before is written.
 
         Raises:
             UnwritableArchive: the file system refused, or something has appeared there.
@@ -150,7 +150,7 @@ class Target:
             raise refused(self.path, error, needed) from error
 
     def _followed(self) -> Path:
-        if not os.path.islink(self.path):  # what cannot be asked is none, and refused below
+        if not os.path.islink(self.path):  # what cannot be examined is no link, and is refused below
             return self.path
         try:
             return self.path.resolve(strict=True)
@@ -161,18 +161,18 @@ class Target:
             ) from None
 
     def _there(self) -> tuple[int, ...] | None:
-        """What tells the file of that name from any other; None if there is none."""
+        """Device, number, size and time of the file at :attr:`place`; None if there is none."""
         try:
-            found = os.lstat(self.place)
+            about = os.lstat(self.place)
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
             raise refused(self.path, error) from error
-        if not stat.S_ISREG(found.st_mode):
+        if not stat.S_ISREG(about.st_mode):
             raise Occupied(
-                f"{self.path} is {files.noun(found.st_mode)}, expected a file; {self._another}"
+                f"{self.path} is {files.noun(about.st_mode)}, expected a file; {self._another}"
             )
-        return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+        return about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns
 
     def _check_replaceable(self) -> None:
         if not os.access(self.place, os.W_OK):
@@ -191,12 +191,12 @@ class Target:
 
 
 def as_target(path: Path | Target) -> Target:
-    """A target; where it is a path alone, nothing is replaced."""
+    """Target of a path; where it is a path alone, nothing is replaced."""
     return path if isinstance(path, Target) else Target(path)
 
 
 class Folder:
-    """A folder to write several files into; it is made.
+    """Folder to write several files into; it is made.
 
     Args:
         path: its name.
@@ -218,7 +218,7 @@ class Folder:
             raise refused(path, error) from error
 
     def target(self, name: str, kind: Kind) -> Target:
-        """A file in it.
+        """Target of a file in the folder.
 
         Raises:
             Occupied: something is there that may not be replaced.
@@ -226,9 +226,9 @@ class Folder:
         return Target(self.path / name, kind, self._overwrite, self._inputs)
 
 
-def _same(one: Path, other: Path) -> bool:
-    """Are two names those of one file, or would they be?"""
+def _same(path: Path, other: Path) -> bool:
+    """True where two names are of one file, or would be."""
     try:
-        return one.samefile(other)
+        return path.samefile(other)
     except OSError:
-        return os.path.realpath(one) == os.path.realpath(other)
+        return os.path.realpath(path) == os.path.realpath(other)

@@ -1,4 +1,4 @@
-"""Where the answers of a run do not hold, in words; all of it is archived state by state."""
+"""Sentences where the answers of a run do not hold; all of it is archived state by state."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from .quantities.states import RATIO, SPEED
 #: Wave crossings in a stroke below which a steady state is not reached.
 FEW = 30.0
 
-#: Share of the half-width from which on a zone at an edge is told of.
+#: Share of the half-width from which on a zone at an edge is reported.
 WIDE = 0.01
 
 
 @dataclass(frozen=True)
 class Steady:
-    """How long a start from rest takes to be steady.
+    """Time that a start from rest takes to be steady, against that of a stroke.
 
     Attributes:
         within: time over a/c_s from which on K_I and the pressure's centre are within 1 % of those of
@@ -32,12 +32,12 @@ class Steady:
     unit: float
 
     def words(self, c: float, g: float, crossings: float, too_short: bool = False) -> str:
-        """Against a stroke in which a wave crosses the contact so often; "" where it never is steady.
+        """Comparison with a stroke that a wave crosses so often, in words; "" where it never is steady.
 
         Args:
             c, g: speed over c_s and σ_XY/σ_YY.
             crossings: of the stroke.
-            too_short: "" where it is not, too.
+            too_short: say nothing of a stroke that is long enough.
         """
         needed, lasts = self.within(c, g), 2.0 * crossings
         if not isfinite(needed) or (too_short and lasts >= needed):
@@ -49,10 +49,10 @@ class Steady:
 
 
 class Validity:
-    """Watches the datasets of states, some at a time.
+    """Collects where answers do not hold from the datasets of states, some at a time.
 
     Args:
-        steady: tells how long steady motion takes, where that is known.
+        steady: time that steady motion takes; None where it is not known.
     """
 
     def __init__(self, steady: Steady | None = None) -> None:
@@ -96,11 +96,13 @@ class Validity:
         if len(few):
             shortest = few[np.lexsort([-np.abs(few[:, 1]), few[:, 2]])[0]]
             self._shortest = min(
-                self._shortest or (0.0, 0.0, np.inf), tuple(shortest), key=lambda one: one[2]
+                self._shortest or (0.0, 0.0, np.inf), tuple(shortest), key=lambda stroke: stroke[2]
             )
         if len(enough):
             fastest = enough[np.lexsort([-np.abs(enough[:, 1]), -enough[:, 0]])[0]]
-            self._fastest = max(self._fastest or (-1.0, 0.0, 0.0), tuple(fastest), key=lambda one: one[0])
+            self._fastest = max(
+                self._fastest or (-1.0, 0.0, 0.0), tuple(fastest), key=lambda stroke: stroke[0]
+            )
 
     def _count(self, name: str, bad: NDArray, size: NDArray) -> None:
         if bad.any():
@@ -112,15 +114,15 @@ class Validity:
         return [*self._words()]
 
     def _words(self) -> Iterator[str]:
-        told = {name: f"{self._worst[name]:.3g}" for name in self._worst}
-        some = {name: f"{n} state{'s' * (n > 1)}" for name, n in self._states.items()}
-        if "crossings" in told:
+        worst = {name: f"{self._worst[name]:.3g}" for name in self._worst}
+        states = {name: f"{n} state{'s' * (n > 1)}" for name, n in self._states.items()}
+        if "crossings" in worst:
             text = self._steady.words(*self._shortest) if self._steady and self._shortest else ""
             yield (
                 "in a stroke a shear wave crosses the contact "
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
-                f"{some['crossings']}: the steady state that is told is a limit which such a stroke does "
-                "not reach" + f"; {text}" * bool(text)
+                f"{states['crossings']}: the steady state that is told is a limit which such a stroke "
+                "does not reach" + f"; {text}" * bool(text)
             )
         if (
             self._steady
@@ -128,24 +130,24 @@ class Validity:
             and (text := self._steady.words(*self._fastest, too_short=True))
         ):
             yield f"the steady state is told, but {text}"
-        if "ratio" in told:
+        if "ratio" in worst:
             least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
             yield (
-                f"|σ_XY/σ_YY| is up to {told['ratio']}, and at least {least} in {some['ratio']}: from "
+                f"|σ_XY/σ_YY| is up to {worst['ratio']}, and at least {least} in {states['ratio']}: from "
                 "there on such an interface may flutter at short waves"
             )
-        if "slip" in told:
+        if "slip" in worst:
             yield (
-                f"slip has turned round up to {told['slip']} a from an edge, beyond {WIDE:g} a in "
-                f"{some['slip']}: friction points the other way there"
+                f"slip has turned round up to {worst['slip']} a from an edge, beyond {WIDE:g} a in "
+                f"{states['slip']}: friction points the other way there"
             )
-        if "strain" in told:
+        if "strain" in worst:
             yield (
-                f"strains are beyond 5 % up to {told['strain']} a from an edge, beyond {WIDE:g} a in "
-                f"{some['strain']}: the solid is not linear there"
+                f"strains are beyond 5 % up to {worst['strain']} a from an edge, beyond {WIDE:g} a in "
+                f"{states['strain']}: the solid is not linear there"
             )
-        if "tension" in told:
+        if "tension" in worst:
             yield (
-                f"the punch would have to pull, by up to {told['tension']} N/(2a), at X/a = "
-                f"{self._where:.4g}, in {some['tension']}: it would lift off there"
+                f"the punch would have to pull, by up to {worst['tension']} N/(2a), at X/a = "
+                f"{self._where:.4g}, in {states['tension']}: it would lift off there"
             )

@@ -1,19 +1,15 @@
-"""Where a solid yields under a punch or a pressure, and how much that carries until it does.
+"""Yield by von Mises under a punch or a pressure: where, how deep, and the load at first yield.
 
-What the stresses of some states mean for a solid that yields by von Mises.
-
-The largest stress below a pressure, and how deep a stress is reached.
-
+**Finite stresses.** The largest stress below a pressure is sought, and how deep a stress is reached.
 Stresses vary over the distance to the pressure's knots, all of which lie on the surface. So the solid is
-looked at in depths that double, at places along X half the depth apart: the finer the shallower,
+sampled in depths that double, at places along X half the depth apart: the finer the shallower,
 and only where knots are as near to one another; and on the surface itself, between all knots. Where a
 contact ends, or its punch has a kink, stresses rise like a power of the distance: there the solid is
-looked at in circles whose radii grow, and the stress at the place itself is that of the limit.
+sampled in circles whose radii grow, and the stress at the place itself is that of the limit.
 
-The yielded zones at the two sharp edges of a punch, where stresses are infinite: reach and depth.
-
-Seen from an edge, every ray leaves the zone for good at one place. The farthest and the deepest of these
-are those of the zone, whatever its shape.
+**Sharp edges.** At the two edges of a punch stresses are infinite, and yielded zones have a reach and a
+depth. Seen from an edge, every ray leaves the zone for good at one place. The farthest and the deepest of
+these are those of the zone, whatever its shape.
 """
 
 from collections.abc import Callable
@@ -31,8 +27,8 @@ from galinx.solvers.solution import Body, Turns
 
 from .stresses import maximum_shear, von_mises
 
-#: Distances over a between which rays are looked along. Nearer, stresses are continued; farther, a punch
-#: no longer carries such a load.
+#: Distances over a between which rays are sampled. Nearer, stresses are continued; farther, a punch no
+#: longer carries such a load.
 NEAREST, FARTHEST = 1e-4, 10.0
 
 #: Angles from the free surface to the punch, and places along a ray.
@@ -44,7 +40,7 @@ _EDGE_ROUNDS, _EDGE_FINER = 3, 8.0
 #: Steps to the place on a ray where yield is reached, and how far its logarithm may be off.
 _STEPS, _OFF = 5, 1e-8
 
-#: Both edges, each for reach and for depth: the side of the punch, and which of the two.
+#: Both edges, for reach and then for depth: the side of the punch, and whether it is a depth.
 _SIDE, _DEEP = np.array([-1.0, 1.0, -1.0, 1.0]), np.array([False, False, True, True])
 
 #: Stress over the yield strength at points (states or 1, n, 2) over a, of every state: (states, n).
@@ -52,35 +48,35 @@ Stress = Callable[[NDArray], NDArray]
 
 
 def edge_places() -> NDArray[np.float64]:
-    """Where every state is looked at, ray by ray, over a: from X = -a, then from X = a, (n, 2)."""
+    """Places over a at which every state is sampled, ray by ray: from X = -a, then from X = a, (n, 2)."""
     rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in (-1.0, 1.0))
     return np.concatenate([*rays])
 
 
 @dataclass(frozen=True)
 class Zones:
-    """Where yield is passed, over a.
+    """Reach and depth over a of the zones in which yield is passed.
 
     Attributes:
         reach: largest distance from X = -a and from X = a, each on its side of the middle, (states, 2).
-        depth: (states,). NaN, in both, where a zone goes on beyond ``FARTHEST``.
+        depth: largest depth, (states,). NaN, in both, where a zone goes on beyond ``FARTHEST``.
     """
 
     reach: NDArray[np.float64]
     depth: NDArray[np.float64]
 
 
-def zones(stress: Stress, there: NDArray, exponents: NDArray) -> Zones:
-    """Zones in which yield is passed.
+def zones(stress: Stress, stresses: NDArray, exponents: NDArray) -> Zones:
+    """Reach and depth of the zones in which yield is passed, from the stresses along rays.
 
     Args:
-        stress: von Mises.
-        there: the same at :func:`places`, (states, n).
-        exponents: of the distance, of stresses next to X = -a and to X = a, (states, 2).
+        stress: von Mises over the yield strength.
+        stresses: that stress at :func:`places`, (states, n).
+        exponents: power of the distance of stresses next to X = -a and to X = a, (states, 2).
     """
     rays = _Rays(stress, -np.tile(exponents, 2))
-    at_edges = _log(there).reshape(len(there), 2, *_grid().shape)
-    t, slope, beyond = (np.tile(found, (1, 2, 1)) for found in rays.on_grid(at_edges))
+    at_edges = _log(stresses).reshape(len(stresses), 2, *_grid().shape)
+    t, slope, beyond = (np.tile(values, (1, 2, 1)) for values in rays.on_grid(at_edges))
     endless = np.asarray(beyond.any(axis=(1, 2)))
     size = np.where(endless[:, None], np.nan, _largest(rays, t, slope))
     return Zones(size[:, ~_DEEP], size[:, _DEEP].max(axis=1))
@@ -98,7 +94,7 @@ def _end(φ: NDArray) -> NDArray[np.float64]:
 
 
 def _grid() -> NDArray[np.float64]:
-    """Logarithms of the distances at which every ray is looked at, (angles, places)."""
+    """Logarithms of the distances at which every ray is sampled, (angles, places)."""
     return np.linspace(np.log(NEAREST), _end(_ANGLES), _PLACES, axis=-1)
 
 
@@ -107,7 +103,7 @@ def _log(stress: NDArray) -> NDArray[np.float64]:
 
 
 def _height(φ: NDArray) -> NDArray[np.float64]:
-    """What a distance is multiplied by, (states, 4, n): 1 for reach."""
+    """Factor of a distance, (states, 4, n): 1 for reach, the sine of the angle for depth."""
     return np.where(_DEEP[:, None], np.sin(φ), 1.0)
 
 
@@ -124,7 +120,7 @@ class _Rays:
     power: NDArray[np.float64]
 
     def on_grid(self, L: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Where rays leave the zone, about, and how fast stresses fall there.
+        """Approximate places where rays leave the zone, and how fast stresses fall there.
 
         Args:
             L: logarithm of the stress along the rays of the grid, (states, 2, angles, places).
@@ -136,14 +132,14 @@ class _Rays:
         passed = L >= 0.0
         last = np.where(passed.any(axis=-1), end - passed[..., ::-1].argmax(axis=-1), -1)
         k = np.clip(last, 0, end - 1)
-        here, next_ = (np.take_along_axis(L, i[..., None], -1)[..., 0] for i in (k, k + 1))
-        slope = np.minimum((next_ - here) / (t[j, k + 1] - t[j, k]), -1e-3)
+        L_in, L_out = (np.take_along_axis(L, i[..., None], -1)[..., 0] for i in (k, k + 1))
+        slope = np.minimum((L_out - L_in) / (t[j, k + 1] - t[j, k]), -1e-3)
         slope = np.where(last < 0, -self.power[:, :2, None], slope)
-        out = np.where(last == end, t[:, -1], t[j, k] - here / slope)
+        out = np.where(last == end, t[:, -1], t[j, k] - L_in / slope)
         return out, slope, (last == end) & (t[:, -1] >= np.log(FARTHEST))
 
     def outermost(self, φ: NDArray, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
-        """Where rays leave the zone: t at angles (states, 4, n), -inf where it is not found.
+        """Logarithms t of the distances at which rays leave the zone, (states, 4, n); -inf for none.
 
         Args:
             φ: angles.
@@ -161,7 +157,7 @@ class _Rays:
         return np.where(np.abs(L) <= _OFF, np.minimum(t - L / slope, _end(φ)), -np.inf)
 
     def _logarithm(self, φ: NDArray, t: NDArray) -> NDArray[np.float64]:
-        """Of the stress; beyond a ray's end it falls on.
+        """Logarithm of the stress at angles φ and t, (states, 4, n); beyond a ray's end it falls on.
 
         Nearer than ``NEAREST`` it is a power of the distance r, times 1 + B r.
         """
@@ -169,8 +165,8 @@ class _Rays:
         r = np.exp(np.clip(t, first, end))
         both = np.concatenate([r, np.full_like(r, 2.0 * NEAREST)], axis=-1)
         points = _points(_SIDE[:, None], np.concatenate([φ, φ], axis=-1), both)
-        found = _log(self.stress(points.reshape(len(φ), -1, 2))).reshape(both.shape)
-        L, second = np.split(found, 2, axis=-1)
+        both_logs = _log(self.stress(points.reshape(len(φ), -1, 2))).reshape(both.shape)
+        L, second = np.split(both_logs, 2, axis=-1)
         p, nearer = self.power[..., None], np.maximum(first - t, 0.0)
         B = (second - L + p * np.log(2.0)) / NEAREST
         near = L + p * nearer - B * NEAREST * -np.expm1(-nearer)
@@ -188,15 +184,15 @@ def _largest(rays: _Rays, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
     best = np.argmax(np.exp(t - unit[..., None]) * _height(_ANGLES), axis=-1)[..., None]
     guess, slope = (np.take_along_axis(x, best, -1)[..., 0] for x in (t, slope))
     φ, h = _ANGLES[best], _ANGLES[1]
-    size, known = (np.exp(guess - unit)[..., None] * _height(φ))[..., 0], np.zeros(guess.shape, bool)
+    size, solved = (np.exp(guess - unit)[..., None] * _height(φ))[..., 0], np.zeros(guess.shape, bool)
     for _ in range(_EDGE_ROUNDS):
         three = np.clip(φ, h, np.pi - h) + h * np.array([-1.0, 0.0, 1.0])
         three = np.clip(three, 0.0, np.pi)
         at = rays.outermost(three, guess, slope)
         sizes = np.where(np.isfinite(at), np.exp(at - unit[..., None]) * _height(three), -np.inf)
         top = sizes.max(axis=-1)
-        better = np.isfinite(top) & (~known | (top > size))  # than interpolated, or than before
-        size, known = np.where(better, top, size), known | np.isfinite(top)
+        better = np.isfinite(top) & (~solved | (top > size))  # than interpolated, or than before
+        size, solved = np.where(better, top, size), solved | np.isfinite(top)
         where = sizes.argmax(axis=-1)[..., None]
         guess = np.where(better, np.take_along_axis(at, where, -1)[..., 0], guess)
         φ = three[..., 1:2] + h * vertex(sizes)[..., None]
@@ -206,14 +202,14 @@ def _largest(rays: _Rays, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
 
 def vertex(values: NDArray) -> NDArray[np.float64]:
     """Place in [-1, 1] of the largest value of the parabola through values at -1, 0, 1, (..., 3)."""
-    left, middle, right = np.moveaxis(values, -1, 0)
+    y_left, y, y_right = np.moveaxis(values, -1, 0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        bend = left - 2.0 * middle + right
-        top = np.clip((left - right) / (2.0 * bend), -1.0, 1.0)
+        bend = y_left - 2.0 * y + y_right
+        top = np.clip((y_left - y_right) / (2.0 * bend), -1.0, 1.0)
     return np.where(np.isfinite(top) & (bend < 0.0), top, values.argmax(axis=-1) - 1.0)
 
 
-#: Depth over a to which the solid is looked at.
+#: Depth over a to which the solid is sampled.
 _DEEPEST = 10.0
 
 #: Places along X: their distance over the depth; how far from a knot, in these; and how much wider than
@@ -227,8 +223,8 @@ _BETWEEN = 4
 #: smaller one, and directions from there, along the surface and down.
 _WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
 
-#: Places from which the largest is looked for, and most rounds in which it is; by how much the step falls
-#: where it is near, and below which share of the first a round that finds nothing better is the last.
+#: Places from which the largest is sought, and most rounds of it; by how much the step falls where it is
+#: near, and below which share of the first a round that finds nothing better is the last.
 _STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
 #: Rounds after which the best starts alone go on, and how many these are.
 _ALL_OF_THEM, _BEST = 3, 3
@@ -236,14 +232,12 @@ _ALL_OF_THEM, _BEST = 3, 3
 #: largest.
 _OWN, _LEAST = 1.5, 0.7
 
-#: Halvings in which a depth is found, and what the distance of places along X falls by in each: it has to
-#: follow a largest stress that moves as the depth changes.
+#: Halvings towards a depth, and the factor of the distance of places along X in each: it has to follow a
+#: largest stress that moves as the depth changes.
 _HALVINGS, _NEARER = 30, 0.7
 
-#: A stress at points (states or 1, n, 2) over a, of every state: (states, n).
-
 _STENCIL = np.array([(u, w) for u in (-1.0, 0.0, 1.0) for w in (-1.0, 0.0, 1.0)])
-#: From values on the stencil to 1, u, w, u², uw, w².
+#: Map from values on the stencil to coefficients of 1, u, w, u², uw, w².
 _FIT = np.linalg.pinv(
     np.stack(
         [np.ones(9), *_STENCIL.T, _STENCIL[:, 0] ** 2, _STENCIL.prod(axis=1), _STENCIL[:, 1] ** 2],
@@ -254,7 +248,7 @@ _FIT = np.linalg.pinv(
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value, and where it is over a, (states,) each."""
+    """Largest value of a stress, and its place over a, (states,) each."""
 
     value: NDArray[np.float64]
     X: NDArray[np.float64]
@@ -263,7 +257,7 @@ class Peak:
 
 @dataclass(frozen=True)
 class Levels:
-    """Where the solid is looked at below a pressure.
+    """Levels of depth below a pressure at which the solid is sampled.
 
     Attributes:
         knots: of the pressure over a, in their order.
@@ -273,45 +267,45 @@ class Levels:
 
     @cached_property
     def _by_level(self) -> list[tuple[NDArray, NDArray, NDArray]]:
-        """X, Y, and a step from place to place, of every level."""
+        """X and Y of the places of every level over a, and steps between them, (n,) each."""
         width = np.diff(self.knots)
         narrow = np.minimum(np.append(width, np.inf), np.append(np.inf, width))
-        found = [_on_surface(self.knots, width)]
+        levels = [_on_surface(self.knots, width)]
         y = _DEEPEST
         while y > width.min() / _SHALLOW:
             apart = _APART * y
             near = self.knots[narrow < _SHALLOW * y][:, None] / apart
             X = apart * np.unique(np.round(near) + np.arange(-_AROUND, _AROUND + 1.0))
-            found.insert(1, (X, np.full(len(X), -y), np.full(len(X), apart)))
+            levels.insert(1, (X, np.full(len(X), -y), np.full(len(X), apart)))
             y /= 2.0
-        return found
+        return levels
 
     @cached_property
     def places(self) -> NDArray[np.float64]:
-        """All of them, level by level from the surface on, (n, 2)."""
+        """Places over a of all levels, from the surface on, (n, 2)."""
         return np.concatenate([np.column_stack([X, Y]) for X, Y, _ in self._by_level])
 
     @cached_property
     def steps(self) -> NDArray[np.float64]:
-        """From each to its neighbours, (n,)."""
+        """Distances over a from each place to its neighbours, (n,)."""
         return np.concatenate([step for *_, step in self._by_level])
 
-    def best(self, there: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Number of the best place of each level, and the value there, (states, levels).
+    def best(self, values: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Number of the best place of each level, and the value at it, (states, levels) each.
 
         Args:
-            there: at :attr:`places`, (states, n).
+            values: stress at :attr:`places`, (states, n).
         """
         first = np.cumsum([0, *(len(X) for X, *_ in self._by_level)])
-        levels = [there[:, i:j].argmax(axis=1) + i for i, j in pairwise(first)]
+        levels = [values[:, i:j].argmax(axis=1) + i for i, j in pairwise(first)]
         best = np.stack(levels, axis=1)
-        return best, np.take_along_axis(there, best, 1)
+        return best, np.take_along_axis(values, best, 1)
 
     def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
         """Depth over a of the deepest place at which a stress is 1 or more, 0 where it is so nowhere.
 
         Args:
-            stress, there, peak: as of :meth:`peak`.
+            stress, there, peak: as in :func:`peak`.
 
         Returns:
             (states,); NaN where the zone goes on beyond all places.
@@ -326,13 +320,13 @@ class Levels:
         inner, X = np.where(of_peak, -peak.Y, inner), np.where(of_peak, peak.X, X)
         depths = np.array([-level[0] for _, level, _ in self._by_level])
         outer = depths[np.minimum(np.searchsorted(depths, inner, side="right"), len(depths) - 1)]
-        found = _deepest(stress, X, inner, outer)
-        found = np.where(passed[:, -1], np.nan, found)
-        return np.where(somewhere | (peak.value >= 1.0), found, 0.0)
+        depth = _deepest(stress, X, inner, outer)
+        depth = np.where(passed[:, -1], np.nan, depth)
+        return np.where(somewhere | (peak.value >= 1.0), depth, 0.0)
 
 
 def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places around others on the surface, and a step from each to its neighbours.
+    """Places around others on the surface, and distances from each to its neighbours.
 
     Args:
         centres: X over a of those of every state, (states, k); NaN for none.
@@ -350,13 +344,13 @@ def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDAr
 
 
 def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Peak:
-    """The largest of all.
+    """Largest stress of all places, and where it is.
 
     Args:
-        stress: of which.
-        places: where states were looked at, of all (1, n, 2) or of each (states, n, 2).
-        steps: from each to its neighbours, (n,).
-        there: the stress at these, (states, n).
+        stress: the stress.
+        places: places over a sampled for all states (1, n, 2) or for each (states, n, 2).
+        steps: distances from each to its neighbours, (n,).
+        there: stress at these, (states, n).
     """
     starts = _starts(places, steps, there)
     climb = _Climb(np.take_along_axis(places, starts[..., None], 1), steps[starts])
@@ -372,29 +366,31 @@ def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Pea
 
 def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64]:
     """Numbers of the best places without a better one around, (states, ``_STARTS``)."""
-    found = np.empty((len(there), _STARTS), dtype=np.int64)
+    numbers = np.empty((len(there), _STARTS), dtype=np.int64)
     for i, values in enumerate(there):
         if i < len(places):
             distance = np.abs(places[i][:, None] - places[i]).max(axis=-1)
             around = distance <= _OWN * steps[:, None]
         tops = np.flatnonzero(values >= np.where(around, values, -np.inf).max(axis=1))
         tops = tops[np.argsort(-values[tops], kind="stable")][:_STARTS]
-        found[i] = np.resize(tops[values[tops] >= _LEAST * values[tops[0]]], _STARTS)
-    return found
+        numbers[i] = np.resize(tops[values[tops] >= _LEAST * values[tops[0]]], _STARTS)
+    return numbers
 
 
 def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """The knots, places between them, and beside both ends."""
+    """Places on the surface: the knots, between them, and beside both ends; X, Y and steps, (n,) each."""
     share = np.arange(_BETWEEN) / _BETWEEN
     between = (knots[:-1, None] + width[:, None] * share).ravel()
-    left, right = (np.geomspace(w / _BETWEEN, _DEEPEST, 40) for w in width[[0, -1]])
-    X = np.concatenate([knots[0] - left[::-1], between, knots[-1:], knots[-1] + right])
-    step = np.concatenate([left[::-1], np.repeat(width, _BETWEEN), width[-1:], right]) / (2 * _BETWEEN)
+    r_left, r_right = (np.geomspace(w / _BETWEEN, _DEEPEST, 40) for w in width[[0, -1]])
+    X = np.concatenate([knots[0] - r_left[::-1], between, knots[-1:], knots[-1] + r_right])
+    step = np.concatenate([r_left[::-1], np.repeat(width, _BETWEEN), width[-1:], r_right]) / (
+        2 * _BETWEEN
+    )
     return X, 0.0 * X, step
 
 
 class _Climb:
-    """The way from some places up to the largest value near each.
+    """Climb from some places up to the largest value near each.
 
     A quadratic function is fitted to the values at nine places. Where these turn out to be no better
     than the best before, as at a kink, the next nine lie closer around that.
@@ -405,7 +401,7 @@ class _Climb:
 
     Attributes:
         top, value: the best place, and the value there.
-        done: would more rounds find nothing better?
+        done: more rounds would find nothing better.
     """
 
     def __init__(self, places: NDArray, steps: NDArray) -> None:
@@ -415,16 +411,16 @@ class _Climb:
 
     def keep(self, count: int) -> None:
         """Go on from so many starts, those with the largest values."""
-        some = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
+        starts = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
         self.value, self._h, self._least = (
-            np.take_along_axis(x, some, 1) for x in (self.value, self._h, self._least)
+            np.take_along_axis(x, starts, 1) for x in (self.value, self._h, self._least)
         )
         self.top, self._middle = (
-            np.take_along_axis(x, some[..., None], 1) for x in (self.top, self._middle)
+            np.take_along_axis(x, starts[..., None], 1) for x in (self.top, self._middle)
         )
 
     def take(self, stress: Stress) -> None:
-        """Look at nine places, and step."""
+        """Evaluate the stress at nine places around each, and step."""
         h = self._h[..., None]
         middle = self._middle
         middle[..., 1] = np.minimum(middle[..., 1], -self._h)  # none lies above the surface
@@ -438,8 +434,8 @@ class _Climb:
         at = np.take_along_axis(nine, where[..., None, None], 2)[:, :, 0]
         self.top = np.where(improved[..., None], at, self.top)
         self.value = np.where(improved, largest, self.value)
-        known = np.isfinite(values).all(axis=-1, keepdims=True)
-        step = np.where(known, _summit(values), _STENCIL[where])
+        fitted = np.isfinite(values).all(axis=-1, keepdims=True)
+        step = np.where(fitted, _summit(values), _STENCIL[where])
         step[..., 1] = np.minimum(step[..., 1], -middle[..., 1] / self._h)
         self._middle = np.where(improved[..., None], middle + h * step, self.top)
         near = ~improved | (np.abs(step).max(axis=-1) < 1.0)
@@ -448,7 +444,7 @@ class _Climb:
 
 
 def _summit(values: NDArray) -> NDArray[np.float64]:
-    """Where the fitted quadratic function is largest, in steps; the best of the nine where nowhere."""
+    """Place of the fitted quadratic function's largest value, in steps; without one the best of nine."""
     with np.errstate(invalid="ignore", divide="ignore"):
         _, u, w, uu, uw, ww = np.moveaxis(values @ _FIT.T, -1, 0)
         determinant = 4.0 * uu * ww - uw**2
@@ -460,15 +456,15 @@ def _summit(values: NDArray) -> NDArray[np.float64]:
 
 
 def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDArray[np.float64]:
-    """Between two depths, of which the inner passes 1 somewhere near X, the last that does: (states,)."""
+    """Depth between two, the inner of which passes 1 near X, of the last place that does, (states,)."""
     apart = (outer - inner) * _APART
     for _ in range(_HALVINGS):
         y = (inner + outer) / 2.0
         three = X[:, None] + apart[:, None] * np.array([-1.0, 0.0, 1.0])
         values = stress(np.stack([three, -y[:, None] + 0.0 * three], axis=-1))
         u = vertex(values)
-        left, middle, right = values.T
-        top = middle + (right - left) * u / 2.0 + (left - 2.0 * middle + right) * u**2 / 2.0
+        y_left, y_middle, y_right = values.T
+        top = y_middle + (y_right - y_left) * u / 2.0 + (y_left - 2.0 * y_middle + y_right) * u**2 / 2.0
         passed = np.maximum(top, values.max(axis=1)) >= 1.0
         X = X + apart * u
         inner, outer = np.where(passed, y, inner), np.where(passed, outer, y)
@@ -480,22 +476,22 @@ def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDAr
 Field = Callable[[NDArray], NDArray]
 
 
-#: Of a pressure without a jump, which ends within: at its very ends finite elements have no gradients.
+#: Knots of a pressure without a jump, off its very ends, at which finite elements have no gradients.
 _SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
 
 
-#: Rounding of a distance.
+#: Factor that covers the rounding of a distance.
 _HARDLY = 1.0 - 1e-9
 
 
 def places(body: Body) -> NDArray[np.float64]:
-    """Where the stresses of every state are looked at, over a, (n, 2)."""
+    """Places over a at which the stresses of every state are sampled, (n, 2)."""
     knots = _knots(body)
     return edge_places() if knots is None else Levels(knots).places
 
 
 def _knots(body: Body) -> NDArray[np.float64] | None:
-    """Where a pressure that is finite may change its course over a; None of a punch with edges."""
+    """Places over a where a finite pressure may change its course; None of a punch with edges."""
     if body.pressure:
         return body.pressure.knots
     return _SMOOTH if body.finite else None
@@ -506,12 +502,12 @@ class Strength:
 
     Args:
         field: their stresses, of one method.
-        body: what slides over what; its yield strength is known.
+        body: punch or pressure, and solid with a yield strength.
         response: of the half-plane at that speed.
         g: σ_XY/σ_YY under the punch, (states,).
         local: exponents α at X = a and β at X = -a, (states,); of a punch.
-        half_width: of each state [m], (states,), where ends are found.
-        turns: stresses by the limit, where they have a power of the distance.
+        half_width: of each state's contact [m], (states,), with free ends.
+        turns: limits of stresses at places where they have a power of the distance.
         nearest: distance over a from such places from which on the field is good.
     """
 
@@ -590,9 +586,9 @@ class Strength:
 
     def _both(self, σ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Von Mises and largest shear stress, (states, n), of stresses (3, states, n)."""
-        found = self._von_mises_of(σ), maximum_shear(*σ)
-        # At a jump, where they are not known, there is nothing to climb to.
-        of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in found)
+        invariants = self._von_mises_of(σ), maximum_shear(*σ)
+        # At a jump, where they are NaN, there is nothing to climb to.
+        of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in invariants)
         return of_mises, of_shear
 
     def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
@@ -630,20 +626,20 @@ class Strength:
         return off
 
     def _peak(self, stress: Callable[[NDArray], NDArray], which: int) -> Peak:
-        """Of von Mises (0) or of the largest shear stress (1)."""
+        """Peak of the von Mises stress (0) or of the largest shear stress (1)."""
         at, steps, there = self._levels.places[None], self._levels.steps, self._invariants[which]
         if self._near_turns and self._turns:
             around, more, near = self._near_turns
             at = np.concatenate([np.broadcast_to(at, (len(around), *at.shape[1:])), around], axis=1)
             steps, there = np.append(steps, more), np.concatenate([there, near[which]], axis=1)
-        found = peak(self._off_turns(stress), at, steps, there)
+        highest = peak(self._off_turns(stress), at, steps, there)
         if self._turns:
             limit = self._both(self._turns.σ)[which]
             best, rows = limit.argmax(axis=1), np.arange(len(limit))
-            higher = limit[rows, best] > found.value
-            found = Peak(
-                np.where(higher, limit[rows, best], found.value),
-                np.where(higher, self._turns.X[rows, best], found.X),
-                np.where(higher, 0.0, found.Y),
+            higher = limit[rows, best] > highest.value
+            highest = Peak(
+                np.where(higher, limit[rows, best], highest.value),
+                np.where(higher, self._turns.X[rows, best], highest.X),
+                np.where(higher, 0.0, highest.Y),
             )
-        return Peak(*(np.where(self.infinite, np.nan, x) for x in (found.value, found.X, found.Y)))
+        return Peak(*(np.where(self.infinite, np.nan, x) for x in (highest.value, highest.X, highest.Y)))

@@ -1,7 +1,4 @@
-"""Sheets of panels in inches, and how they become files or text.
-
-Figures that notebooks show.
-"""
+"""Canvas of figures: sheets of panels in inches, their letters and legends, and files made of them."""
 
 import os
 from base64 import b64encode
@@ -22,35 +19,35 @@ from numpy.typing import NDArray
 from ..target import PDF, PNG, SVG, Folder, Kind, Target
 from .style import DPI, GREY, SMALL, Look, plain, styled
 
-#: What in a file says who made it, and the kind of file, by the format's ending.
+#: Key of a file's metadata that names its maker, and the kind of file, by the format's ending.
 FORMATS: dict[str, tuple[str, Kind]] = {
     "pdf": ("Creator", PDF),
     "png": ("Software", PNG),
     "svg": ("Creator", SVG),
 }
 
-#: Formats where none is asked for: text that stays text, and pixels for everything else.
+#: Formats by default: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
 
 #: Figures from which on a process of its own draws a format sooner.
 _WORTH_A_PROCESS = 4
 
-#: Least size of a panel in which something can be seen [in].
+#: Least size of a legible panel [in].
 _LEAST = 0.35
 
-#: About how wide a letter of a legend is, what stands before and after its text, and a line [in].
+#: Approximate width of a legend's letter, of the space beside its text, and height of a line [in].
 _LETTER, _BESIDE, _LINE = 0.048, 0.62, 0.155
 
 
 class Size(NamedTuple):
-    """Of a figure [in]; without a height the figure takes what it needs."""
+    """Width and height of a figure [in]; without a height the figure takes what it needs."""
 
     width: float
     height: float | None = None
 
 
 class Room(NamedTuple):
-    """What is left free around panels and between them [in]."""
+    """Free space around panels and between them [in]."""
 
     left: float = 0.5
     right: float = 0.08
@@ -61,13 +58,13 @@ class Room(NamedTuple):
 
 
 class TooSmall(ValueError):
-    """A figure does not fit on the size that is asked for."""
+    """A figure does not fit on its prescribed size."""
 
 
 def panels(
     rows: int, columns: int, size: Size, high: float, room: Room, heights: Sequence[float] | None = None
 ) -> tuple[Figure, NDArray]:
-    """A figure with a grid of axes, (rows, columns).
+    """Figure with a grid of axes, (rows, columns).
 
     Args:
         rows, columns: of the grid.
@@ -77,7 +74,7 @@ def panels(
         heights: of the rows over each other, all the same if not given, (rows,).
 
     Raises:
-        TooSmall: nothing could be seen; the message says how large the figure has to be.
+        TooSmall: panels would not be legible; the message says how large the figure has to be.
     """
     beside = room.left + room.right + (columns - 1) * room.across
     above = room.bottom + room.top + (rows - 1) * room.down
@@ -106,19 +103,19 @@ def lettered(axes: Iterable[Axes], titles: Sequence[str] = (), above: bool = Fal
     Args:
         axes: the panels.
         titles: of the first of them.
-        above: is something drawn above panels that titles have to make way for? To look for it takes
+        above: something is drawn above panels, and titles have to make way for it. Measuring it takes
             matplotlib a tenth of all its time.
     """
     axes = list(axes)
-    told = [*titles, *[""] * (len(axes) - len(titles))]
-    for n, (axis, title) in enumerate(zip(axes, told)):
+    all_titles = [*titles, *[""] * (len(axes) - len(titles))]
+    for n, (axis, title) in enumerate(zip(axes, all_titles)):
         letter = f"({chr(97 + n)})  " if len(axes) > 1 else ""
         if letter or title:
             axis.set_title(letter + title, y=None if above else 1.0)
 
 
 class Legend:
-    """A legend below all panels, which meets no curve.
+    """Legend below all panels, which meets no curve.
 
     Args:
         handles: lines with labels.
@@ -130,7 +127,7 @@ class Legend:
         widths = [len(plain(str(handle.get_label()))) * _LETTER + _BESIDE for handle in handles]
         rows = next((n for n in range(1, len(widths)) if _wide(widths, n) < width - 0.1), len(widths))
         self._columns = ceil(len(handles) / max(1, rows))
-        #: Room that it needs [in].
+        #: Height that it needs [in].
         self.height = rows * _LINE + 0.08 if handles else 0.0
 
     def below(self, axis: Axes, lowered: float) -> None:
@@ -153,18 +150,18 @@ class Legend:
 
 
 def _wide(widths: Sequence[float], rows: int) -> float:
-    """Of a legend that is filled column by column."""
+    """Width [in] of a legend that is filled column by column."""
     return sum(max(widths[n : n + rows]) for n in range(0, len(widths), rows))
 
 
 def handle(look: Look, label: str, **style: Any) -> Line2D:
-    """A line of a legend, for which curves have this look."""
+    """Line of a legend, for which curves have this look."""
     return Line2D([], [], **({"color": look.colour, "linestyle": look.line, "label": label} | style))
 
 
-def of_methods(exact: bool, found: bool, lines: str = "closed form") -> list[Line2D]:
-    """What lines and markers stand for, where there are both."""
-    if not (exact and found):
+def of_methods(exact: bool, fem: bool, lines: str = "closed form") -> list[Line2D]:
+    """Handles that explain lines and markers, where a figure has both; else none."""
+    if not (exact and fem):
         return []
     return [
         Line2D([], [], color=GREY, label=f"lines: {lines}"),
@@ -177,10 +174,10 @@ def of_methods(exact: bool, found: bool, lines: str = "closed form") -> list[Lin
 
 @styled
 def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
-    """A figure as the bytes of a file.
+    """Bytes of a figure's file.
 
     Args:
-        figure: which.
+        figure: the figure.
         ending: one of ``FORMATS``.
         dpi: dots per inch of what is made of pixels.
     """
@@ -269,7 +266,7 @@ def write(files: Iterable[tuple[Target, bytes]]) -> None:
 
 @styled
 def in_a_page(figure: Figure, pixels: bool) -> str:
-    """A figure as a data URI for a page.
+    """Data URI of a figure for a page.
 
     Args:
         figure: what to show.
@@ -285,7 +282,7 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
 
 
 def embedded(data: bytes, kind: str = "png") -> str:
-    """The bytes of a picture's file as a data URI."""
+    """Data URI of the bytes of a picture's file."""
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
 
 
@@ -294,7 +291,7 @@ _DPI = 110
 
 
 def shown(figure: Figure) -> Figure:
-    """The same figure, which says itself how it looks: notebooks know those of pyplot only."""
+    """Figure that notebooks can show, which otherwise know only figures of pyplot."""
     figure._repr_png_ = lambda: _png(figure)  # type: ignore[attr-defined]
     return figure
 

@@ -1,12 +1,8 @@
-"""Curves of single numbers of states over a parameter.
+"""Curves of numbers: of states over a parameter, errors, angles, waves, and oscillating loads.
 
-Lines over an axis: errors, changes, whatever spans decades.
-
-Curves over the angle of a solid.
-
-How fast waves along layers run, over how short they are.
-
-What a punch answers to loads that oscillate, over frequency.
+Lines over an axis show errors and whatever else spans decades. Polar curves show numbers over the angle
+of a solid. Dispersion curves show how fast waves along layers run, over how short they are; response
+curves show stiffness and damping of a punch under loads that oscillate, over frequency.
 """
 
 from collections.abc import Sequence
@@ -40,18 +36,19 @@ _DECADES, _RATIOS = 200.0, 30.0
 #: Numbers beyond these have a power of ten beside their unit.
 _SHORT, _LONG = 1e-2, 1e4
 
-#: About how wide a letter of an axis is [in].
+#: Approximate width of an axis's letter [in].
 _LETTER = 0.055
 
 
 @dataclass(frozen=True)
 class Line:
-    """Numbers over the parameter, in its order; methods without numbers have none.
+    """Numbers over the parameter, in its order; a method without numbers is None.
 
     Attributes:
-        label: names it in a legend.
+        label: its name in a legend.
         x: the parameter, (n,).
-        exact, found: not by finite elements, and by these, (n,).
+        exact: numbers of the other methods, (n,).
+        found: numbers of finite elements, (n,).
     """
 
     label: str
@@ -61,13 +58,13 @@ class Line:
 
     @property
     def all(self) -> NDArray:
-        """Its numbers, whichever method's."""
+        """All its numbers, of whichever method, (m,)."""
         return np.concatenate([values for values in (self.exact, self.found) if values is not None])
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A quantity, with one line for each value of a second parameter; its unit in TeX."""
+    """Panel of a quantity, with one line for each value of a second parameter; its unit in TeX."""
 
     label: str
     lines: Sequence[Line]
@@ -76,7 +73,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Parameter:
-    """What numbers are drawn over.
+    """Parameter over which numbers are drawn.
 
     Attributes:
         label: of the axis.
@@ -101,7 +98,7 @@ def curves_figure(
         over: the parameter.
         ordered: the lines of a panel follow a number.
         size: of the figure.
-        exactly: what gives the numbers that are not found by finite elements.
+        exactly: name of the method of the numbers that are not of finite elements.
     """
     size = size or Size(COLUMN if len(shown) == 1 else PAGE)
     columns = max(1, min(2 if len(shown) == 4 else 3, len(shown), int(size.width / 2.2)))
@@ -109,8 +106,8 @@ def curves_figure(
     styles = looks(len(shown[0].lines), ordered)
     lines = [handle(look, line.label) for look, line in zip(styles, shown[0].lines) if len(styles) > 1]
     every = [line for panel in shown for line in panel.lines]
-    exact, found = (any(values is not None for values in some) for some in zip(*map(_methods, every)))
-    legend = Legend([*lines, *of_methods(exact, found, exactly)], size.width)
+    exact, fem = (any(values is not None for values in of_all) for of_all in zip(*map(_methods, every)))
+    legend = Legend([*lines, *of_methods(exact, fem, exactly)], size.width)
     label = folded(over.label, int((size.width / columns - 0.5) / _LETTER))
     below = 0.29 + 0.13 * (1 + label.count("\n"))
     top = (0.2 if len(shown) > 1 else 0.08) + (0.3 if over.beside else 0.0)
@@ -142,7 +139,7 @@ def _with_unit(panel: Panel, power: int) -> str:
 
 
 def _draw(axis: Axes, panel: Panel, styles: Sequence[Look]) -> int:
-    """Draw the lines of a panel; the power of ten that its numbers are over."""
+    """Draw the lines of a panel; return the power of ten that its numbers are over."""
     numbers = np.concatenate([line.all for line in panel.lines])
     decades = _spans_decades(numbers)
     power = 0 if decades else _power(numbers)
@@ -168,7 +165,7 @@ def _draw(axis: Axes, panel: Panel, styles: Sequence[Look]) -> int:
 
 
 def _power(values: NDArray) -> int:
-    """Of ten, by which numbers are neither long nor short; a multiple of three."""
+    """Power of ten over which numbers are neither long nor short; a multiple of three."""
     largest = float(np.nanmax(np.abs(values)))
     if not largest or _SHORT <= largest < _LONG:
         return 0
@@ -176,18 +173,18 @@ def _power(values: NDArray) -> int:
 
 
 def _spans_decades(values: NDArray, more_than: float = _DECADES) -> bool:
-    some = values[np.isfinite(values)]
-    return len(some) > 0 and some.min() > 0.0 and some.max() > more_than * some.min()
+    finite = values[np.isfinite(values)]
+    return len(finite) > 0 and finite.min() > 0.0 and finite.max() > more_than * finite.min()
 
 
 def _rather_by_ratios(x: NDArray) -> bool:
-    """Does the middle number lie midway by ratios, rather than by differences?"""
+    """True where the middle number lies midway by ratios, rather than by differences."""
     low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
     return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
 
 
 def _beside(axis: Axes, label: str, factor: float) -> None:
-    """The same numbers in another unit, along the top."""
+    """Add an axis along the top, with the numbers in another unit."""
     axis.tick_params(top=False)
     other = axis.secondary_xaxis("top", functions=(lambda x: factor * x, lambda x: x / factor))
     other.set_xlabel(label)
@@ -197,7 +194,7 @@ def _beside(axis: Axes, label: str, factor: float) -> None:
 def lines_figure(
     x: NDArray, lines: dict[str, NDArray], x_label: str, y_label: str, title: str, log_x: bool
 ) -> Figure:
-    """Lines by label over x, the y axis logarithmic."""
+    """Figure of lines by label over x, the y axis logarithmic."""
     styles = looks(len(lines))
     legend = Legend([handle(look, label) for look, label in zip(styles, lines)], 5.0)
     figure, axes = panels(1, 1, Size(5.0), 0.65, Room(0.62, 0.1, 0.43 + legend.height, 0.22))
@@ -220,7 +217,7 @@ def degrees_figure(
     true_error: NDArray | None,
     size: Size | None = None,
 ) -> Figure:
-    """How the numbers settle as the polynomial degree rises, by speed.
+    """Figure of the numbers' convergence with the polynomial degree, by speed.
 
     Args:
         labels: of the speeds, n.
@@ -231,20 +228,22 @@ def degrees_figure(
         size: of the figure.
     """
     size, styles = size or Size(COLUMN), looks(len(labels), ordered=True)
-    told = [handle(look, label, marker=look.marker) for look, label in zip(styles, labels)]
-    told.append(
+    handles = [handle(look, label, marker=look.marker) for look, label in zip(styles, labels)]
+    handles.append(
         Line2D([], [], color=GREY, marker="_", markersize=9, linestyle="none", label="estimated error")
     )
     if true_error is not None:
-        told.append(Line2D([], [], color=GREY, marker="x", linestyle="none", label="true error"))
-    legend = Legend(told, size.width)
+        handles.append(Line2D([], [], color=GREY, marker="x", linestyle="none", label="true error"))
+    legend = Legend(handles, size.width)
     figure, axes = panels(1, 1, size, 0.72, Room(0.62, 0.1, 0.43 + legend.height, 0.1))
     axis = axes[0, 0]
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(labels)) - (len(labels) - 1) / 2.0) / max(1, len(labels) - 1)
     for n, look in enumerate(styles):
-        known = np.flatnonzero(change[n] > 0.0)
-        axis.plot(known, change[n][known], color=look.colour, linestyle=look.line, marker=look.marker)
+        computed = np.flatnonzero(change[n] > 0.0)
+        axis.plot(
+            computed, change[n][computed], color=look.colour, linestyle=look.line, marker=look.marker
+        )
         at = degree[n] + aside[n]
         axis.plot(at, estimate[n], "_", color=look.colour, markersize=9, markeredgewidth=1.2)
         if true_error is not None:
@@ -256,13 +255,13 @@ def degrees_figure(
     return figure
 
 
-#: Least width of a panel [in], and heights of what stands above and below its panels.
+#: Least width of a panel [in], and heights of the space above and below panels.
 _LEAST, _ABOVE, _BELOW = 1.6, 0.45, 0.25
 
 
 @dataclass(frozen=True)
 class PolarPanel:
-    """Curves with one radius.
+    """Panel of curves over an angle with one radius.
 
     Attributes:
         title: what the radius is, with its unit.
@@ -340,7 +339,7 @@ def _entries(panel: PolarPanel) -> list:
 def dispersion_figure(
     kH: NDArray, speed: NDArray, limit: float, ends: tuple[float, float], size: Size | None = None
 ) -> Figure:
-    """The slowest wave's speed, the highest speed of a punch, and what both ends tend to.
+    """Figure of the slowest wave's speed, the highest speed of a punch, and limits at both ends.
 
     Args:
         kH: wavenumber times the thickness of all layers, (n,).
@@ -369,13 +368,13 @@ _LABELS = (
 
 @dataclass(frozen=True)
 class Curve:
-    """A speed with a friction.
+    """Response of a speed with a friction.
 
     Attributes:
-        label: names it in a legend.
+        label: its name in a legend.
         ω: angular frequencies over c_s/a, (n,).
         parts: real part of N̂/v̂₀ over 2μ, and its imaginary part over that and ω, (2, n).
-        plane_waves: what the latter comes to.
+        plane_waves: limit of the latter at high frequencies.
     """
 
     label: str
@@ -386,7 +385,7 @@ class Curve:
 
 @styled
 def response_figure(curves: Sequence[Curve], size: Size | None = None) -> Figure:
-    """Stiffness and damping over frequency.
+    """Figure of stiffness and damping over frequency.
 
     Args:
         curves: what to draw.

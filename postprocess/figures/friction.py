@@ -1,8 +1,8 @@
-"""Friction loops: each stroke with its line, its direction and its name.
+"""Friction: loops with their strokes, stick-slip of sliders, and measured friction with a fitted law.
 
-Stick-slip: velocity over time, and friction over velocity in a cycle.
-
-Measured friction, a law that fits it, and what is left.
+Each stroke of a loop has its line, its direction and its name. Of a slider the velocity is drawn over
+time, and the friction over velocity in its last cycle; of a fit the friction over position and its
+residuals.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/
 #: Points of a stroke between its name and its arrow, over all its points, and strokes nearer than this
 #: share of the axes, which one name serves.
 _APART, _SAME = 0.2, 0.012
-#: Points of a stroke that are looked at for where its name may stand.
+#: Points of a stroke that are tried for the place of its name.
 _POINTS = 100
 
 #: Variation of friction, over its size, from which on zero is on the axis.
@@ -44,10 +44,10 @@ _LEVEL = 0.2
 
 @dataclass(frozen=True)
 class Loop:
-    """Friction along all strokes in the order of travel.
+    """Loop of friction along all strokes in the order of travel.
 
     Attributes:
-        label: names it in a legend.
+        label: its name in a legend.
         X_over_L, f: position over the pre-sliding displacement and friction coefficient, (n,).
         strokes: names of their pieces, each of as many points; pieces of one name that follow each other
             are one stroke.
@@ -69,7 +69,7 @@ class Loop:
 
 @dataclass(frozen=True)
 class Panel:
-    """Loops that are drawn in one panel; ``ordered``: they follow a number."""
+    """Panel of loops; ``ordered``: they follow a number."""
 
     title: str
     loops: Sequence[Loop]
@@ -78,7 +78,7 @@ class Panel:
 
 @styled
 def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
-    """Friction loops side by side.
+    """Figure of friction loops side by side.
 
     A loop alone has a colour and a name for every stroke; of several each has its colour, and strokes
     are told apart by their lines.
@@ -87,11 +87,11 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
     rows = ceil(len(shown) / max(1, int(size.width / 2.0)))
     columns = ceil(len(shown) / rows)
     entries = [_entries(panel) for panel in shown]
-    common = len({tuple(map(str, (one.get_label() for one in some))) for some in entries}) == 1
+    common = len({tuple(str(line.get_label()) for line in lines) for lines in entries}) == 1
     strokes = _of_strokes(shown)
     foot = Legend([*(entries[0] if common else []), *strokes], size.width)
     wide = (size.width - 0.58) / columns - 0.35
-    legends = [Legend([] if common else some, wide) for some in entries]
+    legends = [Legend([] if common else lines, wide) for lines in entries]
     below = max(legend.height for legend in legends)
     above = 0.2 if len(shown) > 1 or shown[0].title else 0.08
     room = Room(0.48, 0.1, 0.42 + below + foot.height, above, 0.35, 0.55 + below)
@@ -111,7 +111,7 @@ def loops_figure(shown: Sequence[Panel], size: Size | None = None) -> Figure:
 
 @styled
 def motion_figure(t: NDArray, panel: Panel, size: Size | None = None) -> Figure:
-    """Position and friction of a motion over time, and its loop.
+    """Figure of position and friction of a motion over time, and its loop.
 
     Args:
         t: time over that of a cycle, along all strokes, (points,).
@@ -139,12 +139,12 @@ def motion_figure(t: NDArray, panel: Panel, size: Size | None = None) -> Figure:
 def _entries(panel: Panel) -> list[Any]:
     if len(panel.loops) == 1:
         return []
-    found = zip(panel.loops, looks(len(panel.loops), panel.ordered))
-    return [handle(look, loop.label, linestyle="-") for loop, look in found]
+    loops = zip(panel.loops, looks(len(panel.loops), panel.ordered))
+    return [handle(look, loop.label, linestyle="-") for loop, look in loops]
 
 
 def _of_strokes(shown: Sequence[Panel]) -> list[Any]:
-    """What the lines stand for where colours stand for loops."""
+    """Handles that explain lines as strokes where colours stand for loops."""
     several = [panel for panel in shown if len(panel.loops) > 1]
     names = [name for name, *_ in several[0].loops[0].along()] if several else []
     return [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(names)]
@@ -155,7 +155,7 @@ def draw(axis: Axes, panel: Panel) -> None:
     alone = len(panel.loops) == 1
     f = np.array([loop.f for loop in panel.loops])
     low, high = float(f.min()), float(f.max())
-    if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would leave nothing to be seen
+    if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would flatten all loops
         low, high = min(0.0, low), max(0.0, high)
     margin = 0.06 * (high - low) or 1.0
     axis.set(xlim=(-0.03, 1.03), ylim=(low - margin, high + margin))
@@ -176,7 +176,7 @@ def draw(axis: Axes, panel: Panel) -> None:
 
 
 def _freest(axis: Axes, strokes: Sequence[tuple[str, NDArray, NDArray]], n: int) -> int | None:
-    """Where on a stroke no other is near; None where an earlier stroke is the same all along."""
+    """Index of the point of a stroke farthest from others; None where an earlier stroke is the same."""
     _, X, f = strokes[n]
     if len(strokes) == 1:
         return len(X) // 2
@@ -196,7 +196,7 @@ def _freest(axis: Axes, strokes: Sequence[tuple[str, NDArray, NDArray]], n: int)
 
 
 def _point(axis: Axes, X: NDArray, f: NDArray, at: int, colour: Any, name: str) -> None:
-    """An arrow along a stroke, and its name."""
+    """Draw an arrow along a stroke, and its name."""
     ahead = min(at + int(_APART * len(X)) * bool(name), len(X) - 3)
     axis.annotate(
         "", (X[ahead + 1], f[ahead + 1]), (X[ahead], f[ahead]),
@@ -215,10 +215,10 @@ _ARROWS = (0.25, 0.75)
 
 @dataclass(frozen=True)
 class Slide:
-    """How a slider moved.
+    """Motion of a slider.
 
     Attributes:
-        label: names it in a legend.
+        label: its name in a legend.
         v: velocity at the times [m/s].
         cycle_v, cycle_f: velocity [m/s] and friction coefficient in the last cycle, NaN for none.
     """
@@ -233,7 +233,7 @@ class Slide:
 def slider_figure(
     t: NDArray, slides: Sequence[Slide], drive_speed: float, ordered: bool, size: Size | None = None
 ) -> Figure:
-    """Sliders side by side: all velocities over time, and the loops of their last cycles.
+    """Figure of sliders side by side: all velocities over time, and the loops of their last cycles.
 
     Args:
         t: times [s].
@@ -267,7 +267,7 @@ def slider_figure(
 
 
 def _arrow(axis: Axes, slide: Slide, share: float, colour: Any) -> None:
-    """Along a loop, where by its length on the page the share of it is done."""
+    """Draw an arrow along a loop, where the share of its length on the page is done."""
     spans = np.ptp(slide.cycle_v) or 1.0, np.ptp(slide.cycle_f) or 1.0
     steps = np.hypot(np.diff(slide.cycle_v) / spans[0], np.diff(slide.cycle_f) / spans[1])
     way = np.append(0.0, np.cumsum(steps))
@@ -281,20 +281,20 @@ def _arrow(axis: Axes, slide: Slide, share: float, colour: Any) -> None:
     )  # fmt: skip
 
 
-#: Powers of ten of a metre by its prefix, from which on lengths are told so.
+#: Powers of ten of a metre with its prefix, from which on lengths are written so.
 _PREFIXES = ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"))
 
 
 @styled
 def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool) -> Figure:
-    """Friction over position, and the residuals over time or slip.
+    """Figure of friction over position, and the residuals over time or slip.
 
     Args:
         t: time [s], (samples,).
         X: position [m], (samples,).
         f: measured friction coefficient, (samples,).
-        law: that of the law, NaN where it has none, (samples,).
-        timed: was time measured?
+        law: friction coefficient of the law, NaN where it has none, (samples,).
+        timed: time was measured.
     """
     size = Size(PAGE)
     legend = Legend(
@@ -308,7 +308,7 @@ def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool)
     figure, axes = panels(1, 2, size, 0.66, room)
     first, second = axes.flat
     scale, unit = next(
-        ((one, name) for one, name in _PREFIXES if np.ptp(X) >= one), _PREFIXES[-1]
+        ((metre, name) for metre, name in _PREFIXES if np.ptp(X) >= metre), _PREFIXES[-1]
     )  # fmt: skip
     first.plot(X / scale, f, ".", color=COLOURS[0], markersize=2.0)
     first.plot(X / scale, law, color=COLOURS[1])

@@ -1,7 +1,4 @@
-"""Maps of stresses below the punch.
-
-Films: pictures of the states of strokes, one after the other.
-"""
+"""Maps of stresses below the punch, and films: pictures of the states of strokes, one after the other."""
 
 import shutil
 from collections.abc import Callable, Sequence
@@ -25,8 +22,8 @@ from . import friction, surface
 from .canvas import Room, Size, lettered, panels
 from .style import COLOURS, COLUMN, GREY, PAGE, SMALL, styled
 
-#: Share of the values that have colours of their own: the edges of the punch would leave none for the
-#: rest.
+#: Share of the values that have colours of their own: stresses at the edges of the punch would leave none
+#: for the rest.
 _SHOWN = 0.985
 
 #: Room that a bar of colours takes [in].
@@ -38,7 +35,7 @@ _LEAST = 0.02
 
 @dataclass(frozen=True)
 class Map:
-    """A quantity on the grid.
+    """Map of a quantity on the grid, one for each column of a figure.
 
     Attributes:
         values: by column, (columns, rows of the grid, columns of the grid).
@@ -63,7 +60,7 @@ def maps_figure(
     size: Size | None = None,
     frames: Sequence[tuple[float, float]] = (),
 ) -> Figure:
-    """Maps: a row for each quantity, a column for each solution, then a column for each difference.
+    """Figure of maps: a row for each quantity, a column for each solution and then each difference.
 
     Args:
         X, Y: positions over a, (columns,) and (rows,).
@@ -71,7 +68,7 @@ def maps_figure(
         titles: of the columns.
         differences: by row, over the row's largest value, (columns, rows, columns); none for none.
         size: of the figure.
-        frames: half-width and middle [mm] of each solution's contact, drawn in mm; none: over a.
+        frames: half-width and middle [mm] of each solution's contact, for maps in mm; none for over a.
     """
     alone = len(titles) == 1 and len(maps) == 1
     # Two columns of many rows would be taller than a page.
@@ -108,9 +105,12 @@ def maps_figure(
 
 def _name(axes: NDArray, titles: Sequence[str]) -> None:
     apart = axes.shape[1] > len(titles)
-    told = [*titles, *[f"difference at\n{title}" for title in titles[: axes.shape[1] - len(titles)]]]
+    all_titles = [
+        *titles,
+        *[f"difference at\n{title}" for title in titles[: axes.shape[1] - len(titles)]],
+    ]
     lettered(axes.flat, [] if apart else titles)
-    for axis, title in zip(axes[0], told if apart else []):
+    for axis, title in zip(axes[0], all_titles if apart else []):
         axis.set_title(f"{title}\n{axis.get_title(loc='left')}")
     for axis in axes.flat:
         axis.set_title(axis.get_title(loc="left"), pad=4.5, y=1.0)
@@ -123,7 +123,7 @@ def _make_way(axes: NDArray, by: float) -> None:
 
 
 def _limits(shown: Map) -> tuple[float, str]:
-    """Largest value with a colour of its own, and at which ends of the bar colours are clipped."""
+    """Largest value with a colour of its own, and the ends of the bar at which colours are clipped."""
     limit = float(np.quantile(np.abs(shown.values), _SHOWN)) or 1.0
     above, below = bool(shown.values.max() > limit), bool(shown.values.min() < -limit)
     return limit, {(True, True): "both", (True, False): "max", (False, True): "min"}.get(
@@ -132,7 +132,7 @@ def _limits(shown: Map) -> tuple[float, str]:
 
 
 def moving(axis: Axes, X: NDArray, Y: NDArray, shown: Map) -> Callable[[int], None]:
-    """A map that changes: what draws one of its values."""
+    """Draw the first frame of a map that changes, and return a function that draws another."""
     limit, extend = _limits(shown)
     grid = _Grid(X, Y)
     grid.draw(axis, shown.values[0], limit, shown.signed, lines=False)
@@ -143,7 +143,7 @@ def moving(axis: Axes, X: NDArray, Y: NDArray, shown: Map) -> Callable[[int], No
 
 
 class _Grid:
-    """Where maps lie.
+    """Grid on which maps lie.
 
     Args:
         X, Y: positions over a.
@@ -192,8 +192,8 @@ class _Grid:
 def _differences(grids: Sequence[_Grid], axes: NDArray, values: NDArray) -> None:
     """Sizes of differences, all in one range of colours."""
     sizes = np.abs(values)
-    some = sizes[sizes > 0.0]
-    low, high = np.quantile(some, (_LEAST, 1.0)) if len(some) else (1e-16, 1e-15)
+    positive = sizes[sizes > 0.0]
+    low, high = np.quantile(positive, (_LEAST, 1.0)) if len(positive) else (1e-16, 1e-15)
     norm = colors.LogNorm(low, max(high, 2.0 * low))
     for row, of_row in zip(axes, sizes):
         for grid, axis, shown in zip(grids, row, of_row):
@@ -222,12 +222,12 @@ RATE, DPI = 8, 160
 
 @dataclass(frozen=True)
 class Film:
-    """A figure that changes.
+    """Figure that changes from frame to frame.
 
     Attributes:
-        figure: it.
-        frames: how often.
-        show: draws one of them.
+        figure: the figure.
+        frames: number of frames.
+        show: draws a frame.
     """
 
     figure: Figure
@@ -246,7 +246,7 @@ def strokes_film(
     mapped: Sequence[Map] = (),
     size: Size | None = None,
 ) -> Film:
-    """A friction loop on which a dot moves, and beside it the stresses there.
+    """Film of a friction loop on which a dot moves, and beside it the stresses there.
 
     Args:
         loop: the loop.
@@ -284,7 +284,7 @@ def strokes_film(
 
 
 def along_surface(axis: Axes, X: NDArray, stress: surface.Stress) -> Callable[[int], None]:
-    """Draw the first frame of a stress, and return what draws another."""
+    """Draw the first frame of a stress, and return a function that draws another."""
     values = next(iter(stress.values.values()))
     half = surface.half_width(X, [stress])
     low, high = surface.limits(X, values)
@@ -303,11 +303,11 @@ def along_surface(axis: Axes, X: NDArray, stress: surface.Stress) -> Callable[[i
 
 @styled
 def content(film: Film, ending: str, dpi: int = DPI) -> bytes:
-    """A film as the bytes of a file.
+    """Bytes of a film's file.
 
     Args:
-        film: which.
-        ending: one of ``FORMATS``; ``"mp4"`` where :func:`can` says so.
+        film: the film.
+        ending: one of ``FORMATS``; ``"mp4"`` where :func:`can` is true of it.
         dpi: dots per inch.
     """
     if ending == "mp4":
@@ -327,12 +327,12 @@ def content(film: Film, ending: str, dpi: int = DPI) -> bytes:
 
 
 def can(ending: str) -> bool:
-    """Can films be made in this format here?"""
+    """True where films can be made in this format on this machine."""
     return ending == "gif" or shutil.which("ffmpeg") is not None
 
 
 def _mp4(film: Film, dpi: int) -> bytes:
-    """ffmpeg goes back in its file, and so wants one of its own."""
+    """Bytes of a film as MP4; ffmpeg goes back in its file, and so needs one of its own."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "film.mp4"
         writer = FFMpegWriter(fps=RATE, metadata={"comment": "galinx"})

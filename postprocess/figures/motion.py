@@ -1,10 +1,8 @@
-"""Motions in time: what a pressure and its punch do over time.
+"""Motions in time: the pressure and its punch, works and energies, contact pressures, surface stresses.
 
-Energies over time: what is done on a solid, and where it is.
-
-Contact pressures over the place, one after the other.
-
-Stresses along the surface that move, and beside them the way of the pressure's centre.
+Curves over time show indentation, centre of the pressure and K_I, works, and the energies that they
+become. Contact pressures are drawn at several times in one panel, or as a film; stresses along the
+surface as a film, beside the way of the pressure's centre.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +19,7 @@ from .maps import Film, along_surface
 from .style import COLOURS, COLUMN, GREY, PAGE, looks, styled
 from .surface import Stress, parts
 
-#: What panels show.
+#: Labels of the panels' axes.
 _LABELS = (
     "centre of pressure$/a$", r"indentation $v_0/(N/2\mu)$", "$K_I$ at $X = -a$", "$K_I$ at $X = a$",
 )  # fmt: skip
@@ -31,12 +29,12 @@ _POINTS = 15
 
 @dataclass(frozen=True)
 class Start:
-    """A start.
+    """Motion that starts from rest.
 
     Attributes:
-        label: names it in a legend.
-        curves: of each panel, (times,) each.
-        beside: the same by another method, or none.
+        label: its name in a legend.
+        curves: numbers of each panel, (times,) each.
+        beside: numbers of each panel by another method, or none.
         steady: centre of the pressure over a if it were at once that of steady motion, (times,).
     """
 
@@ -48,7 +46,7 @@ class Start:
 
 @styled
 def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -> Figure:
-    """A panel over time for each of the curves that is not NaN.
+    """Figure with a panel over time for each of the curves that is not NaN.
 
     Args:
         t: times over a/c_s.
@@ -90,7 +88,7 @@ def time_figure(t: NDArray, starts: Sequence[Start], size: Size | None = None) -
 def energies_figure(
     t: NDArray, done: Mapping[str, NDArray], held: Mapping[str, NDArray], size: Size | None = None
 ) -> Figure:
-    """Works, and the energies that they become, each with its sum.
+    """Figure of works, and of the energies that they become, each with its sum.
 
     Args:
         t: times over a/c_s, (times,).
@@ -100,15 +98,15 @@ def energies_figure(
     """
     size, styles = size or Size(PAGE), looks(len(done) + len(held))
     names = [*done, *held]
-    told = [handle(look, name) for look, name in zip(styles, names)]
-    told.append(handle(styles[0]._replace(colour=GREY, line="-"), "all together", linewidth=1.8))
-    legend = Legend(told, size.width)
+    handles = [handle(look, name) for look, name in zip(styles, names)]
+    handles.append(handle(styles[0]._replace(colour=GREY, line="-"), "all together", linewidth=1.8))
+    legend = Legend(handles, size.width)
     across = 2 if size.width > 4.5 else 1
     room = Room(0.6, 0.1, 0.43 + legend.height, 0.2, 0.65, 0.5)
     figure, axes = panels(2 // across, across, size, 0.68, room)
-    for axis, some in zip(axes.flat, (done, held)):
-        axis.plot(t, sum(some.values()), color=GREY, linewidth=1.8, zorder=0)
-        for name, values in some.items():
+    for axis, energies in zip(axes.flat, (done, held)):
+        axis.plot(t, sum(energies.values()), color=GREY, linewidth=1.8, zorder=0)
+        for name, values in energies.items():
             look = styles[names.index(name)]
             axis.plot(t, values, color=look.colour, linestyle=look.line)
         axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
@@ -129,18 +127,18 @@ _TOP = 2.5
 def pressures_figure(
     X: NDArray, pressures: dict[str, NDArray], steady: NDArray, size: Size | None = None
 ) -> Figure:
-    """Pressures by what a legend calls them, and that of steady motion.
+    """Figure of pressures by their names in a legend, and that of steady motion.
 
     Args:
         X: positions over a, (n,).
         pressures: over N/(2a), (n,) each.
-        steady: the same in steady motion, (n,).
+        steady: pressure in steady motion over N/(2a), (n,).
         size: of the figure.
     """
     size, styles = size or Size(COLUMN), looks(len(pressures), ordered=True)
-    told = [handle(look, label) for look, label in zip(styles, pressures)]
-    told.append(Line2D([], [], color=GREY, linestyle="--", label="steady"))
-    legend = Legend(told, size.width)
+    handles = [handle(look, label) for look, label in zip(styles, pressures)]
+    handles.append(Line2D([], [], color=GREY, linestyle="--", label="steady"))
+    legend = Legend(handles, size.width)
     figure, axes = panels(1, 1, size, 0.75, Room(0.55, 0.1, 0.43 + legend.height, 0.1))
     axis = axes[0, 0]
     for look, pressure in zip(styles, pressures.values()):
@@ -169,13 +167,13 @@ def pressures_film(
     centre: tuple[NDArray, float],
     size: Size | None = None,
 ) -> Film:
-    """A pressure that changes, and beside it the way of its centre.
+    """Film of a pressure that changes, and beside it the way of its centre.
 
     Args:
         X: positions over a, (n,).
         t: times over a/c_s, (frames,).
         pressures: over N/(2a), (frames, n).
-        steady: the same in steady motion, (n,).
+        steady: pressure in steady motion over N/(2a), (n,).
         centre: of the pressure over a, (frames,), and in steady motion.
         size: of the figure.
     """
@@ -205,7 +203,7 @@ def surface_film(
     centre: tuple[NDArray, NDArray, NDArray],
     size: Size | None = None,
 ) -> Film:
-    """A film of stresses.
+    """Film of stresses along the surface, and beside it the way of the pressure's centre.
 
     Args:
         X: positions over a, (n,).

@@ -24,7 +24,7 @@ _LEAST = 1e-15
 
 @dataclass(frozen=True)
 class Curve:
-    """What one name and one look stand for in a row: a line, markers, or both.
+    """Curve with one name and one look in a row: a line, markers, or both.
 
     Attributes:
         label: its name in the legend, "" for none.
@@ -57,13 +57,13 @@ def rows_figure(
     differences: Mapping[str, NDArray] | None = None,
     size: Size | None = None,
 ) -> Figure:
-    """Stresses along the surface, a column for each, with the same limits in all rows.
+    """Figure of stresses along the surface, a column for each, with the same limits in all rows.
 
     Args:
         X: positions over a, (points,).
         labels: of the stresses.
         rows: from the top down.
-        says: what lines and what markers stand for.
+        says: names of the methods of lines and of markers.
         differences: between two methods by name, (columns, points) each; they get a row of their own.
         size: of the figure.
     """
@@ -87,7 +87,7 @@ def rows_figure(
     figure, axes = panels(len(heights), len(labels), size, 0.5, room, heights)
     for column, label in enumerate(labels):
         _draw_column(axes[:, column], X, rows, column)
-        _difference(axes[:, column], X, {name: one[column] for name, one in differences.items()})
+        _difference(axes[:, column], X, {name: values[column] for name, values in differences.items()})
         for axis in axes[: len(rows), column]:
             axis.set_ylabel(label)
     titles = [row.title for row in rows for _ in labels]
@@ -104,14 +104,14 @@ def rows_figure(
 def laws_figure(
     loops: Panel, X: NDArray, labels: Sequence[str], row: Row, says: tuple[str, str], places: NDArray
 ) -> Figure:
-    """Friction laws side by side: their loops, and the stresses of one place on them.
+    """Figure of friction laws side by side: their loops, and the stresses of one place on them.
 
     Args:
         loops: of the laws.
         X: positions over a, (points,).
         labels: of two stresses.
         row: curves of the laws, in the order and with the looks of their loops.
-        says: what lines and what markers stand for.
+        says: names of the methods of lines and of markers.
         places: of each law, position X/L and friction coefficient, (laws, 2).
     """
     entries = [handle(curve.look, curve.label, linestyle="-") for curve in row.curves]
@@ -135,8 +135,8 @@ def laws_figure(
 
 def _draw_column(axes: NDArray, X: NDArray, rows: Sequence[Row], column: int) -> None:
     """Rows of one stress, all between the same limits; positions are named below the last axis."""
-    both = [one for row in rows for curve in row.curves for one in (curve.line, curve.markers)]
-    shown = np.array([one[column] for one in both if one is not None])
+    both = [values for row in rows for curve in row.curves for values in (curve.line, curve.markers)]
+    shown = np.array([values[column] for values in both if values is not None])
     half, y = along(X, shown), limits(X, shown)
     for axis in axes:
         over_a(axis, half)

@@ -1,7 +1,4 @@
-"""Sketches: the problem, and the way from friction to stresses.
-
-Pictures of meshes: cells, and the nodes that carry the unknowns.
-"""
+"""Sketches: the problem, the way from friction to stresses, and meshes with the nodes of the unknowns."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,8 +14,8 @@ from .style import COLOURS, GREY, PAGE, SMALL, TEXT, styled
 _BLUE, _ORANGE, _GREEN = COLOURS[:3]
 
 
-def _sheet(width: float, height: float) -> tuple[Figure, Axes]:
-    """A figure without axes whose unit is an inch."""
+def _blank(width: float, height: float) -> tuple[Figure, Axes]:
+    """Figure without axes whose unit is an inch."""
     figure = Figure((width, height))
     FigureCanvasAgg(figure)
     axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -41,8 +38,8 @@ def _arrow(
 
 @styled
 def problem_figure() -> Figure:
-    """A rigid flat punch that slides over a half-plane: loads, axes, ends, speed."""
-    figure, axis = _sheet(5.0, 2.1)
+    """Figure of a rigid flat punch that slides over a half-plane: loads, axes, ends, speed."""
+    figure, axis = _blank(5.0, 2.1)
     X, Y, a = 2.5, 0.92, 0.85
     # The half-plane, which has no end: its lower edge is a broken line.
     depth = Y - 0.78 - 0.06 * np.sin(np.linspace(0.0, 9.0 * np.pi, 200))
@@ -64,7 +61,7 @@ def problem_figure() -> Figure:
     axis.text(
         X - a - 0.1, Y + 0.62, "forward (FM)", color=_ORANGE, va="center", ha="right", fontsize=SMALL
     )  # fmt: skip
-    # What the punch does to the surface: friction drags it along.
+    # Tractions of the punch on the surface: friction drags it along.
     for at in np.linspace(X - 0.75 * a, X + 0.55 * a, 4):
         _arrow(axis, (at, Y - 0.09), (at + 0.2, Y - 0.09), _GREEN)
     axis.text(X + a + 0.08, Y - 0.14, r"$\sigma_{XY} = -f\,\sigma_{YY} > 0$", color=_GREEN, va="center")
@@ -102,8 +99,8 @@ _BOXES = {
 
 @styled
 def procedure_figure() -> Figure:
-    """From Dahl's friction to stresses, by both methods; numbers are those of the study's equations."""
-    figure, axis = _sheet(PAGE, 2.1)
+    """Figure of the way from Dahl's friction to stresses, by both methods; numbers are the study's."""
+    figure, axis = _blank(PAGE, 2.1)
     places = {"exact": 1.55, "fem": 0.55}
     high = 0.8
     for name, (x, width, colour, words) in _BOXES.items():
@@ -142,11 +139,11 @@ def mesh_figure(
     zooms: tuple[float, ...] = (4.0, 0.5, 0.01),
     first: str = "under the punch",
 ) -> Figure:
-    """A mesh below the punch, then nearer and nearer to the edge X = a.
+    """Figure of a mesh below the punch, then nearer and nearer to the edge X = a.
 
     Args:
         edges: polylines of the cells' edges over a, (edges, points, 2).
-        nodes: where its unknowns are, over a, (n, 2).
+        nodes: positions of its unknowns over a, (n, 2).
         size: of the figure.
         zooms: half-widths of the panels over a; the first is centred on the punch.
         first: title of that one.
@@ -161,8 +158,8 @@ def mesh_figure(
         lines, dots = edges - centre, nodes - centre
         near = np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half
         axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
-        seen = dots[np.abs(dots).max(axis=1) < 1.5 * half]
-        printed = np.unique(np.round(seen / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
+        near_dots = dots[np.abs(dots).max(axis=1) < 1.5 * half]
+        printed = np.unique(np.round(near_dots / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
         axis.plot(
             *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
             color=COLOURS[0], rasterized=True,

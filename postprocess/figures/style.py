@@ -1,7 +1,4 @@
-"""Style of all figures: type, sizes, colours, line styles.
-
-Numbers, symbols and units as formulas write them, and the same as plain text.
-"""
+"""Style of all figures: type, sizes, colours, line styles; numbers, symbols and units as TeX and text."""
 
 import re
 import unicodedata
@@ -68,14 +65,14 @@ _STYLE = {
 
 
 def _defaults() -> dict[str, Any]:
-    """Matplotlib's own: what somebody has set for other figures, as text by LaTeX, is not for these."""
+    """Matplotlib's own settings, without what somebody has set for other figures, as text by LaTeX."""
     import matplotlib  # a slow import, for nothing where texts alone are typeset
 
     return {key: value for key, value in matplotlib.rcParamsDefault.items() if "backend" not in key}
 
 
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
-    """For what draws or saves: in this style, and none of it is left to whoever draws next."""
+    """Decorator of what draws or saves: in this style, and none of it is left to whoever draws next."""
 
     @wraps(draw)
     def in_style(*arguments: Any, **options: Any) -> Any:
@@ -88,7 +85,7 @@ def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class Look(NamedTuple):
-    """How one of several curves looks."""
+    """Look of one of several curves: colour, line and marker."""
 
     colour: Any
     line: Any
@@ -96,7 +93,7 @@ class Look(NamedTuple):
 
 
 def looks(count: int, ordered: bool = False) -> list[Look]:
-    """Curves that are told apart, in print without colours, too.
+    """Looks of curves that are told apart, in print without colours, too.
 
     Args:
         count: how many.
@@ -135,7 +132,7 @@ def number(value: float, digits: int = 4) -> str:
 
 
 def unit(name: str) -> str:
-    """A unit in TeX, with the space before it; nothing for what has none."""
+    """Unit in TeX, with the space before it; nothing for what has none."""
     if name in ("1", "", "none"):
         return ""
     if "(" in name:  # a quantity, as N/(2a) is
@@ -145,10 +142,10 @@ def unit(name: str) -> str:
 
 
 def plain(text: str) -> str:
-    """What stands between dollars as plain text: μ_C = 4.786 × 10⁻⁷."""
+    """Plain text of a text with formulas between dollars: μ_C = 4.786 × 10⁻⁷."""
 
-    def greek(found: re.Match[str]) -> str:
-        word = found[1]
+    def greek(match: re.Match[str]) -> str:
+        word = match[1]
         kind = "CAPITAL" if word[0].isupper() else "SMALL"
         name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
         try:
@@ -156,19 +153,19 @@ def plain(text: str) -> str:
         except KeyError:
             return word
 
-    def formula(found: re.Match[str]) -> str:
-        told = found[1].replace(r"\times", "×").replace(r"\,", "\u202f")
-        told = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(_RAISED), told)
-        told = re.sub(r"\\(?:mathrm|mathit|text)\{((?:[^{}]|\{[^{}]*\})*)\}", r"\1", told)
-        told = re.sub(r"\\([A-Za-z]+)", greek, told)
-        told = re.sub(r"_\{?(\d)\}?", lambda index: index[1].translate(_LOWERED), told)
-        return told.replace(r"\_", "_").replace("{", "").replace("}", "")
+    def formula(match: re.Match[str]) -> str:
+        characters = match[1].replace(r"\times", "×").replace(r"\,", "\u202f")
+        characters = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(_RAISED), characters)
+        characters = re.sub(r"\\(?:mathrm|mathit|text)\{((?:[^{}]|\{[^{}]*\})*)\}", r"\1", characters)
+        characters = re.sub(r"\\([A-Za-z]+)", greek, characters)
+        characters = re.sub(r"_\{?(\d)\}?", lambda index: index[1].translate(_LOWERED), characters)
+        return characters.replace(r"\_", "_").replace("{", "").replace("}", "")
 
     return re.sub(r"\$([^$]*)\$", formula, text)
 
 
 def folded(text: str, width: int) -> str:
-    """In lines of at most so many characters, formulas counted as they are shown and kept whole."""
+    """Text in lines of at most so many characters; formulas count as they are shown and stay whole."""
     pieces = re.findall(r"\$[^$]*\$", text)
     marks = [f"\0{n}".ljust(max(3, len(plain(piece))), "\0") for n, piece in enumerate(pieces)]
     for piece, mark in zip(pieces, marks):

@@ -1,6 +1,6 @@
-"""Stresses along the surface: finite elements as markers on closed-form lines.
+"""Stresses along the surface, and along interfaces of layers: markers of finite elements on exact lines.
 
-Stresses along interfaces of layers: finite elements as markers on the integral equation's lines.
+Lines are those of the closed form along the surface, and of the integral equation over layers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ from .canvas import Legend, Room, Size, handle, lettered, of_methods, panels
 from .friction import Loop
 from .style import COLUMN, GREY, PAGE, SMALL, Look, styled
 
-#: Positions that are shown of what is there all along the surface, and under the punch alone [a].
+#: Positions shown of a stress all along the surface, and of one under the punch alone [a].
 _BESIDE, _UNDER = 2.0, 1.04
 #: Distance over a from an edge within which stresses may run out of the picture.
 _EDGE = 0.09
@@ -36,7 +36,7 @@ _MARKERS = 36
 
 @dataclass(frozen=True)
 class Stress:
-    """A stress along the surface.
+    """Stress along the surface.
 
     Attributes:
         label: of its axis.
@@ -49,7 +49,7 @@ class Stress:
 
 @dataclass(frozen=True)
 class Curve:
-    """A state, its name and its look."""
+    """Curve of a state, with its name and its look."""
 
     state: int
     label: str
@@ -58,7 +58,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Place:
-    """Where on a friction loop a state sits."""
+    """Place of a state on a friction loop."""
 
     loop: Loop
     X_over_L: float
@@ -67,12 +67,12 @@ class Place:
 
 @dataclass(frozen=True)
 class Column:
-    """States drawn in one column of a figure.
+    """Column of a figure, with its states.
 
     Attributes:
         title: of the column.
         curves: of the states.
-        places: where on its loop each state sits; none draws no inset.
+        places: place of each state on its loop; none draws no inset.
     """
 
     title: str
@@ -88,7 +88,7 @@ def surface_figure(
     size: Size | None = None,
     ends: tuple[NDArray, NDArray] | None = None,
 ) -> Figure:
-    """Stresses along the surface: a row for each, one column for each group of states.
+    """Figure of stresses along the surface: a row for each, one column for each group of states.
 
     Args:
         X: positions over a, (points,).
@@ -127,13 +127,13 @@ def surface_figure(
 
 
 def _of_methods(methods: set[str]) -> list[Line2D]:
-    """What lines and markers stand for."""
+    """Handles that explain lines and markers."""
     lines = METHODS[CLOSED_FORM if CLOSED_FORM in methods else SIE]
     return of_methods(bool(methods - {FEM}), FEM in methods, lines)
 
 
 def _positions(axis: Axes, column: Column, half: float, ends: tuple[NDArray, NDArray] | None) -> None:
-    """The axis of positions, over a or in mm, and the contact where all have the same."""
+    """Set the axis of positions, over a or in mm, and shade the contact where all have the same."""
     if ends is not None:
         h, m = (values[[curve.state for curve in column.curves]] for values in ends)
         axis.set(
@@ -147,7 +147,7 @@ def _positions(axis: Axes, column: Column, half: float, ends: tuple[NDArray, NDA
 
 
 def over_a(axis: Axes, half: float) -> None:
-    """Positions over a from -half to half, and the contact in grey where there is something beside it."""
+    """Set positions over a from -half to half, and shade the contact where something is beside it."""
     axis.set_xlim(-half, half)
     axis.xaxis.set_major_locator(MultipleLocator(0.5 if half < _BESIDE else 1.0))
     axis.xaxis.set_minor_locator(MultipleLocator(0.25))
@@ -161,7 +161,7 @@ def _top(columns: Sequence[Column], stresses: Sequence[Stress]) -> float:
 
 
 def _ranges(X: NDArray, stress: Stress, columns: Sequence[Column]) -> list[tuple[float, float]]:
-    """Limits of each column: the same for all, unless some would hardly be seen then."""
+    """Limits of each column: the same for all, unless a few would hardly be visible then."""
     values = next(iter(stress.values.values()))
     every = [limits(X, values[[curve.state for curve in column.curves]]) for column in columns]
     low, high = min(y[0] for y in every), max(y[1] for y in every)
@@ -178,45 +178,45 @@ def _draw(
     half: float,
     ends: tuple[NDArray, NDArray] | None,
 ) -> None:
-    exact, found = stress.values.get(CLOSED_FORM, stress.values.get(SIE)), stress.values.get(FEM)
-    lines = exact if exact is not None else found
+    exact, fem = stress.values.get(CLOSED_FORM, stress.values.get(SIE)), stress.values.get(FEM)
+    lines = exact if exact is not None else fem
     assert lines is not None
     for n, curve in enumerate(column.curves):
         h, m = (1.0, 0.0) if ends is None else (values[curve.state] for values in ends)
         places = m + h * X
         x, y = broken(X, lines[curve.state])
         axis.plot(m + h * x, y, color=curve.look.colour, linestyle=curve.look.line)
-        if exact is not None and found is not None:
+        if exact is not None and fem is not None:
             pick = picked(X, half, n, len(column.curves))
             axis.plot(
-                places[pick], found[curve.state][pick], curve.look.marker, color=curve.look.colour,
+                places[pick], fem[curve.state][pick], curve.look.marker, color=curve.look.colour,
                 markerfacecolor="none",
             )  # fmt: skip
 
 
 def half_width(X: NDArray, stresses: Sequence[Stress]) -> float:
-    """How far stresses are shown: there may be none beside the punch."""
-    return max(along(X, one) for stress in stresses for one in stress.values.values())
+    """Half-width over a of the part of the surface shown: there may be no stress beside the punch."""
+    return max(along(X, values) for stress in stresses for values in stress.values.values())
 
 
 def along(X: NDArray, values: NDArray) -> float:
-    """The same of values, (states, points)."""
+    """Half-width over a of the part of the surface shown for values, (states, points)."""
     return _UNDER if np.isnan(values[:, ~under_punch(X)]).all() else _BESIDE
 
 
 def picked(X: NDArray, half: float, n: int, curves: int, most: int = _MARKERS) -> NDArray[np.int64]:
-    """Points with markers of the n-th of some curves; those of one stand between those of the others."""
+    """Points with markers of the n-th of several curves, between the markers of the others."""
     count = max(7, most // curves)
     step = 2.0 * half / count
-    wanted = -half + step * (np.arange(count) + (n + 0.5) / curves)
-    return np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+    spaced = -half + step * (np.arange(count) + (n + 0.5) / curves)
+    return np.unique(np.abs(X[:, None] - spaced).argmin(axis=0))
 
 
 def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
     """Positions and values of a line that is broken at the edges of the punch, for one call of plot."""
     gap = [np.nan]
     pieces = [(X[part], values[part]) for part in parts(X) if not np.isnan(values[part]).all()]
-    xs, ys = ([one for piece in pieces for one in (piece[n], gap)] for n in (0, 1))
+    xs, ys = ([part for piece in pieces for part in (piece[n], gap)] for n in (0, 1))
     return np.concatenate([*xs, gap]), np.concatenate([*ys, gap])
 
 
@@ -239,7 +239,7 @@ def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
 
 
 def _insets(row: Sequence[Axes], columns: Sequence[Column]) -> None:
-    """Where on its loop each state sits, once where that is the same in all columns."""
+    """Draw an inset with the places of states on their loops, once where all columns have the same."""
     same = all(_sits(column) == _sits(columns[0]) for column in columns)
     for axis, column in list(zip(row, columns))[: 1 if same else None]:
         if column.places:
@@ -251,7 +251,7 @@ def _sits(column: Column) -> list[Any]:
 
 
 def _free(axis: Axes) -> tuple[float, float] | None:
-    """Where no curve runs through an inset and the names of its axes, over the panel's size."""
+    """Corner of a panel, over its size, where no curve runs through an inset and its axes' names."""
     to_panel = axis.transData + axis.transAxes.inverted()
     points = np.concatenate([to_panel.transform(line.get_xydata()) for line in axis.lines])
     points = points[np.isfinite(points).all(axis=1)]
@@ -263,7 +263,7 @@ def _free(axis: Axes) -> tuple[float, float] | None:
 
 
 def _inset(axis: Axes, column: Column) -> None:
-    """A loop that all share is grey. Its axes have names and no numbers: it shows places, not values.
+    """Draw an inset: a loop that all share is grey. It shows places, not values: axes have no numbers.
 
     Where curves leave it no room there is none.
     """
@@ -284,9 +284,9 @@ def _inset(axis: Axes, column: Column) -> None:
     inset.set_ylabel("$f$", fontsize=SMALL, labelpad=1.0, rotation=0, va="center", ha="right")
 
 
-#: How far positions are shown: over a, and over the depth of the interface.
+#: Largest positions shown: over a, and over the depth of the interface.
 _OVER_A, _OVER_DEPTH = 2.0, 2.5
-#: Lines of what is told on one side alone, above and below.
+#: Lines of a stress that differs on both sides, above and below.
 _SIDES = ("-", (0, (4.0, 1.5)))
 #: Markers along a curve.
 _MARKERS_ALONG = 15
@@ -294,7 +294,7 @@ _MARKERS_ALONG = 15
 
 @dataclass(frozen=True)
 class Row:
-    """A stress along interfaces.
+    """Stress along interfaces.
 
     Attributes:
         label: of its axis.
@@ -307,7 +307,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Interface:
-    """An interface that has a column.
+    """Interface that has a column.
 
     Attributes:
         number: among all, from 0.
@@ -378,16 +378,16 @@ def _draw_interface(
     axis.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
     for side, line in zip(row.sides, _SIDES):
         for n, (curve, (a, centre)) in enumerate(zip(curves, frames)):
-            values = {method: found[curve.state, interface.number] for method, found in side.items()}
+            values = {method: stress[curve.state, interface.number] for method, stress in side.items()}
             drawn = next(iter(values.values()))
             x = centre + a * X
-            seen = (x >= low) & (x <= high)
-            axis.plot(x[seen], drawn[seen], color=curve.look.colour, linestyle=line)
+            shown = (x >= low) & (x <= high)
+            axis.plot(x[shown], drawn[shown], color=curve.look.colour, linestyle=line)
             if len(values) > 1:
                 # Those of one curve stand between those of the others.
                 step = 2.0 * half / _MARKERS_ALONG
-                wanted = -half + step * (np.arange(_MARKERS_ALONG) + (n + 0.5) / len(curves))
-                pick = np.unique(np.abs(X[:, None] - wanted).argmin(axis=0))
+                spaced = -half + step * (np.arange(_MARKERS_ALONG) + (n + 0.5) / len(curves))
+                pick = np.unique(np.abs(X[:, None] - spaced).argmin(axis=0))
                 axis.plot(
                     x[pick], values[FEM][pick], curve.look.marker, color=curve.look.colour,
                     markerfacecolor="none",

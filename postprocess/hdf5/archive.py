@@ -1,16 +1,15 @@
-"""Result archives are written.
+"""Result archives in HDF5: their writer, the digest that seals them, and the one way of reading them.
 
 An archive appears under its final name only when it is complete: it is written beside it, closed,
-opened again and compared, sealed, synchronised with the disk and renamed.
+opened again and compared, sealed, synchronised with the disk and renamed. HDF5 crashes where a disk
+refuses what it holds, so it writes to a file that takes every write and remembers the refusal.
 
-A file that HDF5 can always write to: it crashes where a disk refuses what it holds.
+The digest stands in the room that HDF5 leaves to others at a file's start. It is of every byte that
+follows, so names, shapes, types, units and attributes are covered like numbers. HDF5 itself crashes over
+some damaged files: what is sealed is verified before HDF5 opens it.
 
-The digest of an archive, in the room that HDF5 leaves to others at a file's start.
-
-It is of every byte that follows, so names, shapes, types, units and attributes are covered like numbers.
-HDF5 itself crashes over some damaged files: what is sealed is verified before HDF5 opens it.
-
-The one door to archives: what comes through is as it was written, and fits the schema.
+All reading goes through :func:`opened` and :func:`read`: an archive that passes is as it was written, and
+fits the schema.
 """
 
 import hashlib
@@ -84,8 +83,8 @@ class PatientFile(io.RawIOBase):
 
     def readinto(self, buffer: Any) -> int:
         start, view = self._file.tell(), memoryview(buffer).cast("B")
-        found = self._file.readinto(view) or 0
-        view[found:] = bytes(len(view) - found)
+        count = self._file.readinto(view) or 0
+        view[count:] = bytes(len(view) - count)
         for offset, data in self._kept.items():
             first, last = max(offset, start), min(offset + len(data), start + len(view))
             if first < last:
@@ -105,18 +104,18 @@ class PatientFile(io.RawIOBase):
         super().close()
 
 
-#: Bytes of that room, HDF5's user block; the smallest that there can be.
+#: Bytes of the room for the digest, HDF5's user block; the smallest that there can be.
 ROOM = 512
-#: What it says; by hand: ``tail -c +513 ARCHIVE | sha256sum``.
+#: Text of the seal; its digest by hand: ``tail -c +513 ARCHIVE | sha256sum``.
 _TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n{}\n"
-#: How every HDF5 file begins that has no user block.
+#: First bytes of every HDF5 file without a user block.
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-#: What the beginning of a scene has, comments and a title before it, and no control character.
+#: Beginning of a scene: a section or a key, after comments and a title, and no control character.
 _SCENE = re.compile(rb"\A[^\0-\x08\x0e-\x1f]*^\s*(?:\[[\w.]+\]|\w+\s*=)", re.MULTILINE)
 
 
 def put(path: Path, seal: bytes | None = None) -> None:
-    """Seal a file that was made with this room.
+    """Seal a file that was made with room for a seal.
 
     Args:
         path: the file, closed.
@@ -131,7 +130,7 @@ def put(path: Path, seal: bytes | None = None) -> None:
 
 
 def is_sealed(path: Path) -> bool:
-    """Is there a seal, which fits? Archives of schema version 1 have none.
+    """True where a file has a seal that fits; archives of schema version 1 have none.
 
     Raises:
         OSError: the file cannot be read.
@@ -160,7 +159,7 @@ def is_sealed(path: Path) -> bool:
 
 
 def made(path: Path) -> bytes:
-    """The seal that fits a file.
+    """Seal that fits a file, ``ROOM`` bytes.
 
     Raises:
         OSError: the file cannot be read.
@@ -198,7 +197,7 @@ class Writer:
         self._open: dict[str, h5py.Dataset] = {}
 
     def __enter__(self) -> "Writer":
-        with self._told():
+        with self._refusals():
             self._disk = PatientFile(self._new.__enter__().temporary)
             self._file = h5py.File(self._disk, "w", libver=("earliest", "v110"), userblock_size=ROOM)
         return self
@@ -214,9 +213,9 @@ class Writer:
         Args:
             name: path of the dataset.
             value: what it holds.
-            about: unit and long name; those of the table of quantities if not given.
+            about: unit and long name; from the table of quantities if not given.
         """
-        with self._told():
+        with self._refusals():
             text = isinstance(value, str) or not len(value) or np.asarray(value).dtype.kind in "UO"
             if text:
                 data = value if isinstance(value, str) else list(value)
@@ -235,9 +234,9 @@ class Writer:
         about: tuple[str, str] | None = None,
     ) -> None:
         """Make room for a dataset that is written by rows."""
-        with self._told():
+        with self._refusals():
             rows = max(1, min(shape[0], 2**17 // max(1, int(np.prod(shape[1:])))))
-            # The checksum is what makes a flipped bit seen.
+            # The checksum shows a flipped bit.
             dataset = self._file.create_dataset(
                 name, shape, dtype, chunks=(rows, *shape[1:]), fletcher32=True
             )
@@ -247,7 +246,7 @@ class Writer:
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
         """Write rows of a reserved dataset."""
-        with self._told():
+        with self._refusals():
             dataset = self._open[name]
             dataset[rows] = values
             self._written.append((name, rows, _checksum(dataset.dtype, values)))
@@ -261,7 +260,7 @@ class Writer:
             attributes: the root's own.
             before: is called with the finished file before it gets its name.
         """
-        with self._told():
+        with self._refusals():
             created = datetime.now(UTC).isoformat(timespec="seconds")
             common = {"program": "galinx", "created": created}
             layout = {"schema_version": VERSION, "datasets": json.dumps(self._names), "complete": True}
@@ -282,7 +281,7 @@ class Writer:
         dataset.attrs["units"], dataset.attrs["long_name"] = about
 
     def _compare(self) -> None:
-        """A full disk can leave a file that opens and lists its datasets: compare the content."""
+        """Compare the content read back: a full disk can leave a file that opens and lists datasets."""
         with h5py.File(self._new.temporary, "r", locking=False) as file:
             datasets = {name: file[name] for name, _, _ in self._written}
             for name, rows, checksum in self._written:
@@ -292,7 +291,7 @@ class Writer:
                     )
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _refusals(self) -> Iterator[None]:
         try:
             yield
         except (OSError, RuntimeError) as error:
@@ -311,11 +310,11 @@ def _checksum(dtype: np.dtype, values: NDArray) -> int:
     return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).data)
 
 
-#: Faults that a message tells.
-_TOLD = 8
+#: Faults that a message lists at most.
+_LISTED = 8
 #: Seconds for a walk through a file without a seal, and bytes that it reads in another.
 _PATIENCE, _PACE = 60.0, 1e7
-#: How names begin of what MPI tells its processes; h5py starts MPI where it finds them.
+#: Beginnings of names of variables that MPI sets for its processes; h5py starts MPI where it meets them.
 _OF_MPI = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_", "HYDI_", "HYDRA_")
 
 
@@ -340,7 +339,7 @@ class Archive:
         _refuse(path, [*schema.faults_between(self.data, self.attributes)])
 
     def all(self) -> dict[str, Any]:
-        """Every dataset by path.
+        """Every dataset by path, large ones included.
 
         Raises:
             UnreadableArchive: a large one does not fit the schema.
@@ -357,13 +356,13 @@ class Archive:
         Raises:
             UnreadableArchive: a large one does not fit the schema.
         """
-        found, known = {}, table()
+        data, quantities = {}, table()
         for name in filter(of_states, self.names) if names is None else names:
             if large(name):
-                found[name] = self._large(name, rows)
+                data[name] = self._large(name, rows)
             else:
-                found[name] = self.data[name][rows if STATE in known[name].over else slice(None)]
-        return found
+                data[name] = self.data[name][rows if STATE in quantities[name].over else slice(None)]
+        return data
 
     def _large(self, name: str, rows: slice = slice(None)) -> Any:
         values = self._read(name, rows)
@@ -372,24 +371,24 @@ class Archive:
         return values
 
     def _read(self, name: str, rows: slice = slice(None)) -> Any:
-        with _told(self._path):
+        with _reading(self._path):
             dataset = self._file[name]
-            wanted = rows if dataset.shape else ()
-            return dataset.asstr()[wanted] if _type(dataset) == TEXT else dataset[wanted]
+            selection = rows if dataset.shape else ()
+            return dataset.asstr()[selection] if _type(dataset) == TEXT else dataset[selection]
 
 
 @contextmanager
 def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
-    """An archive as long as it is open; for the arguments see :func:`read`.
+    """Archive that stays open within the context; for the arguments see :func:`read`.
 
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
     """
-    with _told(path):
+    with _reading(path):
         there = path.is_file()
     if not there:
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
-    with _told(path):
+    with _reading(path):
         sealed = just_sealed or is_sealed(path)
         if not sealed:
             _walk(path)
@@ -401,12 +400,12 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
 def read(
     path: Path, stresses: bool = True, just_sealed: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What an archive holds.
+    """Datasets by path and attributes of an archive.
 
     Args:
         path: the file.
-        stresses: also those on the surface and inside, which can be large.
-        just_sealed: by this very process, which need not do the sum of all bytes once more.
+        stresses: also stresses on the surface and inside, which can be large.
+        just_sealed: sealed by this very process, which need not verify the digest once more.
 
     Returns:
         Arrays and text by path, and the root's attributes.
@@ -419,7 +418,7 @@ def read(
 
 
 def _walk(path: Path) -> None:
-    """Let another process read all of a file first: it is that one which HDF5 makes crash."""
+    """Let another process read all of a file first: if HDF5 crashes over it, that process ends."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(_OF_MPI)}
     patience = _PATIENCE + path.stat().st_size / _PACE
     try:
@@ -435,18 +434,18 @@ def _walk(path: Path) -> None:
 
 
 def _described(path: Path, file: h5py.File) -> tuple[dict[str, Any], dict[str, schema.Described]]:
-    found: dict[str, schema.Described] = {}
+    datasets: dict[str, schema.Described] = {}
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset):
             shape = item.shape or ()  # None: without any room
-            found[name] = schema.Described(_type(item), shape, dict(item.attrs), _whole(item))
+            datasets[name] = schema.Described(_type(item), shape, dict(item.attrs), _whole(item))
 
-    with _told(path):
+    with _reading(path):
         attributes = dict(file.attrs)
         _check_kind(path, attributes)
         file.visititems(visit)
-    return attributes, found
+    return attributes, datasets
 
 
 def _check_kind(path: Path, attributes: dict[str, Any]) -> None:
@@ -474,8 +473,8 @@ def _whole(dataset: h5py.Dataset) -> bool:
 
 def _refuse(path: Path, faults: list[str]) -> None:
     if faults:
-        more = f"\n  and {len(faults) - _TOLD} more" if len(faults) > _TOLD else ""
-        lines = "".join(f"\n  {fault}" for fault in faults[:_TOLD])
+        more = f"\n  and {len(faults) - _LISTED} more" if len(faults) > _LISTED else ""
+        lines = "".join(f"\n  {fault}" for fault in faults[:_LISTED])
         raise UnreadableArchive(
             f"{path} is not as galinx writes archives: damaged, or changed; take another copy or rerun"
             f"{lines}{more}"
@@ -483,8 +482,8 @@ def _refuse(path: Path, faults: list[str]) -> None:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """For what meets HDF5: it raises any of these where a file is not what it seems."""
+def _reading(path: Path) -> Iterator[None]:
+    """Context in which HDF5 reads: it raises any of several errors where a file is not what it seems."""
     try:
         yield
     except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:

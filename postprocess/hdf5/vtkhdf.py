@@ -19,7 +19,7 @@ from ..errors import refused
 from ..target import Target, as_target
 from .archive import PatientFile
 
-#: Layout that VTK 9.1 knows, of one grid; and that of series, which VTK knows from 9.3 on.
+#: Layouts: of one grid, which VTK reads from 9.1 on; of a series, which it reads from 9.3 on.
 _ALONE, _SERIES = (1, 0), (2, 0)
 #: VTK's numbers of triangles and quadrilaterals.
 _TRIANGLE, _QUAD = 5, 9
@@ -54,7 +54,7 @@ class Step:
 
     Attributes:
         value: what the series runs over.
-        pieces: of the grid, one of them with a quadrilateral; the next is asked for when one is written.
+        pieces: of the grid, one of them with a quadrilateral; each is made after the last is written.
         told: numbers and texts that hold for all of the grid, by name; the same names in every step.
     """
 
@@ -75,7 +75,7 @@ def write(
     Args:
         path: final name; ParaView knows the kind of file by the endings .hdf and .vtkhdf. Nothing is
             replaced where it is a path alone.
-        steps: one grid, or several for a series; the next is asked for when one is written.
+        steps: one grid, or several for a series; each is made after the last is written.
         about: unit and long name of every array by name.
         coloured: the array that viewers colour by unasked.
         series: is it one, with times?
@@ -125,7 +125,7 @@ def _fill(
 def _in_series(
     root: h5py.Group, step: Step, count: int, first: NDArray, about: Mapping[str, tuple[str, str]]
 ) -> None:
-    """Where a step's rows begin in every dataset."""
+    """Append the offsets at which a step's rows begin in every dataset."""
     _append(root, "Steps/Values", np.array([step.value]))
     _append(root, "Steps/PartOffsets", np.array([count]))
     _append(root, "Steps/NumberOfParts", np.array([1]))
@@ -141,7 +141,7 @@ def _in_series(
 def _grid(
     root: h5py.Group, pieces: Iterable[Piece], about: Mapping[str, tuple[str, str]]
 ) -> NDArray[np.int64]:
-    """Write a grid piece by piece; its points, cells and corners of cells."""
+    """Write a grid piece by piece; return its numbers of points, cells and corners of cells."""
     points = cells = corners = 0
     for piece in pieces:
         if not len(piece.quads):

@@ -9,15 +9,15 @@ import h5py
 
 
 def walk(path: str) -> None:
-    """Read every attribute and every value.
+    """Read every attribute and every value of a file.
 
     Raises:
         Exception: whatever HDF5 has to say.
     """
     with h5py.File(path, "r") as file:
-        found: list[h5py.HLObject] = [file]
-        file.visititems(lambda _, item: found.append(item))
-        for item in found:
+        items: list[h5py.HLObject] = [file]
+        file.visititems(lambda _, item: items.append(item))
+        for item in items:
             dict(item.attrs)
             # A size that was made up is no reason to read for ever; the schema sees it.
             if isinstance(item, h5py.Dataset) and is_there(item):
@@ -29,13 +29,13 @@ def _read(dataset: h5py.Dataset) -> None:
         dataset[()]
         return
     for part in dataset.iter_chunks():
-        # Where its index has lost a part HDF5 gives zeros; asked for the part itself it says so.
+        # Where its index has lost a part HDF5 gives zeros; reading the part itself raises an error.
         dataset.id.read_direct_chunk(tuple(rows.start for rows in part))
         dataset[part]
 
 
 def is_there(dataset: h5py.Dataset) -> bool:
-    """Has the file room for all values that a dataset says it has?"""
+    """True where the file has room for all values of a dataset."""
     room = dataset.id.get_storage_size()
     return dataset.shape is not None and room >= dataset.size * dataset.dtype.itemsize
 

@@ -1,9 +1,9 @@
-"""The one table of archived quantities: archives, checks, comparisons, plans and pages follow from it."""
+"""Table of archived quantities: archives, checks, comparisons, plans and pages follow from it."""
 
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
-# Each adds its own; tables have them in this order.
+# Each module adds its own quantities; tables have them in this order.
 # isort: off
 from . import runs, states  # noqa: F401
 from . import stresses, validity, yielding  # noqa: F401
@@ -33,40 +33,40 @@ def column(name: str) -> str:
 
 
 def table() -> dict[str, Quantity]:
-    """Every quantity by its path, the parameters of all known friction laws among them."""
+    """Every quantity by its path, the parameters of all registered friction laws among them."""
     of_laws = {
         column(key): Quantity(
-            column(key), "none" if known.options else known.unit or "1", known.about, (STATE,),
-            symbol=known.symbol or key, range=known.range,
+            column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
+            (STATE,), symbol=parameter.symbol or key, range=parameter.range,
         )
         for law in LAWS.values()
-        for key, known in parameters(law).items()
-        if known.single
+        for key, parameter in parameters(law).items()
+        if parameter.single
     }  # fmt: skip
     return of_laws | QUANTITIES
 
 
 def declared(path: str) -> Quantity:
-    """The quantity of a path.
+    """Quantity of a path.
 
     Raises:
         KeyError: there is none; the message names the nearest.
     """
-    known = table()
-    if path not in known:
-        close = get_close_matches(path, known, 1)
+    rows = table()
+    if path not in rows:
+        close = get_close_matches(path, rows, 1)
         hint = f"; did you mean {close[0]}?" if close else ""
         raise KeyError(f"{path} is in no row of the table of quantities{hint}")
-    return known[path]
+    return rows[path]
 
 
 def of_states(path: str) -> bool:
-    """Does a dataset hold values of states, or the positions of some?"""
+    """True where a dataset holds values of states, or the positions of some."""
     return path.split("/")[0] in ("states", "surface", "interior", "interfaces")
 
 
 def large(path: str) -> bool:
-    """Does it hold a value at every point of every state?"""
+    """True where a dataset holds a value at every point of every state."""
     row = table().get(path)
     return row is not None and STATE in row.over and bool({POINT, INSIDE, ALONG} & set(row.over))
 
@@ -75,8 +75,8 @@ class _Words(Collection[str]):
     """Words of a scene's output.quantities, those of users' quantities among them."""
 
     def __iter__(self) -> Iterator[str]:
-        asked = (quantity.asked_by for quantity in QUANTITIES.values() if quantity.asked_by)
-        return iter(dict.fromkeys([FRICTION_ALONE, INTENSITIES, *asked]))
+        words = (quantity.asked_by for quantity in QUANTITIES.values() if quantity.asked_by)
+        return iter(dict.fromkeys([FRICTION_ALONE, INTENSITIES, *words]))
 
     def __len__(self) -> int:
         return len(list(iter(self)))

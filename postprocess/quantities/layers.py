@@ -65,9 +65,9 @@ INTERFACE_DEPTH = Quantity(
     "interfaces/depth_over_a", "1", "depths of the interfaces over the half-width", (INTERFACE,),
     asked_by=AT_INTERFACES, range=Range(above=0.0),
 )  # fmt: skip
-#: Where ends are found every state has its own half-width.
+#: With free ends every state has its own half-width.
 INTERFACE_DEPTH_IN_M = Quantity(
-    "interfaces/depth", "m", "depths of the interfaces, where ends of contacts are found", (INTERFACE,),
+    "interfaces/depth", "m", "depths of the interfaces, where contacts have free ends", (INTERFACE,),
     asked_by=AT_INTERFACES, range=Range(above=0.0),
 )  # fmt: skip
 ALONG_X = Quantity(
@@ -92,9 +92,9 @@ def _along(method: str, i: int, name: str, what: str) -> Quantity:
 
 
 def _extremes(method: str, i: int, name: str, what: str) -> tuple[Quantity, ...]:
-    """Largest and smallest value with their places."""
+    """Quantities of the largest and the smallest value along each interface, with their places."""
 
-    def one(end: str, sign: float, place: bool) -> Quantity:
+    def quantity(end: str, sign: float, place: bool) -> Quantity:
         def read(s: Any, _: Any) -> NDArray[np.float64]:
             return extreme(s.interfaces[i], s.places.along, sign)[int(place)]
 
@@ -107,7 +107,7 @@ def _extremes(method: str, i: int, name: str, what: str) -> tuple[Quantity, ...]
         return Quantity(path, "N/(2a)", about, over, read, method, asked_by=AT_INTERFACES)
 
     ends = (("max", 1.0), ("min", -1.0))
-    return tuple(one(end, sign, place) for end, sign in ends for place in (False, True))
+    return tuple(quantity(end, sign, place) for end, sign in ends for place in (False, True))
 
 
 def _words(name: str, what: str) -> str:
@@ -121,12 +121,12 @@ INTERFACES = {
     )
     for method in (SIE, FEM)
 }
-#: Their extremes.
+#: Extremes of the stresses at interfaces, by method.
 INTERFACE_EXTREMES = {
     method: tuple(
-        one
+        row
         for i, (name, what) in enumerate(_PARTS.items())
-        for one in _extremes(method, i, name, _words(name, what))
+        for row in _extremes(method, i, name, _words(name, what))
     )
     for method in (SIE, FEM)
 }
@@ -141,7 +141,7 @@ def _estimate(method: str, name: str, what: str, word: str, rule: str) -> Quanti
 
 
 _ALONG = "stresses at interfaces over the largest along each, layered half-plane"
-#: Of stresses, by method.
+#: Estimates of stresses at interfaces, by method.
 ESTIMATE_AT_INTERFACES = {
     method: _estimate(method, "interfaces", _ALONG, AT_INTERFACES, f"estimate at interfaces, {method}")
     for method in (SIE, FEM)
@@ -162,7 +162,7 @@ ESTIMATE_INSIDE = {
 STRESSES_INSIDE = {SIE: components(SIE, "from the transform")}
 INVARIANTS_INSIDE = {SIE: invariants(SIE)}
 
-HIGHEST, LOWEST = ({SIE: one} for one in extremes(SIE))
+HIGHEST, LOWEST = ({SIE: row} for row in extremes(SIE))
 TENSION = {SIE: tensions(SIE)}
 
 QUANTITIES.add_all(globals())

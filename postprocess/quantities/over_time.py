@@ -1,12 +1,7 @@
-"""What happens over time where a punch is pressed on and slides, one row for each start.
+"""Quantities of motions in time, one row for each start: a punch is pressed on and slides.
 
-How far starts from rest are from steady motion, one row for each.
-
-Works, and stresses on the surface, over time, one row for each motion.
-
-Where energy goes over time, one row for each motion.
-
-Stresses on the surface at chosen times, one row for each motion in time.
+Indentation, centre of the pressure, K_I, load and friction over time; distance from steady motion; works
+and energies; and stresses on the surface, over time and at chosen times.
 """
 
 from galinx.solvers.parameters import Range
@@ -55,19 +50,19 @@ STEADY_K_I = _row(
 
 
 def _by_method(name: str, unit: str, about: str, nan_allowed: str | None = None) -> dict[str, Quantity]:
-    """By both; the integral equation says nothing from where the punch turns round."""
-    how = {FEM: "finite elements", SIE: "integral equation"}
-    untold = {FEM: NEVER, SIE: ANYWHERE}
+    """Quantities of both methods; the integral equation has none from where the punch turns round."""
+    methods = {FEM: "finite elements", SIE: "integral equation"}
+    nan = {FEM: NEVER, SIE: ANYWHERE}
     return {
         method: _row(
             f"{method}/{name}",
             unit,
-            f"{about}, {told}",
+            f"{about}, {words}",
             (START, INSTANT),
             method=method,
-            nan_allowed=nan_allowed or untold[method],
+            nan_allowed=nan_allowed or nan[method],
         )
-        for method, told in how.items()
+        for method, words in methods.items()
     }
 
 
@@ -99,7 +94,7 @@ ESTIMATE = _row(
 )  # fmt: skip
 
 
-#: Shares of steady motion within which something is told to be.
+#: Shares of steady motion within which a start is reported to be.
 SHARES = (0.1, 0.01, 0.001)
 #: Their dimension.
 SHARE = "10, 1 and 0.1 %"
@@ -110,20 +105,20 @@ OFF = {
     method: Quantity(
         f"time/{method}/off_steady", "1",
         "distance from steady motion at the end, the largest of the differences of K_I at both ends, "
-        f"over that of steady motion, and of the centre of the pressure, over the half-width, {told}",
+        f"over that of steady motion, and of the centre of the pressure, over the half-width, {words}",
         (START,), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
-    for method, told in _HOW.items()
+    for method, words in _HOW.items()
 }  # fmt: skip
 WITHIN = {
     method: Quantity(
         f"time/{method}/steady_within", "a/c_s",
         "time from which on that is at most 0.1, 0.01 and 0.001; where it is later than the last of "
         "/time/t what is left is taken to fall like 1/t if it does so in the second half of the motion, "
-        f"NaN where that is too short to tell, {told}",
+        f"NaN where that is too short to tell, {words}",
         (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
-    for method, told in _HOW.items()
+    for method, words in _HOW.items()
 }  # fmt: skip
 APPROACH = Quantity(
     "time/steady_within_1_percent", "a/c_s",
@@ -136,10 +131,10 @@ APPROACH = Quantity(
 def _work_by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
     return {
         method: Quantity(
-            f"time/{method}/{name}", unit, f"{about}, {told}", (START, INSTANT), asked_by=TIME,
+            f"time/{method}/{name}", unit, f"{about}, {words}", (START, INSTANT), asked_by=TIME,
             method=method, nan_allowed=ANYWHERE,
         )
-        for method, told in _HOW.items()
+        for method, words in _HOW.items()
     }  # fmt: skip
 
 
@@ -162,7 +157,7 @@ PRESSURE = Quantity(
     asked_by=TIME, method=SIE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
-#: In the order in which a course of the integral equation tells them.
+#: In the order in which a course of the integral equation gives them.
 ALL = OF_LOAD[SIE], OF_FRICTION[SIE], PRESSURE, LEFT[SIE], RIGHT[SIE]
 
 
@@ -198,7 +193,7 @@ OUTPUT, SURFACE_PLACE = "chosen times", "places along the surface"
 
 
 SURFACE_TIMES = Quantity(
-    "time/surface/t", "a/c_s", "times at which stresses along the surface are told", (OUTPUT,),
+    "time/surface/t", "a/c_s", "times of the stresses along the surface", (OUTPUT,),
     asked_by=TIME, range=Range(at_least=0.0),
 )  # fmt: skip
 SURFACE_PLACES = Quantity(
@@ -210,10 +205,11 @@ SURFACE_PLACES = Quantity(
 def _surface_by_method(name: str, about: str) -> dict[str, Quantity]:
     return {
         method: Quantity(
-            f"time/surface/{method}/{name}", "N/(2a)", f"{about}, {told}", (START, OUTPUT, SURFACE_PLACE),
+            f"time/surface/{method}/{name}", "N/(2a)", f"{about}, {words}",
+            (START, OUTPUT, SURFACE_PLACE),
             asked_by=TIME, method=method, nan_allowed=NEVER if method == FEM else ANYWHERE,
         )
-        for method, told in _HOW.items()
+        for method, words in _HOW.items()
     }  # fmt: skip
 
 

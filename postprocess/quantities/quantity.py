@@ -1,4 +1,4 @@
-"""What is known of an archived quantity."""
+"""Quantity of an archive: what it is, how it is read off a solution and judged; and the table of all."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -16,32 +16,32 @@ STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
 )  # fmt: skip
 #: Of layered solids.
 INTERFACE, ALONG = "interfaces", "points along interfaces"
-#: What a law remembers, and strokes.
+#: Inner variables of a friction law, and strokes.
 INNER, STROKE = "inner variables", "strokes"
 
-#: What a dataset is made of.
+#: Types of datasets.
 TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
-#: Methods, and what is known without solving: the local analysis of the punch's edges.
+#: Methods, and the local analysis of the punch's edges, which needs no solution.
 CLOSED_FORM, SIE, FEM, LOCAL = "closed_form", "sie", "fem", "local"
-#: Those that solve, in words.
+#: Methods that solve, in words.
 METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
-#: Where NaN is an answer.
+#: Places where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"
 
-#: The traction mode with a pressure of the user's own, where what is said of it is of no other; and all
+#: Mode of a prescribed pressure, the traction mode with a pressure of the user's own; and mode of all
 #: that is not that: the pressure of a punch with edges.
 OWN_PRESSURE, PUNCH = "own pressure", "punch"
 
-#: A punch whose contact ends where the pressure says; and where all stresses are finite, under such a
-#: punch or a pressure of the user's own.
+#: Mode of a punch whose contact has free ends; and of all finite stresses, under such a punch or a
+#: prescribed pressure.
 FOUND, FINITE = "found ends", "finite stresses"
 
-#: One method, the numbers of which are compared with no other's.
+#: Mode of one method alone, the numbers of which are compared with no other's.
 ALONE = "one method"
 
-#: So many speeds that some may tell the others.
+#: Mode of so many speeds that some of them may give the others by a fit.
 SWEPT = "fitted speeds"
 
 #: Words of a scene's output.quantities that ask for no dataset of their own.
@@ -50,7 +50,7 @@ FRICTION_ALONE, INTENSITIES = "friction", "sif"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity: what it is, when it is computed, how it is read off a solution, how it is judged.
+    """Archived quantity: what it is, when it is computed, how it is read off a solution and judged.
 
     Attributes:
         path: of its dataset in an archive.
@@ -58,7 +58,7 @@ class Quantity:
         about: what it is; the dataset's long name, up to its first comma that of axes.
         over: its dimensions.
         of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
-            None where the run itself puts it in.
+            None where the run itself gives it.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
         mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND``, ``FINITE``,
             ``ALONE`` or ``SWEPT`` where only that one gives it.
@@ -68,9 +68,9 @@ class Quantity:
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
         compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
-        whole: are its numbers integers? None that a solution gives: NaN says that there is none.
+        whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
-        accuracy: does it say how good other numbers are, and nothing of the contact?
+        accuracy: it says how good other numbers are, and nothing of the contact.
     """
 
     path: str
@@ -92,12 +92,12 @@ class Quantity:
 
     @property
     def type(self) -> str:
-        """``TEXT``, ``WHOLE`` or ``NUMBER``."""
+        """Type of its dataset: ``TEXT``, ``WHOLE`` or ``NUMBER``."""
         return TEXT if self.unit == "none" else WHOLE if self.whole else NUMBER
 
     @property
     def solved(self) -> bool:
-        """Does it come from a solution, part by part?"""
+        """True where it comes from a solution, part by part."""
         return self.of is not None or self.of_data is not None
 
 
@@ -121,9 +121,9 @@ class Table(Registry[Quantity]):
         """Add all quantities among a module's names, single ones and those by method."""
         for value in list(names.values()):
             for entry in value.values() if isinstance(value, dict) else (value,):
-                for one in entry if isinstance(entry, tuple) else (entry,):
-                    if isinstance(one, Quantity):
-                        self.add(one)
+                for row in entry if isinstance(entry, tuple) else (entry,):
+                    if isinstance(row, Quantity):
+                        self.add(row)
 
 
 #: All quantities but the parameters of friction laws; every module adds its own.

@@ -1,6 +1,6 @@
-"""What a run says of itself, and the friction loops that its states lie on.
+"""Quantities of a run: the record of it, the friction loops that its states lie on, and sliders.
 
-How a slider moves: a mass that is pulled through a spring, one for each load and law.
+A slider is a mass that is pulled through a spring, one for each load and law.
 """
 
 from galinx.solvers.parameters import Range
@@ -17,7 +17,7 @@ from .quantity import (
     Quantity,
 )
 
-#: Dimensions of what is told in words, and of times.
+#: Dimensions of texts, and of times.
 LINE, TIMED = "lines", "steps"
 
 _NOT_NEGATIVE = Range(at_least=0.0)

@@ -118,15 +118,15 @@ ESTIMATE = Quantity(
 )  # fmt: skip
 FITTED = Quantity(
     "states/fem/fitted", "1",
-    "1 where a fit through other speeds tells the state, 0 where its speed was solved",
+    "1 where a fit through other speeds gives the state, 0 where its speed was solved",
     (STATE,), lambda s, _: s.fitted, FEM, SWEPT, range=Range(at_least=0.0, at_most=1.0), accuracy=True,
 )  # fmt: skip
 
 
-def _found(
+def _of_free_contact(
     name: str, unit: str, about: str, of: Callable[[Any], NDArray], compared: str = "", **options: Any
 ) -> dict[str, Quantity]:
-    """A quantity of contacts whose ends are found, by all methods."""
+    """Quantity of contacts with free ends, by all methods."""
     rules = (compared, f"{compared} over layers") if compared else ()
     return {
         method: Quantity(
@@ -137,28 +137,28 @@ def _found(
     }  # fmt: skip
 
 
-HALF_WIDTH = _found(
+HALF_WIDTH = _of_free_contact(
     "half_width", "m", "half-width of the contact, over which the state's lengths are",
     lambda s: s.half_width, "ends", range=Range(above=0.0),
 )  # fmt: skip
-CENTRE = _found(
+CENTRE = _of_free_contact(
     "centre", "m", "middle of the contact, from the punch's axis; the state's positions are from there",
     lambda s: s.centre, "ends",
 )  # fmt: skip
-LARGEST = _found(
+LARGEST = _of_free_contact(
     "largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
     lambda s: s.largest[0], "largest pressure", nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
-LARGEST_X = _found(
+LARGEST_X = _of_free_contact(
     "largest_pressure_position", "1",
     "place of the largest contact pressure, over the half-width; NaN where it is infinite",
     lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0),
 )  # fmt: skip
 
-#: By method.
+#: Resultants of a prescribed pressure, by method.
 RESULTANT = {
     method: Quantity(
-        f"states/{method}/normal_force", "N/m", "resultant of the pressure that is put in", (STATE,),
+        f"states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
         lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,),
         accuracy=True,
     )
@@ -166,7 +166,7 @@ RESULTANT = {
 }  # fmt: skip
 
 
-#: Share of the larger intensity below which the other is not measured against itself.
+#: Share of the larger intensity below which an error is over this share rather than over itself.
 _VANISHING = 0.1
 
 
@@ -176,7 +176,7 @@ def K_I_error(data: Mapping[str, Any]) -> NDArray[np.float64]:
         np.array([data[side[method].path] for side in (K_I_LEFT, K_I_RIGHT)])
         for method in (FEM, CLOSED_FORM)
     )
-    # At an end that is found it is 0, and small where a tilted punch is about to lift off.
+    # At a free end it is 0, and small where a tilted punch is about to lift off.
     size = np.maximum(np.abs(exact), _VANISHING * np.abs(exact).max(axis=0))
     return np.max(np.abs(fem - exact) / np.where(size > 0.0, size, 1.0), axis=0)
 
@@ -187,7 +187,7 @@ TRUE_ERROR = Quantity(
     needs=tuple(row.path for side in (K_I_LEFT, K_I_RIGHT) for row in side.values()),
     range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
-#: By method, of one alone.
+#: Residuals of one method alone, by method.
 RESIDUAL = {
     method: Quantity(
         f"states/{method}/residual", "1",

@@ -1,4 +1,4 @@
-"""Stresses on the surface and inside."""
+"""Quantities of stresses on the surface and inside."""
 
 from collections.abc import Callable
 from typing import Any
@@ -67,7 +67,7 @@ def _extreme(method: str, end: str, sign: float, what: str) -> Quantity:
 
 
 def extremes(method: str) -> tuple[Quantity, Quantity]:
-    """Highest and lowest in-plane stress by a method."""
+    """Quantities of the highest and the lowest in-plane stress by a method."""
     return _extreme(method, "max", 1.0, "highest"), _extreme(method, "min", -1.0, "lowest")
 
 
@@ -128,13 +128,13 @@ _COMPONENTS = {
 
 
 def components(method: str, source: str) -> tuple[Quantity, ...]:
-    """σ_XX, σ_YY, σ_XY inside by a method."""
+    """Quantities σ_XX, σ_YY, σ_XY inside by a method."""
     return tuple(
         _component(method, source, i, ij, what) for i, (ij, what) in enumerate(_COMPONENTS.items())
     )
 
 
-#: The same by method.
+#: Stresses inside, by method.
 STRESSES_INSIDE = {
     CLOSED_FORM: components(CLOSED_FORM, "from the potentials"),
     FEM: components(FEM, "from the displacement"),
@@ -149,13 +149,13 @@ def _invariant(method: str, name: str, about: str, of: Callable[[Any, Any], NDAr
 
 
 def _von_mises(s: Any, body: Any) -> NDArray:
-    """Over layers a solution knows which solid is where."""
+    """Von Mises stress inside; over layers a solution has the σ_ZZ of the solid at each point."""
     σ_XX, σ_YY, σ_XY = s.inside
     return von_mises(σ_XX, σ_YY, σ_XY, s.σ_ZZ if body.layered else body.solid.σ_ZZ(σ_XX, σ_YY, σ_XY))
 
 
 def invariants(method: str) -> tuple[Quantity, ...]:
-    """Principal stresses and von Mises inside by a method."""
+    """Quantities of the principal stresses and von Mises inside by a method."""
     return (
         _invariant(
             method, "sigma_1", "larger principal stress in the plane",
@@ -169,7 +169,7 @@ def invariants(method: str) -> tuple[Quantity, ...]:
     )  # fmt: skip
 
 
-#: The same by method.
+#: Invariants inside, by method.
 INVARIANTS_INSIDE = {method: invariants(method) for method in (CLOSED_FORM, FEM)}
 
 QUANTITIES.add_all(globals())

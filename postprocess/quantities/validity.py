@@ -1,4 +1,4 @@
-"""Where the answers do not hold: what a user has to know of a steady, linear solution with friction."""
+"""Quantities of where the answers do not hold: limits of a steady, linear solution with friction."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ CROSSINGS = Quantity(
     (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 
-#: Of σ_XY/σ_YY.
+#: Signs of σ_XY/σ_YY.
 SIGNS = ("positive", "negative")
 
 
@@ -44,14 +44,14 @@ def _flutter(sign: str, g: str) -> Quantity:
     )  # fmt: skip
 
 
-#: By the sign of σ_XY/σ_YY.
+#: Flutter thresholds by the sign of σ_XY/σ_YY.
 FLUTTER = {
     sign: _flutter(sign, g) for sign, g in zip(SIGNS, ("sigma_XY/sigma_YY > 0", "sigma_XY/sigma_YY < 0"))
 }
 
 
 def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
-    """At X = -a and X = a."""
+    """Quantities of a distance from X = -a and from X = a."""
 
     def end(side: str, at: str, i: int) -> Quantity:
         return Quantity(
@@ -77,7 +77,7 @@ STRAINED = (*SLIP_REVERSED, *STRAIN)
 
 
 def tensions(method: str) -> tuple[Quantity, Quantity]:
-    """Largest tension under the punch by a method, and its place."""
+    """Quantities of the largest tension under the punch by a method, and of its place."""
 
     def of(i: int) -> Any:
         def values(s: Any, _: Any) -> NDArray[np.float64]:
@@ -99,7 +99,7 @@ def tensions(method: str) -> tuple[Quantity, Quantity]:
     )  # fmt: skip
 
 
-#: How large, and where, by method.
+#: Largest tension and its place, by method.
 TENSION = {method: tensions(method) for method in (CLOSED_FORM, FEM)}
 
 QUANTITIES.add_all(globals())

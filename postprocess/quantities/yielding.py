@@ -1,4 +1,4 @@
-"""Where and at which load the solid yields, by von Mises; σ_ZZ is included."""
+"""Quantities of yield by von Mises, σ_ZZ included: at which load, where, and how deep."""
 
 from collections.abc import Callable
 from typing import Any
@@ -34,7 +34,7 @@ def _both(
     compared: str = "",
     range: Range = _NOT_NEGATIVE,
 ) -> dict[str, Quantity]:
-    """A quantity of a state by both methods."""
+    """Quantity of a state by both methods."""
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
@@ -47,7 +47,7 @@ def _both(
 def _largest(
     name: str, stress: str, of: Callable[[Any], Peak], direction: str = ""
 ) -> tuple[dict[str, Quantity], ...]:
-    """A stress where it is largest, and both coordinates of the place."""
+    """Quantities of the largest stress, and of both coordinates of its place."""
     about, place = (
         f"largest {stress}{direction}, on the surface and inside",
         f"place of the largest {stress}",
@@ -105,7 +105,7 @@ ESTIMATE_YIELD = Quantity(
     range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
-#: By method, those that are lengths.
+#: Quantities over the half-width, by method.
 OVER_HALF_WIDTH = (
     VON_MISES_X, VON_MISES_Y, SHEAR_X, SHEAR_Y, REACH_LEFT, REACH_RIGHT, DEPTH,
 )  # fmt: skip

@@ -131,7 +131,11 @@ _SQUARE, _SHARE = 0.5, 0.5
 #: that the remaining displacement there strains little. The first grows as the inverse of how far
 #: the speed is from that of a wave along the substrate, the second as its root, beside what the length
 #: grows by; measured, with a factor of 2. The last is the share of the tolerance for each.
+#: What moves the substrate strains layers that are stiffer and thick by so much more stress: the first is
+#: larger by that, and the second less small; measured with layers of 0.3 to 100 times the substrate's
+#: modulus, 0.2 to 5 a thick. Their length over their depth, alike; and how thick a layer is for that.
 _MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
+_ALIKE, _THICK = 2.0, 2.0
 #: Factor by which that share is smaller for stresses.
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
@@ -188,12 +192,20 @@ class OnLayers(MeshKind):
 
     @property
     def _moment(self) -> float:
-        return _MOMENT / self.left
+        return _MOMENT * self._stiffer / self.left
+
+    @property
+    def _stiffer(self) -> float:
+        """Stiffness under the punch over that of the substrate, at least 1."""
+        depth = self.depths[-1]
+        contrast = max(self.left * self.far_length / (_ALIKE * depth), 1.0)
+        return 1.0 + (contrast - 1.0) * depth**2 / (depth**2 + _THICK**2)
 
     @property
     def _cubed(self) -> float:
         at_rest = self.left * self.far_length
-        return _CUBED * min(1.0, _LONG / at_rest) / self.left**0.5
+        long = _LONG * max(1.0, 2.0 * (self.depths[-1] / _THICK) ** 2)
+        return _CUBED * min(1.0, long / at_rest) / self.left**0.5
 
     @property
     def length(self) -> float:

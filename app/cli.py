@@ -39,7 +39,7 @@ def extend(path: Path) -> None:
         raise BadInput(f"cannot read {path}: expected a Python file that registers models")
     try:
         runpy.run_path(str(path))
-    except process.Asked:  # the process itself is to end
+    except process.Interrupted:  # the process itself is to end
         raise
     except BaseException as error:  # whatever ends the file, sys.exit among it
         lines = [frame.lineno for frame in extract_tb(error.__traceback__) if frame.filename == str(path)]

@@ -318,7 +318,7 @@ def main() -> None:
         mpirun, count, python, *arguments = sys.argv[1:]
         galinx = [python, "-P", "-m", "galinx", *map(_shared, arguments)]
         status = Job([*tied, mpirun, "-n", count, *galinx]).run()
-    except process.Asked:
+    except process.Interrupted:
         process.end_stopped(process.NOTHING)
     except OSError as error:
         refuse(f"cannot start mpirun: {error}")

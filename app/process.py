@@ -92,7 +92,7 @@ _FIRST = 2.0
 _leave: Callable[[], str] | None = None
 
 
-class Asked(BaseException):
+class Interrupted(BaseException):
     """This process was interrupted. No KeyboardInterrupt: click would print an empty line."""
 
 
@@ -174,7 +174,7 @@ def complain(message: str) -> None:
 
 def _dropped(exception: "sys.UnraisableHookArgs") -> None:
     """Handle an exception that a library drops: nothing is printed for the one that ends the process."""
-    if not isinstance(exception.exc_value, Asked):
+    if not isinstance(exception.exc_value, Interrupted):
         sys.__unraisablehook__(exception)
 
 
@@ -185,4 +185,4 @@ def _on_signal(*_: object) -> None:
     if ranks.from_environment()[0] > 0:  # rank 0 says what there is to say
         end_stopped(NOTHING)
     signal.alarm(_PATIENCE)
-    raise Asked
+    raise Interrupted

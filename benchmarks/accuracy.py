@@ -22,7 +22,7 @@ from mpi4py import MPI
 
 import galinx
 from galinx.meshes import MESHES
-from galinx.meshes.kind import Wanted
+from galinx.meshes.kind import Requirements
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.pressure import contact_recovery, from_moments
@@ -147,7 +147,7 @@ def of_planes(E1: float, angle: float, share: float, more: int, pieces: int) -> 
     """Largest relative error of σ_YY at degree 8 and g = -0.3, with rings for a tolerance of 1e-6."""
     solid = Orthotropic(E1 * 1e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.7e9, 1.5e3, np.radians(angle))
     kind, response, g = MESHES["confocal"], solid.response(share * solid.limit()), -0.3
-    even = kind.refinement(Wanted(1e-6))
+    even = kind.refinement(Requirements(1e-6))
     pattern = kind.build(replace(even, sectors=even.sectors + more, pieces=pieces))
     space = Space(*distribute(pattern, MPI.COMM_SELF), TAGS, kind.chart, 8, form=solid.form, terms=8)
     pressure, local = recovered(space, response, g)

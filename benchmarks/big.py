@@ -10,7 +10,7 @@ import time
 from mpi4py import MPI
 
 from galinx.clock import Clock
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.boundary import hold
 from galinx.solvers.fem.linear import Factor, Multigrid, available
@@ -58,7 +58,7 @@ def main() -> None:
     for name, degree, all_cuts in CASES:
         for cuts in all_cuts:
             kind = MESHES[name]
-            cells = kind.build(kind.refinement(Wanted(1e-6)), cuts, comm.rank, comm.size)
+            cells = kind.build(kind.refinement(Requirements(1e-6)), cuts, comm.rank, comm.size)
             space = Space(*distribute(cells, comm), TAGS, kind.chart, degree)
             if space.size > most:
                 continue

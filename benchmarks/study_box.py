@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 import galinx
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
 from galinx.meshes.store import through_gmsh
@@ -36,7 +36,7 @@ CHANGES = {
 
 def block() -> QuadMesh:
     """The box pattern with its rings and columns cut until it has the wanted number of cells."""
-    coarse = MESHES["box"].refinement(Wanted(1e-2))
+    coarse = MESHES["box"].refinement(Requirements(1e-2))
     rings = 4 * coarse.sectors * coarse.levels
     k = round((ELEMENTS / (rings + 2 * coarse.sectors * len(coarse.columns))) ** 0.5)
     sectors, levels = k * coarse.sectors, k * coarse.levels

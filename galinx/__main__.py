@@ -18,7 +18,7 @@ def main() -> None:
         run_from_shell()
     except ImportError as error:
         refuse(errors.unavailable(error))
-    except process.Asked:
+    except process.Interrupted:
         process.end_stopped(process.NOTHING)
 
 

@@ -1,6 +1,6 @@
 """Meshes of the half-plane, by the name that scenes use."""
 
 from .half_plane import CONFOCAL
-from .kind import MESHES, MeshKind, Wanted
+from .kind import MESHES, MeshKind, Requirements
 
-__all__ = ["CONFOCAL", "MESHES", "MeshKind", "Wanted"]
+__all__ = ["CONFOCAL", "MESHES", "MeshKind", "Requirements"]

@@ -152,7 +152,7 @@ _GENTLER, _STEEPER = 0.6, 1.5
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Requirements:
     """Requirements on a mesh.
 
     Attributes:
@@ -237,7 +237,7 @@ class MeshKind:
         piece = cut(rectangle(refinement, self.fan), cuts, part, parts)
         return QuadMesh(self.place(piece.points, refinement), piece.cells, piece.edges)
 
-    def refinement(self, required: Wanted) -> Refinement:
+    def refinement(self, required: Requirements) -> Refinement:
         """Refinement that meets the requirements with :meth:`degree`."""
         ratio, sectors = self.ratio, self.sectors
         if self._gentler(required):
@@ -269,23 +269,23 @@ class MeshKind:
         count = ceil((reach - first) / self.column)
         return (first, *((reach - first) / count,) * count)
 
-    def _gentler(self, required: Wanted) -> bool:
+    def _gentler(self, required: Requirements) -> bool:
         """True where stresses need gentler rings, and more cells in angle."""
         tight = required.around or self._of_cells(required) < self.gentle
         return required.nearest is not None and tight
 
-    def _own_rings(self, required: Wanted) -> bool:
+    def _own_rings(self, required: Requirements) -> bool:
         """True where rings for stresses have the ratio ``stressed``, and none gentler still."""
         if not self.stressed or required.nearest is None or self._gentler(required):
             return False
         turned = not required.inside or self._apart(required) > _TURNED
         return turned and self._of_cells(required) < _LOOSE
 
-    def _in_angle(self, required: Wanted) -> bool:
+    def _in_angle(self, required: Requirements) -> bool:
         """True where stresses need cells fine in angle: off the surface, or on it without own rings."""
         return required.inside or required.around or not self.stressed
 
-    def _turning(self, required: Wanted) -> tuple[float, float, float]:
+    def _turning(self, required: Requirements) -> tuple[float, float, float]:
         """Limits of the spread of a solid's fields: one of ``_ALONE``, ``_BESIDE``, …, see there."""
         if required.nearest is None:
             return _ALONE
@@ -293,7 +293,7 @@ class MeshKind:
             return _BESIDE
         return _INSIDE if required.inside and self._own_rings(required) else _AROUND
 
-    def _cuts_middle(self, required: Wanted) -> bool:
+    def _cuts_middle(self, required: Requirements) -> bool:
         """True where the outermost ring is cut, which meets in the middle of the contact.
 
         A curved surface is not resolved there otherwise. With the cut the degree may be lower: K_I and
@@ -301,12 +301,12 @@ class MeshKind:
         """
         return required.bends and self.rings
 
-    def _apart(self, required: Wanted) -> float:
+    def _apart(self, required: Requirements) -> float:
         """Spread of the planes of the solid's fields, scaled by the digits to reach, 1 at six digits."""
         digits = -log10(self._of_cells(required)) * (1.0 if required.nearest is None else _OF_STRESSES)
         return required.spread * digits / 6.0
 
-    def _finer(self, required: Wanted) -> int:
+    def _finer(self, required: Requirements) -> int:
         """Number of additional sectors for a solid whose fields live in planes far apart.
 
         The large cells around the punch cannot resolve both fields, whatever the degree is; cells within
@@ -317,7 +317,7 @@ class MeshKind:
         more = ceil((apart - start) / step) if apart > least else 0
         return more + more % 2 if self.walls else more
 
-    def _innermost(self, required: Wanted) -> float:
+    def _innermost(self, required: Requirements) -> float:
         """Size of the innermost cells in the chart that meets the requirements."""
         tolerance = self._of_cells(required)
         size = float((self.innermost * tolerance) ** (1.0 / self._power(required)))
@@ -328,7 +328,7 @@ class MeshKind:
             size = min(size, sqrt(2.0 * required.nearest) * min(0.5, beside * sqrt(tolerance)))
         return max(size, self.smallest)
 
-    def degree(self, required: Wanted, margin: float) -> int:
+    def degree(self, required: Requirements, margin: float) -> int:
         """Polynomial degree that should meet the requirements; the measured error may raise it.
 
         Args:
@@ -347,17 +347,17 @@ class MeshKind:
         degree -= spared or self._cuts_middle(required)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
-    def terms(self, required: Wanted) -> int:
+    def terms(self, required: Requirements) -> int:
         """Number of moments of the contact forces that the far boundary follows; 0 where it is held."""
         if self.walls:
             return 0
         return moments(radius(required.farthest), required.tolerance)
 
-    def reach(self, required: Wanted) -> float:
+    def reach(self, required: Requirements) -> float:
         """Distance of the far boundary over a, the least one where it is no circle."""
         return exp(self._outer_ξ(required)) / 2.0
 
-    def truncation(self, required: Wanted, margin: float = 1.0) -> float:
+    def truncation(self, required: Requirements, margin: float = 1.0) -> float:
         """Estimated relative error of K_I by the far boundary; over σ_XY/σ_YY where it is held.
 
         A boundary held at a distance R costs a/R at rest, over the cubic root of the response's margin
@@ -367,7 +367,7 @@ class MeshKind:
             return 1.0 / (self.walls * margin ** (1.0 / 3.0))
         return boundary_error(radius(required.farthest), self.terms(required), margin)
 
-    def unseen_beside(self, required: Wanted, degree: int, cuts: int) -> float:
+    def unseen_beside(self, required: Requirements, degree: int, cuts: int) -> float:
         """Estimated relative error of the stresses nearest to an edge by the innermost cells.
 
         With straight cells it does not depend on the degree; with others it falls with the degree's third
@@ -385,7 +385,7 @@ class MeshKind:
             _LEFT_BESIDE * self._innermost(required) ** 2 / (2.0 * required.nearest * cuts**2 * degree**3)
         )
 
-    def unseen(self, required: Wanted, degree: int, cuts: int, margin: float) -> float:
+    def unseen(self, required: Requirements, degree: int, cuts: int, margin: float) -> float:
         """Estimated relative error of K_I by the innermost cells, which no comparison of levels shows.
 
         In a chart with smooth fields the remainder of a singularity is linear in the distance but not in
@@ -405,18 +405,18 @@ class MeshKind:
             share = 6.0 / (cuts**2 * degree**4 * margin ** (2.0 / 3.0))
         return share * self._innermost(required) ** 2
 
-    def _power(self, required: Wanted) -> float:
+    def _power(self, required: Requirements) -> float:
         """Power of a ring's size with which the energy in it falls."""
         return 4.0 * (1.0 + max(required.exponent, _STRONGEST))
 
-    def _outer_ξ(self, required: Wanted) -> float:
+    def _outer_ξ(self, required: Requirements) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""
         if self.walls:
             return log(2.0 * self.walls)
         # For fields in other planes the boundary is nearer by half the distance of the planes.
         return log(2.0 * radius(required.farthest)) + required.spread / 2.0
 
-    def _of_cells(self, required: Wanted) -> float:
+    def _of_cells(self, required: Requirements) -> float:
         """Relative accuracy of the cells; with walls a thousandth of the error by these, if less."""
         if self.walls:
             return min(required.tolerance, self.truncation(required) / 1000.0)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .charts import Physical
-from .kind import DEGREES, MeshKind, Wanted
+from .kind import DEGREES, MeshKind, Requirements
 from .rings import QuadMesh, tagged
 
 #: Halvings in search of the share with which a number of rows just fits.
@@ -167,7 +167,7 @@ class OnLayers(MeshKind):
     changes: tuple[float, ...] = ()
     places: tuple[float, ...] = (-1.0, 1.0)
 
-    def radius(self, required: Wanted) -> float:
+    def radius(self, required: Requirements) -> float:
         """Half the width of the mesh, and its depth, over a."""
         allowed = _OF_FAR * required.tolerance
         if required.nearest is not None:
@@ -178,15 +178,15 @@ class OnLayers(MeshKind):
         )
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * required.farthest)
 
-    def reach(self, required: Wanted) -> float:
+    def reach(self, required: Requirements) -> float:
         return self.radius(required)
 
-    def truncation(self, required: Wanted, margin: float = 1.0) -> float:
+    def truncation(self, required: Requirements, margin: float = 1.0) -> float:
         """Estimated relative error of K_I by the far boundary, which moves as that below line loads."""
         R = self.radius(required)
         return self._moment / R**2 + self._cubed * (self.far_length / R) ** 3
 
-    def terms(self, required: Wanted) -> int:
+    def terms(self, required: Requirements) -> int:
         """One moment, the resultant: of others the far field over layers is not computed."""
         return 1
 
@@ -212,7 +212,7 @@ class OnLayers(MeshKind):
         """Length over which the pressure changes next to the edges: to their image in the interface."""
         return 2.0 * self.depths[0] * self.drawn_together
 
-    def moments(self, required: Wanted) -> int:
+    def moments(self, required: Requirements) -> int:
         """Number of moments that give the pressure to a tenth of the tolerance; measured on 30 solids."""
         share, of_length = _MOMENTS
         count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / required.tolerance)
@@ -223,7 +223,7 @@ class OnLayers(MeshKind):
         """True where the solid is graded from the surface on."""
         return bool(self.changes) and isfinite(self.changes[0])
 
-    def innermost_size(self, required: Wanted) -> float:
+    def innermost_size(self, required: Requirements) -> float:
         """Size over a of the cells at the edges."""
         size = self._innermost(required) ** 2
         if self.graded:
@@ -231,16 +231,16 @@ class OnLayers(MeshKind):
             size *= (_FUNCTIONS / self.moments(required)) ** 2
         return max(size, 1e-11)
 
-    def _innermost(self, required: Wanted) -> float:
+    def _innermost(self, required: Requirements) -> float:
         if required.nearest is None:
             return super()._innermost(required)
         # The error of these cells in stresses beside them does not fall with the degree.
         return super()._innermost(replace(required, tolerance=_OF_INNERMOST * required.tolerance))
 
-    def unseen(self, required: Wanted, degree: int, cuts: int, margin: float) -> float:
+    def unseen(self, required: Requirements, degree: int, cuts: int, margin: float) -> float:
         return 0.3 * self.innermost_size(required) / margin**0.4
 
-    def moved_edges(self, required: Wanted, degree: int, margin: float) -> float:
+    def moved_edges(self, required: Requirements, degree: int, margin: float) -> float:
         """Apparent shift over a of the contact's edges, by the singularity in the innermost cells.
 
         Args:
@@ -250,18 +250,18 @@ class OnLayers(MeshKind):
         """
         return _MOVED * self.innermost_size(required) / (degree**2 * margin**0.4)
 
-    def degree(self, required: Wanted, margin: float) -> int:
+    def degree(self, required: Requirements, margin: float) -> int:
         """Degree, one less than usual for K_I alone: the measured error raises it where needed."""
         degree = super().degree(required, margin)
         if required.nearest is None:
             return max(degree - 1, DEGREES[0] + 1)
         return min(degree + self._one_more(required), DEGREES[1])
 
-    def _one_more(self, required: Wanted) -> bool:
+    def _one_more(self, required: Requirements) -> bool:
         """True where the degree is one more from the first, with its moments."""
         return required.nearest is not None and required.tolerance < _TIGHT
 
-    def drawn(self, required: Wanted) -> QuadMesh:
+    def drawn(self, required: Requirements) -> QuadMesh:
         """The mesh."""
         gaps = np.diff(self.places)
         square = _SQUARE * min(gaps) / 2.0 / max(self.wide, 1.0)
@@ -292,7 +292,7 @@ class OnLayers(MeshKind):
         ]
         return tagged(np.concatenate([np.array(cells), *squares]), 1.0 + R)
 
-    def _lines(self, required: Wanted, b: float) -> tuple[NDArray, NDArray, float]:
+    def _lines(self, required: Requirements, b: float) -> tuple[NDArray, NDArray, float]:
         """Lines of columns and rows outside the squares around the edges.
 
         Returns:

@@ -385,7 +385,7 @@ def farthest_at_kink(tolerance: float) -> float:
     return float(np.clip((0.1 * tolerance / _LEFT_OUT) ** (1.0 / 3.0), *_FARTHEST_AT_KINK))
 
 
-def left_at_kink(usual: NDArray, farther: NDArray) -> float:
+def error_at_kink(usual: NDArray, farther: NDArray) -> float:
     """Error of the limits from the left and the right of a kink.
 
     Terms that the series lack grow with their order. Both limits should be equal: half of their
@@ -518,7 +518,7 @@ def slopes_towards_ends(
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
 
 
-def extreme(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
+def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
     """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
 
     Args:
@@ -747,7 +747,7 @@ class KinkedPressure:
         if not self._exponent:
             return 0.0
         return max(
-            left_at_kink(*(self._limits(i, self._piecewise, by) for by in (1.0, FARTHER)))
+            error_at_kink(*(self._limits(i, self._piecewise, by) for by in (1.0, FARTHER)))
             for i in range(len(self.kinks))
         )
 

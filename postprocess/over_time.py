@@ -100,7 +100,7 @@ _NO_LEAN = 1e-2
 _NO_SINKING = 1e-2
 
 #: Numbers that both methods give.
-TOLD = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
+COMPARED = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
 
 def largest_change(
@@ -133,7 +133,7 @@ def _both(data: Mapping[str, Any], _: Any) -> float:
     solved = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
     if not solved.any():
         return np.inf
-    fem, sie = ([data[row[method].path][:, solved] for row in TOLD] for method in (FEM, SIE))
+    fem, sie = ([data[row[method].path][:, solved] for row in COMPARED] for method in (FEM, SIE))
     return largest_change(fem, sie, data[rows.LOAD.path][solved], lean_of_steady(data)[:, solved])
 
 
@@ -154,7 +154,10 @@ RULES.register(
     BOTH,
     Rule(
         "v₀, centre times load and K_I over time against the integral equation, over the largest",
-        (rows.LOAD, rows.RATIOS, rows.CENTRES, *(row[method] for row in TOLD for method in (FEM, SIE))),
+        (
+            rows.LOAD, rows.RATIOS, rows.CENTRES,
+            *(row[method] for row in COMPARED for method in (FEM, SIE)),
+        ),
         _both, tolerances=1.0,
     ),
 )  # fmt: skip
@@ -181,7 +184,7 @@ def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
     return np.asarray(np.max([*of_K, np.abs(data[rows.CENTRE[method].path] - centre)], axis=0))
 
 
-def within(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
+def times_near_steady(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     """Times from which on starts are within ``SHARES`` of steady motion, (starts, shares).
 
     Where that is later than the last time, the distance is taken to fall like 1/t from there on, t from
@@ -218,5 +221,8 @@ def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDA
     off = from_steady(data, method)
     off = np.where(np.isnan(off), np.inf, off)  # without K_I nothing is known to be near
     times, load = data[rows.TIMES.path], data[rows.LOAD.path]
-    datasets = {of.OFF[method].path: off[:, -1], of.WITHIN[method].path: within(times, load, off)}
+    datasets = {
+        of.OFF[method].path: off[:, -1],
+        of.WITHIN[method].path: times_near_steady(times, load, off),
+    }
     return {path: np.where(np.isfinite(values), values, np.nan) for path, values in datasets.items()}

@@ -27,14 +27,14 @@ _DONE = OF_LOAD[FEM], OF_FRICTION[FEM], energy.CARRIED
 _HELD = energy.STRAIN, energy.KINETIC, energy.RADIATED
 
 
-def left_over(data: Mapping[str, Any]) -> NDArray[np.float64]:
+def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
     """Work that no energy accounts for, over the largest work of a motion, (motions, times)."""
     done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
 
 def _balance(data: Mapping[str, Any], _: Any) -> float:
-    return float(np.abs(left_over(data)).max())
+    return float(np.abs(energy_imbalance(data)).max())
 
 
 def _works(data: Mapping[str, Any], _: Any) -> float | None:
@@ -106,7 +106,7 @@ def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict
     return {rows.SURFACE_ESTIMATE.path: np.array(largest_change(*of_both))} if len(of_both) == 2 else {}
 
 
-def named(method: str, stresses: NDArray) -> dict[str, NDArray]:
+def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
     """Datasets of a method's σ_XX, σ_YY and σ_XY, (3, times, places)."""
     return dict(
         zip(
@@ -119,7 +119,7 @@ def named(method: str, stresses: NDArray) -> dict[str, NDArray]:
     )
 
 
-def where(t: NDArray) -> dict[str, NDArray]:
+def place_datasets(t: NDArray) -> dict[str, NDArray]:
     """Datasets of the times and places of stresses along the surface."""
     return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
 

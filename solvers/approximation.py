@@ -86,7 +86,7 @@ class Rational:
         return barycentric(self.z, self.weights, z)
 
 
-def fitted(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
+def fit_rational(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
     """Rational function through samples, with the denominator of the AAA algorithm.
 
     The algorithm takes the sample with the largest error as its next node until it comes near all

@@ -151,7 +151,7 @@ def values(model: Any) -> dict[str, Any]:
     return {key: getattr(model, field.name) for key, field in fields(model).items()}
 
 
-def made(kind: Any, given: dict[str, Any]) -> Any:
+def build_model(kind: Any, given: dict[str, Any]) -> Any:
     """Model of a class from values by key; parameters without a value have their default."""
     fields_of_kind = fields(kind)
     return kind(**{fields_of_kind[key].name: value for key, value in given.items()})

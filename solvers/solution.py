@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .contact import under_punch
 from .layers.in_cells import LayersInCells
 from .layers.layered import Layered
-from .profiles import Profile, ends_are_found, exponent, half_width, jumps
+from .profiles import Profile, exponent, half_width, has_free_end, jumps
 from .sie.prescribed_pressure import LinearPressure
 from .solids import Solid
 from .solids.solid import Response
@@ -61,7 +61,7 @@ class Body:
     @cached_property
     def found(self) -> bool:
         """True if an end of the contact is free; every state has a half-width of its own then."""
-        return ends_are_found(self.profile)
+        return has_free_end(self.profile)
 
     def response(self, c: float) -> Response:
         """Response of the half-plane at a speed over its wave speed.

@@ -266,7 +266,7 @@ class Files:
                         f"{option}: found {ending!r} for the {_noun(name)} {name}, expected "
                         f"{', '.join(valid)}{' or a folder' * bool(self.ending)}{_converted(ending)}"
                     )
-                if ending in maps.FORMATS and not maps.can(ending):
+                if ending in maps.FORMATS and not maps.can_write(ending):
                     raise BadInput(
                         f"{option}: {ending} needs ffmpeg, which is not installed; gif does not"
                     )
@@ -280,7 +280,7 @@ class Files:
 
     def endings(self, name: str) -> tuple[str, ...]:
         """Formats of a figure."""
-        usual = ("mp4" if maps.can("mp4") else "gif",) if name == FILM else canvas.USUAL
+        usual = ("mp4" if maps.can_write("mp4") else "gif",) if name == FILM else canvas.USUAL
         return (self.ending,) if self.ending else self.formats or usual
 
     def target(self, name: str, ending: str, folder: Folder | None) -> Target:

@@ -24,7 +24,7 @@ from galinx.postprocess.figures.surface import Column, Curve, Stress, surface_fi
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
-from galinx.postprocess.surface_over_time import left_over
+from galinx.postprocess.surface_over_time import energy_imbalance
 from galinx.solvers.sie.closed_form import FlatPunch
 
 from ..scene.scene import Scene, Time
@@ -88,7 +88,7 @@ def has_energies(data: dict[str, Any]) -> bool:
 def energies(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Figure of the work and the energies over time of the first start."""
     done, held = ({name: data[row.path][0] for name, row in kinds.items()} for kinds in (_DONE, _HELD))
-    off = float(np.abs(left_over(data)[0]).max())
+    off = float(np.abs(energy_imbalance(data)[0]).max())
     heat = float(data[rows.DISSIPATED.path][0, -1])
     caption = (
         "Work of the punch on the solid besides the heat of friction, and where it is: strained and "

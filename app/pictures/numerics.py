@@ -10,7 +10,7 @@ from galinx.postprocess.figures.curves import degrees_figure
 from galinx.postprocess.figures.sketches import mesh_figure
 from galinx.postprocess.quantities import Quantity, runs, states
 
-from ..plan.fem import FOLLOWED
+from ..plan.fem import FREE_ON_LAYERS
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, has_quantities
@@ -38,7 +38,7 @@ def mesh(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
         f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
     )
-    if fem.mode == FOLLOWED:
+    if fem.mode == FREE_ON_LAYERS:
         most = int(data[runs.RECORD["cells"].path].max())
         caption += (
             f" Here that of the contact at rest; meshes that follow contacts have up to {most} cells."

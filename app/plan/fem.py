@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, MeshKind, Wanted
+from galinx.meshes import MESHES, MeshKind, Requirements
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
 from galinx.postprocess.pressure import Stretch
-from galinx.postprocess.quantities.quantity import FEM, FOUND
+from galinx.postprocess.quantities.quantity import FEM, FREE_ENDS
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layered, LayeredResponse
 from galinx.solvers.profiles import exponent, smooth
@@ -67,7 +67,7 @@ class PressureMoments:
         return 1 if self.stretch.graded else 2
 
 
-def tests_of(solid: Solid, kind: MeshKind, required: Wanted) -> PressureMoments | None:
+def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments | None:
     """Moments that recover the pressure over layers; None on a solid without layers."""
     if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
         return None
@@ -75,7 +75,7 @@ def tests_of(solid: Solid, kind: MeshKind, required: Wanted) -> PressureMoments 
     return PressureMoments(Stretch(kind.length, graded), kind.moments(required) + _MORE_GRADED * graded)
 
 
-def wanted_of_free_ends_on_layers(required: Wanted) -> Wanted:
+def required_of_free_ends_on_layers(required: Requirements) -> Requirements:
     """Requirements on a mesh for free ends over layers, where stresses at the ends are finite.
 
     The solutions whose sum has no intensity at the ends have an intensity each.
@@ -90,14 +90,14 @@ def graded_from_the_surface(solid: Layered) -> bool:
     return solid.layers[0].bottom not in (None, solid.layers[0].solid)
 
 
-def required_over_layers(required: Wanted, solid: Layered) -> Wanted:
+def required_over_layers(required: Requirements, solid: Layered) -> Requirements:
     """Requirements on a mesh for sharp edges over layers; tighter where the uppermost is graded."""
     if not graded_from_the_surface(solid):
         return required
     return replace(required, tolerance=min(required.tolerance, _LOOSEST_GRADED))
 
 
-def required_of_prescribed_pressure(required: Wanted) -> Wanted:
+def required_of_prescribed_pressure(required: Requirements) -> Requirements:
     """Requirements on a mesh for a prescribed pressure over layers.
 
     Stresses next to the pressure's knots are continued from farther away.
@@ -215,11 +215,11 @@ OWN_MESHES = "own meshes"
 _MOST_SHAPES, _ROUNDED = 48, 1e-13
 
 #: Mode in which meshes over layers follow a contact with free ends.
-FOLLOWED = "meshes that follow the contact"
+FREE_ON_LAYERS = "meshes that follow the contact"
 #: Mode of a prescribed pressure over layers.
-LOADS = "loads over layers"
+PRESCRIBED_ON_LAYERS = "loads over layers"
 #: Modes in which a fit through a few speeds may give the others.
-FITTED = ("contact", FOUND)
+FITTED = ("contact", FREE_ENDS)
 
 #: Number of cuts from which half as many, at one degree more, are no worse.
 _MANY = 8
@@ -243,7 +243,7 @@ class FemPlan:
         fixed: True where the scene fixes the degree.
         wanted: requirements on the mesh.
         mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES``,
-            ``FOLLOWED`` or ``LOADS``.
+            ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
         shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
             False where all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
@@ -262,7 +262,7 @@ class FemPlan:
     solver: str
     degrees: tuple[int, ...]
     fixed: bool
-    wanted: Wanted
+    wanted: Requirements
     mode: str
     shared_speeds: bool
     sharp: float = -0.5
@@ -322,7 +322,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     exponent = min(-0.5 - abs(FlatPunch(response, end).α + 0.5) for response in responses for end in ends)
     spread = max(response.spread for response in responses)
     planes = [response.contraction for response in responses]
-    required = _by_contact(scene, mode, wanted_for(solve.tolerance, places, exponent, spread, planes))
+    required = _by_contact(scene, mode, requirements(solve.tolerance, places, exponent, spread, planes))
     refinement = kind.refinement(required)
     degrees = tuple(
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
@@ -339,25 +339,25 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
         wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
-        tests=tests_of(scene.solid, kind, required),
+        tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        shapes=_shapes(scene, responses, g) if mode == FOUND else 0,
+        shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
     )  # fmt: skip
 
 
-def _by_contact(scene: Scene, mode: str, required: Wanted) -> Wanted:
+def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements:
     """Requirements on the mesh with those of the kind of contact: its ends, its pressure, the layers."""
     solve = scene.solve
     if scene.layers:
         if scene.body.free:
-            return wanted_of_free_ends_on_layers(required)
+            return required_of_free_ends_on_layers(required)
         if solve.own_pressure:
             return required_of_prescribed_pressure(required)
         return required_over_layers(required, scene.solid)  # type: ignore[arg-type]
     if scene.body.free:
         required = required_of_free_ends(required)
         # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
-        required = replace(required, bends=mode == FOUND)
+        required = replace(required, bends=mode == FREE_ENDS)
     if solve.own_pressure:
         required = required_of_pieces(required, np.array(solve.pressure)[:, 0])
     return required
@@ -388,15 +388,17 @@ def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
 
 def _mode(scene: Scene) -> str:
     if not scene.body.found:
-        return LOADS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
+        return (
+            PRESCRIBED_ON_LAYERS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
+        )
     if scene.layers:
-        return FOLLOWED
-    return FOUND if smooth(scene.punch.profile) else OWN_MESHES
+        return FREE_ON_LAYERS
+    return FREE_ENDS if smooth(scene.punch.profile) else OWN_MESHES
 
 
-def wanted_for(
+def requirements(
     tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
-) -> Wanted:
+) -> Requirements:
     """Requirements on a mesh, by the points where stresses are output.
 
     Args:
@@ -409,24 +411,26 @@ def wanted_for(
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
-        return Wanted(tolerance, exponent=exponent, spread=spread)
+        return Requirements(tolerance, exponent=exponent, spread=spread)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = max(float(np.abs(X + p * Y).max()) for p in {1j, *planes})
     around, inside = bool(len(places.around)), bool(len(places.points))
-    return Wanted(tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread)
+    return Requirements(
+        tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread
+    )
 
 
-def required_of_free_ends(required: Wanted) -> Wanted:
+def required_of_free_ends(required: Requirements) -> Requirements:
     """Requirements for free ends, where stresses are finite: larger cells do, with less rounding."""
     if required.nearest is None:
         return required
     return replace(required, nearest=max(required.nearest, _NEAR_FREE_END), exponent=0.5)
 
 
-def required_of_pieces(required: Wanted, knots: NDArray) -> Wanted:
+def required_of_pieces(required: Requirements, knots: NDArray) -> Requirements:
     """Requirements for every piece of a prescribed pressure, over the narrowest one's half-width."""
     farthest = (1.0 + required.farthest) / (np.diff(knots).min() / 2.0)
-    return Wanted(required.tolerance, NEAR, farthest, spread=required.spread)
+    return Requirements(required.tolerance, NEAR, farthest, spread=required.spread)
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

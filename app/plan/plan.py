@@ -41,7 +41,7 @@ from ..scene.scene import FRICTIONS, Scene, oddities
 from . import cost
 from .fem import (
     BESIDES,
-    FOLLOWED,
+    FREE_ON_LAYERS,
     LADDERS,
     OWN_MESHES,
     FemPlan,
@@ -275,7 +275,7 @@ def check_places(scene: Scene, places: Places) -> None:
         return
     key = "output.points" if len(places.points) else "output.quantities"
     far = float(np.abs(points).max())
-    limit = inner(scene)
+    limit = farthest_inside(scene)
     if far > limit:
         raise BadInput(
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
@@ -288,7 +288,7 @@ def check_places(scene: Scene, places: Places) -> None:
         )
 
 
-def inner(scene: Scene) -> float:
+def farthest_inside(scene: Scene) -> float:
     """Largest distance over a of fields inside from finite elements: well inside walls, if any."""
     walls = MESHES[scene.solve.mesh].walls
     return _INNER * walls if walls else _OUTERMOST
@@ -354,7 +354,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
             f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error "
             "requires; free ends are computed once for each speed"
         ]
-    if fem.mode == FOLLOWED:
+    if fem.mode == FREE_ON_LAYERS:
         return [
             f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
             f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
@@ -471,7 +471,9 @@ def _seconds_of_levels(fem: FemPlan, states: int) -> float:
         cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
         for p, k in _levels(fem)
     )
-    return seconds * (_MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FOLLOWED else 1.0)
+    return seconds * (
+        _MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FREE_ON_LAYERS else 1.0
+    )
 
 
 def _size(count: float) -> str:

@@ -13,7 +13,7 @@ from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POI
 from galinx.solvers.solids.solid import Response
 from galinx.solvers.solution import Body, Places
 
-from .fem import FOLLOWED, OWN_MESHES, FemPlan
+from .fem import FREE_ON_LAYERS, OWN_MESHES, FemPlan
 from .over_time import Starts
 from .states import Order, States
 
@@ -166,7 +166,7 @@ class Plan:
     @cached_property
     def chunk(self) -> int:
         """Number of states that are computed at once, which bounds their memory."""
-        own_meshes = self.fem is not None and self.fem.mode in (FOLLOWED, OWN_MESHES)
+        own_meshes = self.fem is not None and self.fem.mode in (FREE_ON_LAYERS, OWN_MESHES)
         most = OWN_MESHES_KEPT if own_meshes else 1000
         return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, most))
 

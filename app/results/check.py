@@ -29,7 +29,7 @@ from galinx.postprocess.quantities.quantity import (
     ALONE,
     CLOSED_FORM,
     FEM,
-    FOUND,
+    FREE_ENDS,
     LOCAL,
     NEVER,
     SIE,
@@ -49,7 +49,7 @@ from ..plan.over_time import IN_TIME
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.task import Plan, Task
-from ..run.flow import Judge, of_scene
+from ..run.flow import Judge, scene_attributes
 from ..run.methods import make
 from ..run.solve import Work
 from ..scene import read as scenes
@@ -66,7 +66,7 @@ _INDENTATION = 1e-3
 #: Relative difference of finite elements and closed forms; comparisons say more.
 _FROM_EXACT = 1e-2
 #: Modes in which all speeds have one mesh.
-_ONE_MESH = ("contact", "traction", FOUND)
+_ONE_MESH = ("contact", "traction", FREE_ENDS)
 
 
 def recomputed_faults(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
@@ -368,7 +368,7 @@ def _same(archived: Any, expected: Any) -> bool:
 def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]:
     """Attributes, positions and names of datasets that differ from those of the scene."""
     attributes, data = archive.attributes, archive.data
-    given = of_scene(scene) | {"rules": json.dumps(sorted(plan.rules))}
+    given = scene_attributes(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer
             archived = np.asarray(attributes[name]).item()  # as Python writes it

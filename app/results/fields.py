@@ -23,13 +23,13 @@ from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import under_punch
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.prescribed_pressure import GivenPressure
+from galinx.solvers.sie.prescribed_pressure import PrescribedPressureSolution
 
 from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed
 from ..plan.fem import FemPlan
-from ..plan.plan import inner, make_plan
+from ..plan.plan import farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.task import Plan, Task
 from ..scene.scene import FRICTIONS, Output, Scene
@@ -78,7 +78,7 @@ class Solved:
     comm: Any
 
 
-def chosen(
+def select_states(
     scene: Scene,
     numbers: Sequence[int],
     degrees: Sequence[int | None] | None = None,
@@ -132,7 +132,7 @@ def chosen(
     return selection
 
 
-def solved(states: Sequence[OneState]) -> Generator[Solved, None, None]:
+def solve_states(states: Sequence[OneState]) -> Generator[Solved, None, None]:
     """Solutions of states one after the other, each valid until the next is requested; collective.
 
     Raises:
@@ -169,9 +169,9 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
         raise BadInput(
             f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
         )
-    (state,) = chosen(scene, [number], [degree], extent)
+    (state,) = select_states(scene, [number], [degree], extent)
     body, response = state.task.body, state.task.response
-    with closing(solved([state])) as states:
+    with closing(solve_states([state])) as states:
         from galinx.solvers.fem.fields import in_physical_plane
 
         solution = next(states)
@@ -199,7 +199,9 @@ def displacement_under_punch(
         SolveError: the equations could not be solved.
     """
     X, fields = np.empty(0), []
-    for solution in solved([_alone(state) for state in chosen(scene, numbers, [degree] * len(numbers))]):
+    for solution in solve_states(
+        [_alone(state) for state in select_states(scene, numbers, [degree] * len(numbers))]
+    ):
         nodes = solution.space.contact
         X = solution.space.chart.surface_position(nodes.s)
         at_nodes = np.empty((2, len(nodes.s)))
@@ -315,11 +317,11 @@ def write_fields(
         UnwritableArchive: the file system refused.
     """
     _check(scene, extent)
-    states = chosen(scene, numbers, degrees, extent)
+    states = select_states(scene, numbers, degrees, extent)
     with finite_elements_installed():
         from mpi4py import MPI
     if MPI.COMM_WORLD.rank > 0:
-        for solution in solved(states):
+        for solution in solve_states(states):
             solution.comm.send(_piece(solution, extent), 0)
         return
     from galinx.postprocess.hdf5 import vtkhdf
@@ -328,7 +330,7 @@ def write_fields(
         vtkhdf.Step(
             float(solution.state.number), _pieces(solution, extent), _attributes(scene, solution.state)
         )
-        for solution in solved(states)
+        for solution in solve_states(states)
     )
     vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(states) > 1)
 
@@ -358,15 +360,15 @@ def state_field(
         SolveError: the equations could not be solved.
     """
     _check(scene, extent)
-    (state,) = chosen(scene, [number], [degree], extent)
-    with closing(solved([state])) as states:
+    (state,) = select_states(scene, [number], [degree], extent)
+    with closing(solve_states([state])) as states:
         solution = next(states)
         whole = _sampled(solution, extent).gathered(solution.comm)
         return None if whole is None else _in_si(solution, whole)
 
 
 def _check(scene: Scene, extent: float) -> None:
-    limit = inner(scene)
+    limit = farthest_inside(scene)
     if not 0.0 < extent <= limit:
         raise BadInput(
             f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
@@ -426,9 +428,9 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "contact_pressure": body.stress * _pressure(solution, sampled.points),
     }
     if state.exact:
-        exact: FlatPunch | GivenPressure = FlatPunch(task.response, state.g)
+        exact: FlatPunch | PrescribedPressureSolution = FlatPunch(task.response, state.g)
         if body.pressure:
-            exact = GivenPressure(task.response, state.g, body.pressure)
+            exact = PrescribedPressureSolution(task.response, state.g, body.pressure)
         data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
     return StateField(body.half_width * sampled.points, sampled.quads, data)
 
@@ -449,7 +451,9 @@ def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
     return pressure
 
 
-def _error(exact: FlatPunch | GivenPressure, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
+def _error(
+    exact: FlatPunch | PrescribedPressureSolution, points: NDArray, stresses: NDArray
+) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)
     X, Y = points[inside].T

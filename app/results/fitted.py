@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from galinx import files
 from galinx.postprocess.figures.friction import fitted_figure
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.fit import Found, fit, moves
+from galinx.solvers.friction.fit import FittedLaw, fit, moves
 from galinx.solvers.parameters import parameters
 
 from ..errors import BadInput, excerpt, nearest, short
@@ -137,7 +137,7 @@ def _row(path: Path, line: int, row: list[str], factors: dict[str, tuple[int, fl
 
 def fitted(
     name: str, data: Path, fixed: list[str], started: list[str], speed: str, rows: int
-) -> tuple[Measured, Found]:
+) -> tuple[Measured, FittedLaw]:
     """Measured friction of a table, and a law fitted to it.
 
     Args:
@@ -205,7 +205,7 @@ def _number(text: str) -> float | str:
         return text.strip()
 
 
-def section(name: str, data: Path, measured: Measured, result: Found) -> str:
+def section(name: str, data: Path, measured: Measured, result: FittedLaw) -> str:
     """Section of a scene with the fitted law, and the deviation of each number as a comment."""
     declared, residual = parameters(type(result.law)), result.f - measured.f
     rms = float(np.sqrt(np.nanmean(residual**2)))
@@ -240,6 +240,6 @@ def _deviation(key: str, errors: dict[str, float], unit: str) -> str:
     return f"  # {unit if key in mine else 'in SI'}, {texts}"
 
 
-def figure(measured: Measured, result: Found) -> Any:
+def figure(measured: Measured, result: FittedLaw) -> Any:
     """Figure of measured and fitted friction, and their difference."""
     return fitted_figure(measured.t, measured.X, measured.f, result.f, measured.timed)

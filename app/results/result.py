@@ -132,13 +132,13 @@ class Result:
         Raises:
             BadInput: the result has no such figure.
         """
-        from galinx.postprocess.figures.canvas import shown
+        from galinx.postprocess.figures.canvas import for_notebook
 
         from .drawings import names
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
         (drawing,) = self.drawings(figures=(name or usual,), **options)
-        return shown(drawing.figure)
+        return for_notebook(drawing.figure)
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,

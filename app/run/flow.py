@@ -1,9 +1,9 @@
 """Run of a scene: plan, solve, judge, archive.
 
 :func:`compute` is the run as a program. Its parts: the attributes of an archive, in SI, that describe the
-scene and the versions with which results were computed (:func:`of_scene`, :func:`libraries`); sinks, the
-destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and the collector, which
-judges finished parts and writes them (:class:`Collector`).
+scene and the versions with which results were computed (:func:`scene_attributes`, :func:`libraries`);
+sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and the
+collector, which judges finished parts and writes them (:class:`Collector`).
 """
 
 import json
@@ -39,12 +39,12 @@ from ..plan.states import States, enumerate_states
 from ..plan.task import Plan
 from ..scene.scene import Scene
 from .methods import make
-from .over_time import follow
+from .over_time import solve_motions
 from .slider import slide
 from .solve import Work
 
 
-def of_scene(scene: Scene) -> dict[str, Any]:
+def scene_attributes(scene: Scene) -> dict[str, Any]:
     """Attributes of an archive's root that say what slides over what."""
     half_plane, solid = scene.half_plane, scene.solid
     solid_words = _solid(half_plane.solid)
@@ -377,7 +377,9 @@ def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock:
     """Compute, archive and judge starts from rest; collective."""
     assert plan.starts
     progress.say("starts from rest")
-    datasets = follow(plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts"))
+    datasets = solve_motions(
+        plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts")
+    )
     for path, values in datasets.items():
         sink.put(path, values)
     if ranks.is_root():
@@ -422,7 +424,7 @@ def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
         "versions": json.dumps(libraries()),
         "machine": machine(),
         "scene_sha256": scene.sha256,
-        **of_scene(scene),
+        **scene_attributes(scene),
         "rules": json.dumps(sorted(plan.rules)),
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),

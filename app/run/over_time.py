@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 from galinx.postprocess import over_time, surface_over_time
-from galinx.postprocess.over_time import TOLD, largest_change
+from galinx.postprocess.over_time import COMPARED, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.solvers.layers.contact import Pressure, Speed
+from galinx.solvers.layers.contact import ContactsAtSpeed, Pressure
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -55,7 +55,7 @@ class QuasiSteady:
         response = self.starts.response(self.solid, self.c)
         if isinstance(response, LayersInCells):
             stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
-            nodes, _ = Speed(response.surface, stack, np.zeros_like, accuracy).solved(different)
+            nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
             return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
         punches = [FlatPunch(response, ratio) for ratio in different]
         return np.array([punch.β - punch.α for punch in punches])[which]
@@ -82,7 +82,7 @@ _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 _Job = tuple[str, float]
 
 
-def follow(
+def solve_motions(
     starts: Starts, solid: Solid, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
 ) -> _Datasets:
     """Motions of all starts over time: datasets by path.
@@ -146,7 +146,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     joined = {path: np.array([datasets[path] for datasets in every]) for path in every[0]}
     whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)} | joined
     if starts.every:
-        whole |= surface_over_time.where(t[starts.outputs - 1])
+        whole |= surface_over_time.place_datasets(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
         whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
@@ -194,7 +194,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                 for path, value in datasets.items()
             }
             if starts.every:
-                datasets |= surface_over_time.named(
+                datasets |= surface_over_time.stress_datasets(
                     SIE, _along_surface(course, finer, response, drive, starts)
                 )
             motions.append(datasets)
@@ -238,7 +238,7 @@ def _of_constant(
 
 
 def _named(method: str, values: Any) -> _Datasets:
-    return {row[method].path: value for row, value in zip(TOLD, values)}
+    return {row[method].path: value for row, value in zip(COMPARED, values)}
 
 
 def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:

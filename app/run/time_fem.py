@@ -15,7 +15,7 @@ from galinx.meshes.rings import TAGS
 from galinx.postprocess.over_time import contact_numbers
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM
-from galinx.postprocess.surface_over_time import named
+from galinx.postprocess.surface_over_time import stress_datasets
 from galinx.solvers.fem.dynamic import Energies, Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, Steps, SurfaceInTime, Watch
 from galinx.solvers.fem.space import Space, distribute
@@ -77,7 +77,7 @@ class TimeProbes:
         pressure = np.array(σ_YY)
         shear = np.array(ratios)[:, None] * pressure
         σ_XX = self._motion.response.σ_XX(strains[at], pressure, shear)
-        return named(FEM, np.array([σ_XX, pressure, shear]))
+        return stress_datasets(FEM, np.array([σ_XX, pressure, shear]))
 
     def _of_energies(self, watched: NDArray, run: Steps, g: Drive) -> _Datasets:
         """Energies by path, as changes since t = 0; the energy carried along is added up step by step."""

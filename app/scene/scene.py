@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FINITE, FOUND, FRICTION_ALONE, OWN_PRESSURE, PUNCH
+from galinx.postprocess.quantities.quantity import FINITE, FREE_ENDS, FRICTION_ALONE, OWN_PRESSURE, PUNCH
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.parameters import made, parameters
+from galinx.solvers.parameters import build_model, parameters
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
@@ -122,7 +122,7 @@ class Friction:
             ValueError: a law refuses its parameters.
         """
         for values in self._listed if self.vary else product(*self.parameters.values()):
-            yield made(self.law, dict(zip(self.parameters, values)))
+            yield build_model(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
         """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
@@ -147,7 +147,7 @@ class Friction:
         Raises:
             ValueError: a law refuses its parameters.
         """
-        return made(self.law, {key: values[rows, None] for key, values in columns.items()})
+        return build_model(self.law, {key: values[rows, None] for key, values in columns.items()})
 
     @property
     def stress_ratio(self) -> float:
@@ -299,7 +299,11 @@ class Scene:
     def modes(self) -> tuple[str, ...]:
         """Names of the modes, by which quantities and rules that apply are selected."""
         own = self.solve.own_pressure
-        return (*self.solve.modes, *(FOUND,) * self.body.found, *(FINITE,) * (own or self.body.finite))
+        return (
+            *self.solve.modes,
+            *(FREE_ENDS,) * self.body.found,
+            *(FINITE,) * (own or self.body.finite),
+        )
 
     @property
     def sha256(self) -> str:

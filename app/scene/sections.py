@@ -19,7 +19,7 @@ from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
-from galinx.solvers.parameters import Parameter, Range, fields, made, parameters
+from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
 from galinx.solvers.profiles import PROFILES, Profile
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
@@ -379,7 +379,8 @@ class LayerSections:
         try:
             rows = _KEYS["properties"].kind(given["properties"])
             solids = [
-                made(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | _plane(given)) for row in rows
+                build_model(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | _plane(given))
+                for row in rows
             ]
         except ValueError as error:
             faults.append(f"{name}.properties: {error}")
@@ -405,7 +406,7 @@ def _layer(
         raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
     if grading != "power" and exponent != 1.0:
         raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
-    return _Read(thickness, made(kind, values), to, grading, exponent)
+    return _Read(thickness, build_model(kind, values), to, grading, exponent)
 
 
 class _Read:
@@ -425,11 +426,11 @@ MOST_OUTPUTS = 400
 def _solid(
     kind: type[Solid], values: dict[str, Any], material: str | None, yield_strength: float | None
 ) -> HalfPlane:
-    return HalfPlane(made(kind, values), material, yield_strength)
+    return HalfPlane(build_model(kind, values), material, yield_strength)
 
 
 def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
-    return Punch(made(kind, values), tuple(dict.fromkeys(load)))
+    return Punch(build_model(kind, values), tuple(dict.fromkeys(load)))
 
 
 def _friction(

@@ -290,7 +290,7 @@ def embedded(data: bytes, kind: str = "png") -> str:
 _DPI = 110
 
 
-def shown(figure: Figure) -> Figure:
+def for_notebook(figure: Figure) -> Figure:
     """Figure that notebooks can show, which otherwise know only figures of pyplot."""
     figure._repr_png_ = lambda: _png(figure)  # type: ignore[attr-defined]
     return figure

@@ -326,7 +326,7 @@ def content(film: Film, ending: str, dpi: int = DPI) -> bytes:
     return data.getvalue()
 
 
-def can(ending: str) -> bool:
+def can_write(ending: str) -> bool:
     """True where films can be made in this format on this machine."""
     return ending == "gif" or shutil.which("ffmpeg") is not None
 

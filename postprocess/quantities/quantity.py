@@ -36,7 +36,7 @@ OWN_PRESSURE, PUNCH = "own pressure", "punch"
 
 #: Mode of a punch whose contact has free ends; and of all finite stresses, under such a punch or a
 #: prescribed pressure.
-FOUND, FINITE = "found ends", "finite stresses"
+FREE_ENDS, FINITE = "found ends", "finite stresses"
 
 #: Mode of one method alone, the numbers of which are compared with no other's.
 ALONE = "one method"

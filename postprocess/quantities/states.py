@@ -14,7 +14,7 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    FOUND,
+    FREE_ENDS,
     INNER,
     INTENSITIES,
     LOCAL,
@@ -130,7 +130,7 @@ def _of_free_contact(
     rules = (compared, f"{compared} over layers") if compared else ()
     return {
         method: Quantity(
-            f"states/{method}/{name}", unit, about, (STATE,), lambda s, _: of(s), method, FOUND,
+            f"states/{method}/{name}", unit, about, (STATE,), lambda s, _: of(s), method, FREE_ENDS,
             compared=rules * (method == FEM), **options,
         )
         for method in (CLOSED_FORM, SIE, FEM)

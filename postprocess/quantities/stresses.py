@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.parameters import Range
 
-from ..free_ends import extreme
+from ..free_ends import extreme_in_plane
 from ..stresses import principal, von_mises
 from .quantity import (
     ALONE,
@@ -61,7 +61,7 @@ def _extreme(method: str, end: str, sign: float, what: str) -> Quantity:
         f"states/{method}/sigma_XX_{end}", "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme(s, body, sign), method, asked_by=ON_SURFACE,
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign), method, asked_by=ON_SURFACE,
         compared=("extremes of sigma_XX", "extremes of sigma_XX over layers") * (method == FEM),
     )  # fmt: skip
 

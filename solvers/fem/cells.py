@@ -9,7 +9,7 @@ the chart as speed contracts it.
 Cells that are another cell, moved and scaled, have the same matrix in a plane: the energy of a
 displacement does not change where lengths are scaled, nor does that of pressures over a cell's size.
 Rings around an edge, each a share of the one outside it, and cells of one size cut from a larger one need
-one matrix each kind, not one each cell (:func:`standing_for`).
+one matrix each kind, not one each cell (:func:`model_cells`).
 """
 
 from collections.abc import Sequence
@@ -242,7 +242,7 @@ _DIGITS = 3
 _ROUNDINGS = 64.0
 
 
-def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def congruent_cells(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Cells that stand for all cells congruent to them but for size, and the model of each cell.
 
     Args:
@@ -269,7 +269,7 @@ def alike(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[
     return np.unique(model, return_inverse=True)
 
 
-def standing_for(
+def model_cells(
     corners: NDArray, chart: Chart, response: Response, constants: Sequence[str]
 ) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
     """Model cells, whose matrices are those of all cells, and the cells that have the matrix of each.
@@ -288,7 +288,7 @@ def standing_for(
         solid = response.solids(corners[..., 1].mean(axis=1))
         graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
         kinds = np.where(graded[solid], len(graded) + each, solid)
-    models, like = alike(corners, kinds)
+    models, like = congruent_cells(corners, kinds)
     return models, np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])
 
 

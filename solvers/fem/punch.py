@@ -523,7 +523,7 @@ class Frictions:
 
 
 @dataclass(frozen=True)
-class Singular:
+class EdgeFactors:
     """Singular factors of the edges at each friction: numbers are a smooth factor times these.
 
     Attributes:
@@ -553,12 +553,12 @@ class Sampled:
     rounding: NDArray[np.float64]
     fields: NDArray[np.float64]
 
-    def smooth(self, singular: Singular) -> "Sampled":
+    def smooth(self, singular: EdgeFactors) -> "Sampled":
         """Smooth numbers: these over the singular factors of the edges."""
         slopes, forces = self.slopes / singular.slopes, self.forces / singular.forces
         return Sampled(forces, slopes, self.rounding / singular.slopes, self.fields)
 
-    def singular(self, singular: Singular) -> "Sampled":
+    def singular(self, singular: EdgeFactors) -> "Sampled":
         """Smooth numbers times the singular factors of the edges."""
         slopes, forces = self.slopes * singular.slopes, self.forces * singular.forces
         return Sampled(forces, slopes, self.rounding * singular.slopes, self.fields)

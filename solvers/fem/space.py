@@ -23,7 +23,7 @@ from ..approximation import interpolation
 from ..errors import MeshError
 from ..solids.solid import ByCells, Response
 from . import versions
-from .cells import Chart, Contracted, lagrange, standing_for
+from .cells import Chart, Contracted, lagrange, model_cells
 from .element import CellMatrices
 from .forms import FORMS
 from .versions import compiling, create_mesh, tag_facets
@@ -322,7 +322,7 @@ class Space:
         with self.clock("assembly"):
             first, last = self._range
             A = empty_matrix(blocks, first // 2, last // 2, self.comm)
-            models, members = standing_for(self.vertices, self.chart, response, self.form.constants)
+            models, members = model_cells(self.vertices, self.chart, response, self.form.constants)
             for batch in self.pieces(len(models)):
                 for S, cells in zip(self.condensed(response, models[batch]), members[batch]):
                     for rows in blocks[cells]:

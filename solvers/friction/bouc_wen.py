@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, parameter
-from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
+from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 #: y = -ln(1 - w) from which on the slip is its asymptote, and y of full slip.
 _FAR, _FULL = 14.0, 700.0
@@ -49,7 +49,7 @@ class BoucWen(FrictionLaw):
         check(self)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"mu_c": seen.level, "yield_displacement": seen.level / seen.slope, "exponent": 1.2}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check
-from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
+from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Coulomb(FrictionLaw):
         check(self)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"mu_c": seen.level}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:

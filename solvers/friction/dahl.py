@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, parameter
-from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
+from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Dahl(FrictionLaw):
         check(self)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"mu_c": seen.level, "sigma0_over_load": seen.slope}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:

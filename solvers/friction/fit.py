@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import Parameter, Range, fields, made, parameters
+from ..parameters import Parameter, Range, build_model, fields, parameters
 from .integrate import exactly
-from .law import FrictionLaw, Seen
+from .law import FrictionLaw, MeasuredFriction
 
 #: Starts of the search, the first from the guess, and how far the others lie from it, as a factor.
 _STARTS, _AWAY = 6, 3.0
@@ -43,7 +43,7 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Found:
+class FittedLaw:
     """Fitted law, with the covariance of its parameters.
 
     Attributes:
@@ -104,7 +104,7 @@ def friction(law: FrictionLaw, motion: Sequence[Move], samples: int) -> NDArray[
     return f
 
 
-def seen(motion: Sequence[Move], f: NDArray, rows: int) -> Seen:
+def measured_friction(motion: Sequence[Move], f: NDArray, rows: int) -> MeasuredFriction:
     """Summary of measured friction f, (samples,), for a guess of parameters with tables of ``rows``."""
     sliding = np.abs(np.concatenate([f[move.samples] for move in motion]))
     first = motion[0]
@@ -117,7 +117,7 @@ def seen(motion: Sequence[Move], f: NDArray, rows: int) -> Seen:
     level = float(np.quantile(sliding, 0.95)) or 1.0
     speed = float(np.exp(np.mean(np.log([max(move.V, 1e-12) for move in motion]))))
     least = float(np.quantile(sliding, 0.3)) or level
-    return Seen(level, least, slope or level / longest, float(longest), speed, rows)
+    return MeasuredFriction(level, least, slope or level / longest, float(longest), speed, rows)
 
 
 def fit(
@@ -127,7 +127,7 @@ def fit(
     fixed: dict[str, Any],
     start: dict[str, Any],
     rows: int = 3,
-) -> Found:
+) -> FittedLaw:
     """Law nearest to measured friction, by least squares over its parameters.
 
     Args:
@@ -142,7 +142,7 @@ def fit(
         ValueError: a parameter has no start, there are fewer samples than numbers, or no start leads
             anywhere.
     """
-    search = _Search(kind, seen(motion, f, rows), fixed, start)
+    search = _Search(kind, measured_friction(motion, f, rows), fixed, start)
     used = np.concatenate([move.samples for move in motion])
     if len(used) <= len(search.names):
         raise ValueError(
@@ -165,7 +165,7 @@ def fit(
     spread = 2.0 * best.cost / (len(used) - len(best.x))
     covariance = spread * _inverse(best.jac) * np.outer(stretch, stretch)
     numbers = search.numbers(best.x)
-    return Found(law, values, search.names, numbers, covariance, friction(law, motion, len(f)))
+    return FittedLaw(law, values, search.names, numbers, covariance, friction(law, motion, len(f)))
 
 
 def _least(residuals: Callable[[NDArray], NDArray], search: "_Search") -> Any:
@@ -211,7 +211,11 @@ class _Search:
     """
 
     def __init__(
-        self, kind: type[FrictionLaw], look: Seen, fixed: dict[str, Any], start: dict[str, Any]
+        self,
+        kind: type[FrictionLaw],
+        look: MeasuredFriction,
+        fixed: dict[str, Any],
+        start: dict[str, Any],
     ) -> None:
         self._kind = kind
         described, defaults, guess = parameters(kind), fields(kind), kind.guess(look)
@@ -287,7 +291,7 @@ class _Search:
         Raises:
             ValueError: the law rejects its parameters.
         """
-        return made(self._kind, self.values(θ))
+        return build_model(self._kind, self.values(θ))
 
 
 def _places(key: str, parameter: Parameter, value: Any) -> list[tuple[str, int, int]]:

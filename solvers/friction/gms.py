@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, parameter
-from .law import LAWS, Seen
+from .law import LAWS, MeasuredFriction
 from .maxwell_slip import check_elements, elements, spread
 from .stribeck import StribeckCurve
 
@@ -41,7 +41,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         check_elements(self.elements)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         rate = 10.0 * seen.speed / seen.length
         return {**super().guess(seen), "elements": spread(seen), "attraction_rate": rate}
 

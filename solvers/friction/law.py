@@ -12,7 +12,7 @@ from ..parameters import parameter, parameters
 
 
 @dataclass(frozen=True)
-class Seen:
+class MeasuredFriction:
     """Summary of measured friction, for a guess of parameters.
 
     Attributes:
@@ -53,7 +53,7 @@ class FrictionLaw(Protocol):
     conventions: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         """Parameters by key with which a fit may begin; others begin with their defaults."""
         return {}
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import parameter
-from .law import LAWS, Seen
+from .law import LAWS, MeasuredFriction
 from .stribeck import StribeckCurve
 
 
@@ -34,7 +34,7 @@ class Bristles(StribeckCurve):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {**super().guess(seen), "sigma0_over_load": seen.slope}
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, rows
-from .law import LAWS, FrictionLaw, Seen
+from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
 def elements() -> tuple[tuple[float, float], ...]:
@@ -18,7 +18,7 @@ def elements() -> tuple[tuple[float, float], ...]:
     )  # fmt: skip
 
 
-def spread(seen: Seen) -> tuple[tuple[float, float], ...]:
+def spread(seen: MeasuredFriction) -> tuple[tuple[float, float], ...]:
     """Elements that slide one after the other, each after twice the slip of the one before."""
     μ = seen.level / seen.rows
     slips = 0.5 * seen.length * 0.5 ** np.arange(seen.rows)
@@ -59,7 +59,7 @@ class MaxwellSlip(FrictionLaw):
         check_elements(self.elements)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"elements": spread(seen)}
 
     @property

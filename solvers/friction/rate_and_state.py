@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, choice, parameter
-from .law import LAWS, FrictionLaw, Seen
+from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ class RateAndState(FrictionLaw):
         check(self)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {
             "reference_friction": seen.level, "reference_speed": seen.speed, "a": 0.02 * seen.level,
             "b": 0.02 * seen.level, "critical_slip": 0.1 * seen.length,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, parameter
-from .law import LAWS, FrictionLaw, Seen, coulomb_coefficient
+from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +32,7 @@ class StribeckCurve(FrictionLaw):
         check(self)
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"mu_c": seen.least, "mu_s": seen.level, "stribeck_velocity": seen.speed}
 
     def g(self, V: float) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import check, rows
-from .law import LAWS, FrictionLaw, Seen
+from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Table(FrictionLaw):
                 )
 
     @classmethod
-    def guess(cls, seen: Seen) -> dict[str, Any]:
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         slips = np.linspace(0.0, seen.length, max(seen.rows, 2))
         return {"shape": tuple((float(d), seen.level * float(d > 0.0)) for d in slips)}
 

@@ -29,7 +29,7 @@ from ..errors import SolveError
 from ..sie.collocation import Expansion, jacobi
 from ..sie.prescribed_pressure import LinearPressure
 from .kernel import Kernel, Scaled
-from .layered import Stack
+from .layered import LayersAtSpeed
 from .panelled import PanelledPressure, Panels
 from .panelled import parts as panelled
 
@@ -131,7 +131,7 @@ _MOST = 200_000
 
 
 @dataclass(frozen=True)
-class Given:
+class PrescribedPressure:
     """Prescribed pressure with the integrals of :class:`Pressure`.
 
     Attributes:
@@ -294,7 +294,7 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Found:
+class ConvergedPressure:
     """A pressure and its change with the number of unknowns.
 
     Attributes:
@@ -308,7 +308,7 @@ class Found:
     change: float
 
 
-def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
+def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> ConvergedPressure:
     """Pressure of an equation to a relative tolerance, with ``first`` polynomials at first.
 
     Raises:
@@ -322,7 +322,7 @@ def found(equation: Equation, tolerance: float, first: int = FIRST) -> Found:
         if before is not None:
             moved = change(before, now)
             if is_converged(moved, tolerance):
-                return Found(now, before, moved)
+                return ConvergedPressure(now, before, moved)
         before = now
     raise not_converged(moved, tolerance)
 
@@ -381,7 +381,7 @@ _FEW, _MANY, _LAST = 9, 65, 2
 
 
 @dataclass(frozen=True)
-class Speed:
+class ContactsAtSpeed:
     """Contacts with any friction at one speed, which share kernels.
 
     Attributes:
@@ -392,7 +392,7 @@ class Speed:
     """
 
     response: Any
-    stack: Stack
+    stack: LayersAtSpeed
     slope: Callable[[NDArray], NDArray]
     tolerance: float
 
@@ -400,7 +400,7 @@ class Speed:
     def kernel(self) -> Kernel:
         return Kernel(self.stack, self.tolerance / 1e3)
 
-    def solved(self, g: NDArray) -> tuple["Frictions", NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple["PressuresByFriction", NDArray[np.float64]]:
         """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
 
         Args:
@@ -418,15 +418,15 @@ class Speed:
                 return frictions, np.array([error])
             count = 2 * count - 1
 
-    def _together(self, g: NDArray, each: list[Any]) -> "Frictions":
-        return Frictions(g, each)
+    def _together(self, g: NDArray, each: list[Any]) -> "PressuresByFriction":
+        return PressuresByFriction(g, each)
 
-    def _each(self, g: NDArray) -> list[Found]:
-        answers: list[Found] = []
+    def _each(self, g: NDArray) -> list[ConvergedPressure]:
+        answers: list[ConvergedPressure] = []
         first = FIRST
         for value in g.tolist():
             equation = Equation(self.response, self.kernel, value, self.slope)
-            answers.append(found(equation, self.tolerance, first))
+            answers.append(converged_pressure(equation, self.tolerance, first))
         return answers
 
     @property
@@ -436,7 +436,7 @@ class Speed:
 
 
 @dataclass(frozen=True)
-class Frictions:
+class PressuresByFriction:
     """Pressures at several frictions, from which those at others are interpolated.
 
     Attributes:
@@ -445,7 +445,7 @@ class Frictions:
     """
 
     g: NDArray[np.float64]
-    each: list[Found]
+    each: list[ConvergedPressure]
 
     @property
     def near(self) -> float:

@@ -41,12 +41,12 @@ from ..sie.free_contact import local_exponents as of_the_surface
 from ..sie.panels import FreeEnds
 from .contact import (
     FIRST,
+    ContactsAtSpeed,
+    ConvergedPressure,
     Equation,
-    Found,
-    Frictions,
     Pressure,
+    PressuresByFriction,
     Resolution,
-    Speed,
     change,
     check_exponents,
     is_converged,
@@ -394,7 +394,7 @@ _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(
 
 
 @dataclass(frozen=True)
-class Contact(Found):
+class Contact(ConvergedPressure):
     """A pressure with its contact; lengths are over a unit that all states share.
 
     Attributes:
@@ -449,7 +449,7 @@ class ContactAtResolution:
 
 
 @dataclass(frozen=True)
-class Contacts(Frictions):
+class Contacts(PressuresByFriction):
     """Contacts with several frictions, from which those with others are interpolated."""
 
     each: list[Any]
@@ -507,7 +507,7 @@ _KERNEL_MARGIN = 1.5
 
 
 @dataclass(frozen=True)
-class FoundSpeed(Speed):
+class FreeContactsAtSpeed(ContactsAtSpeed):
     """Contacts with free ends and any friction at one speed, which share kernels.
 
     Attributes:
@@ -533,17 +533,17 @@ class FoundSpeed(Speed):
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 
-    def solved(self, g: NDArray) -> tuple[Frictions, NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple[PressuresByFriction, NDArray[np.float64]]:
         # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
         if self.every or len(kinks(self.punch.profile)) or isinstance(self.punch.profile, Flat):
             return Contacts(g, self._each(g)), np.zeros(1)
         return super().solved(g)
 
-    def _together(self, g: NDArray, each: list[Any]) -> Frictions:
+    def _together(self, g: NDArray, each: list[Any]) -> PressuresByFriction:
         return Contacts(g, each)
 
-    def _each(self, g: NDArray) -> list[Found]:
-        answers: list[Found] = []
+    def _each(self, g: NDArray) -> list[ConvergedPressure]:
+        answers: list[ConvergedPressure] = []
         h = 1.0
         for value in g.tolist():
             contact = self.contact(value, h)
@@ -664,7 +664,7 @@ def local_exponents(
     each = np.broadcast_to(compression, g.shape)
     for N in np.unique(each).tolist():
         punch, rows = Punch(profile, unit, N), each == N
-        speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
+        speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
         try:
             free[rows] = [speed.contact(value).free for value in g[rows].tolist()]
         except SolveError:
@@ -689,5 +689,5 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     # That on the surface's solid alone is near enough to measure lengths by.
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
-    speed = FoundSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, punch)
+    speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, _AT_REST, punch)
     return unit * speed.half_width()

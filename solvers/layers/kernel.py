@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
 from ..errors import SolveError
-from .layered import Stack
+from .layered import LayersAtSpeed
 from .stiffness import Medium, Uniform, inverse
 
 #: Gauss points of a panel, their weights, and the matrix from values to Legendre coefficients.
@@ -242,7 +242,7 @@ _FIRST = 0.2
 ROUNDING = 2e-13
 
 
-def wavenumbers(stack: Stack) -> float:
+def wavenumbers(stack: LayersAtSpeed) -> float:
     """End of the first panel of wavenumbers, times a."""
     return _FIRST / float(stack.depths[-1])
 
@@ -257,7 +257,7 @@ class Kernel:
         reach: positions over a up to which the kernel is tabulated.
     """
 
-    stack: Stack
+    stack: LayersAtSpeed
     tolerance: float
     reach: float = REACH
 
@@ -354,13 +354,13 @@ class Level:
         tolerance: relative.
     """
 
-    stack: Stack
+    stack: LayersAtSpeed
     depth: float
     reach: float
     tolerance: float
 
     @cached_property
-    def _parts(self) -> tuple[Stack, int]:
+    def _parts(self) -> tuple[LayersAtSpeed, int]:
         """Layers with an interface at the depth, and the number of layers above it."""
         layers, top = list(self.stack.layers), 0.0
         for i, layer in enumerate(layers):
@@ -368,11 +368,11 @@ class Level:
             if abs(bottom - self.depth) <= _AT * bottom:
                 return self.stack, i + 1
             if self.depth < bottom:
-                return Stack([*layers[:i], *layer.cut(self.depth - top), *layers[i + 1 :]],
+                return LayersAtSpeed([*layers[:i], *layer.cut(self.depth - top), *layers[i + 1 :]],
                              self.stack.substrate), i + 1  # fmt: skip
             top = bottom
         more = Uniform(self.stack.substrate, self.depth - top)
-        return Stack([*layers, more], self.stack.substrate), len(layers) + 1
+        return LayersAtSpeed([*layers, more], self.stack.substrate), len(layers) + 1
 
     @property
     def media(self) -> tuple[Medium, Medium]:

@@ -1,6 +1,6 @@
 """Layers on a substrate as one solid: all that solvers need of a solid, and its layers besides.
 
-:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`Stack` the
+:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`LayersAtSpeed` the
 layers at that speed with lengths over a, with the stiffness of their surface.
 
 Below the highest speed over layers the stiffness against every wave, on the surface and inside, is
@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SolveError
-from ..parameters import made, parameters, values
+from ..parameters import build_model, parameters, values
 from ..solids.solid import Potential, Response, Solid
 from .stiffness import Graded, Medium, Uniform, inverse, least
 
 
 @dataclass(frozen=True)
-class Stack:
+class LayersAtSpeed:
     """Layers from the top down at a speed, lengths over a, stiffnesses over that of the surface's solid.
 
     Attributes:
@@ -109,7 +109,7 @@ _CLOSER, _THERE = 4, 9
 _STEPS, _STRIDE, _FIRST_STEP = 90, 2.0, 1e-4
 
 
-def weakest(stack: Stack) -> tuple[float, float]:
+def weakest(stack: LayersAtSpeed) -> tuple[float, float]:
     """Smallest stiffness against any wave, and its wavenumber times a."""
     H = [layer.H for layer in stack.layers]
     k = wavenumbers(sum(H), min(H))
@@ -131,7 +131,7 @@ def wavenumbers(whole: float, thinnest: float) -> NDArray[np.float64]:
     return np.geomspace(first, last, int(_DENSITY * np.log2(last / first)) + 1)
 
 
-def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> float:
+def highest(stack: Callable[[float], LayersAtSpeed], most: float, accuracy: float) -> float:
     """Highest speed at which the stiffness against every wave is positive.
 
     Where one is not, the speed falls to that at which the weakest wave's stiffness vanishes, and the
@@ -163,7 +163,9 @@ def highest(stack: Callable[[float], Stack], most: float, accuracy: float) -> fl
     raise SolveError("no speed was found at which the layers are stable; are their constants as meant?")
 
 
-def _where_it_falls(stack: Callable[[float], Stack], k: float, high: float, accuracy: float) -> float:
+def _where_it_falls(
+    stack: Callable[[float], LayersAtSpeed], k: float, high: float, accuracy: float
+) -> float:
     """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
 
     def min_stiffness(speed: float) -> float:
@@ -198,7 +200,7 @@ _CLOSE = 60
 
 
 def dispersion(
-    stack: Callable[[float], Stack], most: float, k: NDArray, accuracy: float
+    stack: Callable[[float], LayersAtSpeed], most: float, k: NDArray, accuracy: float
 ) -> NDArray[np.float64]:
     """Speed of the slowest wave with each wavenumber, (n,); NaN where it is no slower than waves inside.
 
@@ -312,7 +314,7 @@ class Layer:
             return float(now) if not now.ndim else tuple(now.tolist())
 
         changed = {key: mixed(*pair) for key, pair in self._changing.items()}
-        return made(type(self.solid), values(self.solid) | changed)  # type: ignore[no-any-return]
+        return build_model(type(self.solid), values(self.solid) | changed)  # type: ignore[no-any-return]
 
     def words(self) -> str:
         """Description of the layer with units, as part of a sentence."""
@@ -419,7 +421,7 @@ class Layered:
     def _limit(self) -> float:
         graded = any(layer.bottom for layer in self.layers)
 
-        def stack(c: float) -> Stack:
+        def stack(c: float) -> LayersAtSpeed:
             return self.response(c).stack(1.0, 1e-8)
 
         # Waves much shorter than a layer, and much longer than all, run as in one solid.
@@ -533,14 +535,14 @@ class LayeredResponse:
             for of_layer in solids
         ]
 
-    def stack(self, a: float, rtol: float = 0.0) -> Stack:
+    def stack(self, a: float, rtol: float = 0.0) -> LayersAtSpeed:
         """The layers with lengths over a.
 
         Args:
             a: length [m].
             rtol: of the integration of graded layers, 0 for the usual one.
         """
-        return Stack([self._layer(layer, a, rtol) for layer in self.solid.layers], self.medium(
+        return LayersAtSpeed([self._layer(layer, a, rtol) for layer in self.solid.layers], self.medium(
             self.solid.substrate
         ))  # fmt: skip
 

@@ -11,9 +11,9 @@ from .profile import (
     Profile,
     check_reach,
     cusp,
-    ends_are_found,
     exponent,
     half_width,
+    has_free_end,
     jumps,
     kinks,
     leaving,
@@ -21,6 +21,15 @@ from .profile import (
 )
 
 __all__ = [
-    "PROFILES", "Profile", "check_reach", "cusp", "ends_are_found", "exponent", "half_width", "jumps",
-    "kinks", "leaving", "smooth",
+    "PROFILES",
+    "Profile",
+    "check_reach",
+    "cusp",
+    "exponent",
+    "half_width",
+    "has_free_end",
+    "jumps",
+    "kinks",
+    "leaving",
+    "smooth",
 ]  # fmt: skip

@@ -46,7 +46,7 @@ def half_width(profile: Any) -> float:
     return profile.half_width
 
 
-def ends_are_found(profile: Any) -> bool:
+def has_free_end(profile: Any) -> bool:
     """Return True if an end of the contact is free, not a sharp corner of the punch."""
     return not all(getattr(profile, "sharp", (True, True)))
 

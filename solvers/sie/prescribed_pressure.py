@@ -149,7 +149,7 @@ def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDA
 
 
 @dataclass(frozen=True)
-class GivenPressure:
+class PrescribedPressureSolution:
     """Exact solution for a prescribed pressure, at one speed.
 
     Args:

@@ -253,7 +253,7 @@ _ONE = np.eye(2)
 
 
 @dataclass(frozen=True)
-class Sheet:
+class UniformLayer:
     """A uniform layer.
 
     Attributes:
@@ -275,7 +275,7 @@ class Sheet:
 
 
 @dataclass(frozen=True)
-class Sheets:
+class UniformLayers:
     """Layers on a substrate.
 
     Attributes:
@@ -283,11 +283,11 @@ class Sheets:
         substrate: half-plane below them; its thickness is not used.
     """
 
-    layers: tuple[Sheet, ...]
-    substrate: Sheet
+    layers: tuple[UniformLayer, ...]
+    substrate: UniformLayer
 
     @classmethod
-    def of(cls, response: LayersInCells) -> "Sheets":
+    def of(cls, response: LayersInCells) -> "UniformLayers":
         """Layers of a response.
 
         Raises:
@@ -300,15 +300,15 @@ class Sheets:
         thicknesses = [*(layer.thickness / response.a for layer in solid.layers), np.inf]
         for own, H in zip((*(layer.solid for layer in solid.layers), solid.substrate), thicknesses):
             surface = Admittance.of(own.response(0.0))
-            layers.append(Sheet(surface, own.μ / solid.μ, solid.c_s / own.c_s, H))
+            layers.append(UniformLayer(surface, own.μ / solid.μ, solid.c_s / own.c_s, H))
         return cls(tuple(layers[:-1]), layers[-1])
 
     @property
-    def mirrored(self) -> "Sheets":
+    def mirrored(self) -> "UniformLayers":
         """The mirror image in X = 0."""
         every = (*self.layers, self.substrate)
         mirror_images = [replace(layer, surface=layer.surface.mirrored) for layer in every]
-        return Sheets(tuple(mirror_images[:-1]), mirror_images[-1])
+        return UniformLayers(tuple(mirror_images[:-1]), mirror_images[-1])
 
     @property
     def fastest(self) -> float:
@@ -347,7 +347,7 @@ class Echoes:
         c: speed over c_s, of either sign.
     """
 
-    sheets: Sheets
+    sheets: UniformLayers
     c: float
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
@@ -427,7 +427,7 @@ class OnLayers:
 
 def fastest(response: Any) -> float:
     """Largest speed of a wave inside over c_s."""
-    of = Sheets if isinstance(response, LayersInCells) else Admittance
+    of = UniformLayers if isinstance(response, LayersInCells) else Admittance
     return of.of(response).fastest
 
 
@@ -445,6 +445,6 @@ def both_sides(response: Any, rayleigh: float, way: int) -> tuple[Side, Side]:
     if not isinstance(response, LayersInCells):
         surface, V = Admittance.of(response), way * response.c
         return Kernel(surface, V, rayleigh), Kernel(surface.mirrored, -V, rayleigh)
-    sheets, V = Sheets.of(response), way * response.c
+    sheets, V = UniformLayers.of(response), way * response.c
     ahead, behind = both_sides(response.surface, response.solid.surface.limit(), way)
     return OnLayers(ahead, Echoes(sheets, V)), OnLayers(behind, Echoes(sheets.mirrored, -V))

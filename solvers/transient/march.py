@@ -113,7 +113,7 @@ _PLACES = -np.cos(pi * (np.arange(64) + 0.5) / 64)
 _SAME = 1e-13
 
 
-class Between:
+class FrictionInterpolation:
     """Interpolation in friction: pressures of any g from ``least`` to ``most`` by those of a few.
 
     Args:
@@ -167,7 +167,7 @@ _BLOCK = 16
 
 
 @dataclass(frozen=True)
-class Marched:
+class PressureHistory:
     """Pressure and indentation over time.
 
     Attributes:
@@ -179,7 +179,7 @@ class Marched:
         v0: indentation after each step, (steps,).
     """
 
-    between: Between
+    between: FrictionInterpolation
     shares: NDArray[np.float64]
     begun: NDArray[np.float64]
     a: NDArray[np.float64]
@@ -187,9 +187,9 @@ class Marched:
 
 
 def march(
-    transformed: Transformed, scheme: Radau, between: Between,
+    transformed: Transformed, scheme: Radau, between: FrictionInterpolation,
     g: Callable[[NDArray], NDArray], load: Callable[[NDArray], NDArray], steady: bool,
-) -> Marched:  # fmt: skip
+) -> PressureHistory:  # fmt: skip
     """Pressure and indentation from t = 0 on, step after step.
 
     Args:
@@ -217,7 +217,7 @@ def march(
         x = np.linalg.solve(whole.reshape(right.size, right.size), right.ravel()).reshape(shape)
         h.record(n, share[:, :, None] * x[:, None, :-1])
         coefficients[n], v0[n] = x[-1, :-1], x[-1, -1]
-    return Marched(between, h.added + h.begun, h.begun[0], coefficients, v0)
+    return PressureHistory(between, h.added + h.begun, h.begun[0], coefficients, v0)
 
 
 class _History:
@@ -228,7 +228,7 @@ class _History:
         begun: coefficients before t = 0, (stages, few·terms), equal at all stages.
     """
 
-    def __init__(self, transformed: Transformed, scheme: Radau, between: Between) -> None:
+    def __init__(self, transformed: Transformed, scheme: Radau, between: FrictionInterpolation) -> None:
         tests, few = between.middle.tests, len(between.bases)
         self._weights = np.empty((len(scheme.times), STAGES, tests.terms, STAGES, few, tests.terms))
         for n, basis in enumerate(between.bases):

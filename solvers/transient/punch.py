@@ -24,8 +24,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..solids.solid import Response
 from .line_load import both_sides
-from .march import Between, Radau, march
-from .transform import Basis, Transformed, Weighted, at_any, divided
+from .march import FrictionInterpolation, Radau, march
+from .transform import Basis, Transformed, Weighted, divided, response_at
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.125, 10
@@ -117,7 +117,8 @@ class AlongSurface:
     def _tables(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each."""
         ahead, behind = (
-            np.array([at_any(kernel, self._x, s, True)[2:] for s in self._s]) for kernel in self._kernels
+            np.array([response_at(kernel, self._x, s, True)[2:] for s in self._s])
+            for kernel in self._kernels
         )
         return ahead, behind
 
@@ -256,7 +257,7 @@ class StartingPunch:
         scheme, transformed = self._scheme, self._transformed
         ratios = g(scheme.times)
         occurring = np.append(ratios, g(np.zeros(())))
-        between = Between(self._response, occurring.min(), occurring.max(), self._terms)
+        between = FrictionInterpolation(self._response, occurring.min(), occurring.max(), self._terms)
         marched = march(transformed, scheme, between, g, load, steady)
         held = between.middle.pressure
         rows = [np.hstack([transformed.dragging(of, held), self._strains(of)]) for of in between.bases]

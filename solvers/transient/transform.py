@@ -277,7 +277,7 @@ class Transformed:
         if beyond not in self._beside:
             X, _ = self._few.rule(_FEW)
             self._beside[beyond] = tuple(
-                np.array([at_any(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
+                np.array([response_at(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
                 for kernel, sign in zip(self._kernels, (1.0, -1.0))
             )
         ahead, behind = self._beside[beyond]
@@ -320,7 +320,7 @@ class Transformed:
         between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
         x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
-            sampled = np.array([at_any(kernel, x, s) for s in self.s])
+            sampled = np.array([response_at(kernel, x, s) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
             whole[..., ~short] = sampled[..., :-_SAMPLES]
             whole[..., short] = sampled[..., -_SAMPLES:] @ between.T
@@ -328,6 +328,6 @@ class Transformed:
         return values[0], values[1]
 
 
-def at_any(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+def response_at(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
     """Response at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

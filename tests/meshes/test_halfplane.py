@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.half_plane import BOX_DEPTH, BOX_WIDTH
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import CONTACT, FAR, FREE, TAGS, QuadMesh
@@ -14,7 +14,7 @@ TOLERANCES = [1e-2, 1e-6, 1e-9]
 @pytest.mark.parametrize("nearest, exponent", [(None, -0.5), (None, -0.95), (1e-6, -0.6), (1e-12, -0.9)])
 def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, nearest, exponent):
     kind = MESHES[mesh]
-    cells = kind.build(MESHES[mesh].refinement(Wanted(tolerance, nearest, 5.0, exponent)))
+    cells = kind.build(MESHES[mesh].refinement(Requirements(tolerance, nearest, 5.0, exponent)))
     check_cells(cells)
     x, y = np.moveaxis(cells.points[cells.cells], -1, 0)
     area = 0.5 * np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1))
@@ -33,7 +33,7 @@ def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, nearest, e
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_have_no_cracks(mesh, times):
     """Every inner edge is shared by two cells: no vertex is there twice but for its last digit."""
-    cells = MESHES[mesh].build(MESHES[mesh].refinement(Wanted(1e-5)), times)
+    cells = MESHES[mesh].build(MESHES[mesh].refinement(Requirements(1e-5)), times)
     check_cells(cells)
     edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
     _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
@@ -44,7 +44,7 @@ def test_cut_meshes_have_no_cracks(mesh, times):
 @pytest.mark.parametrize("mesh", MESHES)
 def test_boundary_parts_lie_where_they_should(mesh):
     kind = MESHES[mesh]
-    cells = kind.build(MESHES[mesh].refinement(Wanted(1e-6)))
+    cells = kind.build(MESHES[mesh].refinement(Requirements(1e-6)))
     X = {tag: kind.chart.to_physical(cells.points[np.unique(cells.edges[tag])]) for tag in TAGS.values()}
     for tag in (CONTACT, FREE):
         np.testing.assert_allclose(X[tag][:, 1], 0.0, atol=1e-12 * np.abs(X[tag]).max())
@@ -53,7 +53,7 @@ def test_boundary_parts_lie_where_they_should(mesh):
     if mesh == "box":
         assert (np.isclose(np.abs(X[FAR][:, 0]), 100.0) | np.isclose(X[FAR][:, 1], -100.0)).all()
     else:
-        radius = kind.reach(Wanted(1e-6))
+        radius = kind.reach(Requirements(1e-6))
         axes = radius + np.array([0.25, -0.25]) / radius
         np.testing.assert_allclose(np.linalg.norm(X[FAR] / axes, axis=1), 1.0, rtol=1e-9)
 
@@ -67,7 +67,7 @@ def test_a_turned_cell_is_refused():
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
-    coarse = MESHES[mesh].refinement(Wanted(1e-3))
+    coarse = MESHES[mesh].refinement(Requirements(1e-3))
     whole, fine = (MESHES[mesh].build(coarse, cuts) for cuts in (1, 3))
     assert len(fine.cells) == 9 * len(whole.cells)
     np.testing.assert_array_equal(fine.points[: len(whole.points)], whole.points)
@@ -78,7 +78,7 @@ def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_pieces_of_a_mesh_make_the_whole(mesh):
-    kind, pattern = MESHES[mesh], MESHES[mesh].refinement(Wanted(1e-3))
+    kind, pattern = MESHES[mesh], MESHES[mesh].refinement(Requirements(1e-3))
     whole, pieces = kind.build(pattern, 4), [kind.build(pattern, 4, i, 3) for i in range(3)]
     for name in ("points", "cells"):
         np.testing.assert_array_equal(
@@ -90,11 +90,11 @@ def test_pieces_of_a_mesh_make_the_whole(mesh):
 
 def test_a_curve_under_the_punch_costs_few_cells_and_spares_a_degree():
     for name in ("confocal", "graded", "box"):
-        kind, straight, curved = MESHES[name], Wanted(1e-6), Wanted(1e-6, bends=True)
+        kind, straight, curved = MESHES[name], Requirements(1e-6), Requirements(1e-6, bends=True)
         cells = [len(kind.build(kind.refinement(wanted)).cells) for wanted in (straight, curved)]
         assert cells[0] < cells[1] <= cells[0] + 4 * kind.refinement(straight).sectors
         assert kind.degree(curved, 1.0) == kind.degree(straight, 1.0) - 1
     # Squares all over have no rings that could be cut.
     kind = MESHES["uniform"]
-    assert kind.refinement(Wanted(1e-6)) == kind.refinement(Wanted(1e-6, bends=True))
-    assert kind.degree(Wanted(1e-6), 1.0) == kind.degree(Wanted(1e-6, bends=True), 1.0)
+    assert kind.refinement(Requirements(1e-6)) == kind.refinement(Requirements(1e-6, bends=True))
+    assert kind.degree(Requirements(1e-6), 1.0) == kind.degree(Requirements(1e-6, bends=True), 1.0)

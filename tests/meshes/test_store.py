@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx import sealed
-from galinx.meshes import MESHES, Wanted, store
+from galinx.meshes import MESHES, Requirements, store
 from galinx.meshes.rings import QuadMesh
 
 #: Bits that are flipped in a mesh; GALINX_THOROUGH=1 asks for as many as a release does.
@@ -16,7 +16,7 @@ FLIPS = 5000 if os.environ.get("GALINX_THOROUGH") else 50
 @pytest.fixture
 def pattern(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return MESHES["graded"].build(MESHES["graded"].refinement(Wanted(1e-3)))
+    return MESHES["graded"].build(MESHES["graded"].refinement(Requirements(1e-3)))
 
 
 @pytest.fixture

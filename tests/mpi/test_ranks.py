@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 from support import space_on
 
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem import fields
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
@@ -60,7 +60,7 @@ def test_shared_pieces_give_what_one_rank_gives(form):
     points = np.array([[0.3, -0.2], [0.2, 0.0], [-1.0, -1e-9], [0.201, -1e-12], [4.0, -3.0]])
     found = []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        refinement = MESHES["confocal"].refinement(Wanted(1e-3, NEAR, 1e5))
+        refinement = MESHES["confocal"].refinement(Requirements(1e-3, NEAR, 1e5))
         loads = LinearLoads(space_on("confocal", refinement, 5, comm, form), MovingFrame(2.0, 0.6))
         found.append(pieces.gradients(loads, points))
         assert pieces.resultant(loads) == pytest.approx(-1.8 - 0.0045 - 2.7965, rel=1e-12)

@@ -10,7 +10,7 @@ from support import space_on
 
 from galinx import template
 from galinx.app.results import fields
-from galinx.app.results.fields import chosen, solved, state_field, write_fields
+from galinx.app.results.fields import select_states, solve_states, state_field, write_fields
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.fields import sample
 from galinx.solvers.fem.punch import SlidingPunch
@@ -50,7 +50,7 @@ def by_place(points, quads, data):
 def test_rank_0_writes_what_all_ranks_have(tmp_path, monkeypatch):
     path, scene = tmp_path / "state.hdf", template("tables4_5")
     # One solution for both: what rounding does next to an edge differs from run to run on two ranks.
-    with closing(solved(chosen(scene, [0], [5]))) as states:
+    with closing(solve_states(select_states(scene, [0], [5]))) as states:
         found = fields._sampled(next(states), 2.0)
     monkeypatch.setattr(fields, "_sampled", lambda *_: found)
     write_fields(scene, [0], path, extent=2.0, degrees=[5])

@@ -7,7 +7,7 @@ import galinx
 from galinx.app import ranks
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
-from galinx.app.run.over_time import follow
+from galinx.app.run.over_time import solve_motions
 from galinx.clock import Clock
 
 QUICK = {"motion.c": [0.2, 0.5], "time.end": 2.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
@@ -21,7 +21,7 @@ def test_ranks_share_out_starts(monkeypatch):
     assert bool(told) == (MPI.COMM_WORLD.rank == 0)
     monkeypatch.setattr(ranks, "_known", lambda: (0, 1))
     plan = make_plan(scene)
-    alone = follow(plan.starts, plan.body.solid, Clock())
+    alone = solve_motions(plan.starts, plan.body.solid, Clock())
     assert {"time/sie/v0", "time/fem/v0"} < alone.keys()
     for path, values in told.items():
         np.testing.assert_allclose(values, alone[path], rtol=1e-9, atol=1e-12, err_msg=path)

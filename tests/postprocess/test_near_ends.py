@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.free_ends import FARTHER, farthest_at_kink, left_at_kink, towards_kink
+from galinx.postprocess.free_ends import FARTHER, error_at_kink, farthest_at_kink, towards_kink
 
 GAP = 0.7
 
@@ -37,4 +37,4 @@ def test_what_a_limit_leaves_out_is_in_its_error(exponent, opposite):
         np.array([limit(side, exponent, farthest, by) for side in sides]) for by in (1.0, FARTHER)
     )
     true = np.abs(usual - 3.0).max()
-    assert 1e-12 < true <= left_at_kink(usual, farther) <= 30.0 * true
+    assert 1e-12 < true <= error_at_kink(usual, farther) <= 30.0 * true

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.postprocess.pressure import Stretch, stretched_from_moments
-from galinx.solvers.layers.contact import Equation, found
+from galinx.solvers.layers.contact import Equation, converged_pressure
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.panelled import Panels
@@ -20,7 +20,7 @@ def pressure():
     """By the integral equation, of a layer whose modulus is ten times as large at its lower face."""
     response = Layered((Layer(0.2, SOFT, HARD),), HARD).response(0.45)
     kernel = Kernel(response.stack(1.0), 1e-9)
-    return found(Equation(response, kernel, -0.5, np.zeros_like), 1e-8).pressure
+    return converged_pressure(Equation(response, kernel, -0.5, np.zeros_like), 1e-8).pressure
 
 
 def read(pressure, stretch, count):

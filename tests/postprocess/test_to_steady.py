@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.over_time import distances_from_steady, from_steady, within
+from galinx.postprocess.over_time import distances_from_steady, from_steady, times_near_steady
 
 
 def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
     t = np.linspace(0.1, 40.0, 400)
     load = np.clip(t / 2.0, 0.0, 1.0)  # as if it came on at once at t = 1
     off = np.array([2.0 / np.maximum(t - 1.0, 0.1), 0.05 * np.exp(-t)])
-    found = within(t, load, off)
+    found = times_near_steady(t, load, off)
     np.testing.assert_allclose(found[0], [21.0, 201.0, 2001.0], rtol=1e-3)
     np.testing.assert_allclose(found[1], [t[0], np.log(5.0), np.log(50.0)], rtol=1e-2)
 
@@ -20,7 +20,7 @@ def test_what_does_not_fall_like_1_over_t_yet_is_not_told():
     t = np.linspace(0.1, 8.0, 80)
     load = np.clip(t / 3.0, 0.0, 1.0)
     off = np.array([0.6 - 0.02 * t, 0.3 + 0.0 * t, 0.5 - t / 25.0])
-    assert np.isnan(within(t, load, off)).all()
+    assert np.isnan(times_near_steady(t, load, off)).all()
 
 
 def test_where_K_I_cannot_be_told_nothing_is_near():

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from galinx.solvers.approximation import barycentric, chebyshev_nodes, fitted, leja, polynomial_weights
+from galinx.solvers.approximation import (
+    barycentric,
+    chebyshev_nodes,
+    fit_rational,
+    leja,
+    polynomial_weights,
+)
 
 
 def chosen(z, count, first=0):
@@ -17,7 +23,7 @@ def chosen(z, count, first=0):
 def error(z, values, count, noise=0.0):
     """Largest error of a fit through some samples at all, and the largest sum of its shares."""
     some = chosen(z, count)
-    shares = fitted(z[some], values[some], noise).shares(z)
+    shares = fit_rational(z[some], values[some], noise).shares(z)
     return np.abs(shares @ values[some] - values).max(), np.abs(shares).sum(axis=1).max()
 
 
@@ -68,7 +74,7 @@ def test_noise_makes_no_poles(seed):
 def test_samples_themselves_are_met():
     rng = np.random.default_rng(3)
     z, values = rng.uniform(size=7), rng.normal(size=(7, 5))
-    np.testing.assert_allclose(fitted(z, values).shares(z) @ values, values, rtol=1e-13)
+    np.testing.assert_allclose(fit_rational(z, values).shares(z) @ values, values, rtol=1e-13)
 
 
 def test_leja_begins_at_the_ends_and_takes_no_point_twice():

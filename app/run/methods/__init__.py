@@ -28,13 +28,13 @@ def make(name: str, plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from .closed_form import ClosedForm, with_given_ends
+    from .closed_form import ClosedForm, with_fixed_ends
 
     if plan.body.found:
         from .closed_form import FreePunches
 
         return ClosedForm(FreePunches)
-    return ClosedForm(with_given_ends)
+    return ClosedForm(with_fixed_ends)
 
 
 def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:

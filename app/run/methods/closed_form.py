@@ -17,7 +17,7 @@ from galinx.postprocess.free_ends import turns_at_knots
 from galinx.postprocess.yielding import Strength
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import Contacts, Exponents, contacts
-from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.sie.residual import of_contact, of_field
 from galinx.solvers.solution import Surface, Turns
 
@@ -58,7 +58,7 @@ class _AtSpeed:
         return {}
 
 
-def with_given_ends(task: Task, g: NDArray) -> Any:
+def with_fixed_ends(task: Task, g: NDArray) -> Any:
     """Solution of punches whose contact has fixed ends, or of a prescribed pressure."""
     if task.body.pressure:
         return PrescribedPressures(task, g)
@@ -105,7 +105,7 @@ class Punches:
         """σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, n)."""
         raise NotImplementedError
 
-    def _strength(self, exact: FlatPunch | GivenPressure) -> Strength:
+    def _strength(self, exact: FlatPunch | PrescribedPressureSolution) -> Strength:
         """Yield of the states, by exact stresses at all points."""
         task = self.task
 
@@ -187,8 +187,8 @@ class PrescribedPressures(Punches):
         return np.full(len(self.g), self._pressure.resultant)
 
     @cached_property
-    def _over_places(self) -> GivenPressure:
-        return GivenPressure(self.task.response, self.g[:, None], self._pressure)
+    def _over_places(self) -> PrescribedPressureSolution:
+        return PrescribedPressureSolution(self.task.response, self.g[:, None], self._pressure)
 
     @cached_property
     def surface(self) -> Surface:

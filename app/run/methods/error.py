@@ -350,7 +350,7 @@ def climbed(
 
 
 @contextmanager
-def reached(
+def solved_to_tolerance(
     work: Any, task: Task, g: NDArray, solved: Callable[[Space, NDArray], Any]
 ) -> Iterator[tuple[Ladder, "MeasuredError"]]:
     """Ladder as of :func:`climbed`, on finer cells where no degree reaches the tolerance on the plan's.

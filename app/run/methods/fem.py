@@ -8,11 +8,11 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
-from galinx.postprocess.quantities.quantity import FOUND, OWN_PRESSURE
+from galinx.postprocess.quantities.quantity import FREE_ENDS, OWN_PRESSURE
 from galinx.solvers.fem.space import Space
 
 from ...console import Progress
-from ...plan.fem import FOLLOWED, LOADS, OWN_MESHES
+from ...plan.fem import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
 from ...plan.task import Plan, Task
 from . import followed, kinked, prescribed_pressure, punch
 from .discretisation import Discretisation, quiet_compiler
@@ -24,10 +24,10 @@ MODES = {
     "contact": Mode(punch.solver, punch.one_state, punch.PunchLevel, punch.PunchesAtSpeed),
     "traction": Mode(prescribed_pressure.formula_solver, prescribed_pressure.formula_state),
     OWN_PRESSURE: Mode(prescribed_pressure.solver, prescribed_pressure.one_state),
-    FOUND: Mode(punch.free_solver, punch.free_state, punch.FreeLevel, punch.FreeAtSpeed),
+    FREE_ENDS: Mode(punch.free_solver, punch.free_state, punch.FreeLevel, punch.FreeAtSpeed),
     OWN_MESHES: Mode(kinked.solver),
-    FOLLOWED: Mode(followed.solver),
-    LOADS: Mode(prescribed_pressure.layered_solver),
+    FREE_ON_LAYERS: Mode(followed.solver),
+    PRESCRIBED_ON_LAYERS: Mode(prescribed_pressure.layered_solver),
 }
 
 

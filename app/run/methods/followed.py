@@ -34,11 +34,11 @@ from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solution import Places, Surface
 
 from ...plan import fem
-from ...plan.fem import FemPlan, wanted_for
+from ...plan.fem import FemPlan, requirements
 from ...plan.task import Task
 from .discretisation import Discretisation, on_finer_cells
 from .displacement import KinkedDisplacement
-from .error import Gauge, StressGauges, WorkDone, reached
+from .error import Gauge, StressGauges, WorkDone, solved_to_tolerance
 from .kinked import OnOwnMeshes, OwnMeshesAtSpeed, alone
 from .punch import negligible, tests_of
 
@@ -91,12 +91,13 @@ class Sized:
             below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
         X = places.X if ON_SURFACE in words else np.empty(0)
         requested = Places(X, below, places.around)
-        target = wanted_for(tolerance, requested, plan.sharp, scaled.response.spread)
-        target = fem.wanted_of_free_ends_on_layers(target)
+        target = requirements(tolerance, requested, plan.sharp, scaled.response.spread)
+        target = fem.required_of_free_ends_on_layers(target)
         degree = kind.degree(target, scaled.response.margin)
         return replace(
             plan, kind=kind, wanted=target, drawn=kind.drawn(target),
-            degrees=(degree,) * len(plan.degrees), tests=fem.tests_of(scaled.body.solid, kind, target),
+            degrees=(degree,) * len(plan.degrees),
+            tests=fem.pressure_moments(scaled.body.solid, kind, target),
         )  # fmt: skip
 
 
@@ -384,7 +385,7 @@ class _Contact:
         def level(space: Any, _: NDArray) -> FollowedLevel:
             return self.level(mesh, sized.scaled, space)
 
-        with reached(mesh, sized.scaled, g, level) as (ladder, error):
+        with solved_to_tolerance(mesh, sized.scaled, g, level) as (ladder, error):
             of = {word: float(values[0]) for word, values in error.of(g).items()}
             self.record = error.record()
             return sized, ladder.levels.pop(), of

@@ -55,7 +55,7 @@ from .error import (
     StressGauges,
     WorkDone,
     climbed,
-    reached,
+    solved_to_tolerance,
 )
 from .punch import PunchLevel, negligible
 
@@ -576,7 +576,7 @@ def solved(work: Discretisation, task: Task, g: float, ends: Ends, done: WorkDon
         return contact
 
     of_one = np.array([g])
-    with reached(OwnMeshes(work, places, task.body), task, of_one, level) as (ladder, error):
+    with solved_to_tolerance(OwnMeshes(work, places, task.body), task, of_one, level) as (ladder, error):
         estimates = {word: float(values[0]) for word, values in error.of(of_one).items()}
         last: KinkedLevel = ladder.levels.pop()
     estimates[INTENSITIES] += ends.error

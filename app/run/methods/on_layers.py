@@ -23,10 +23,17 @@ from galinx.postprocess.pressure import largest
 from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
-from galinx.solvers.layers.contact import COARSE, FINE, Found, Frictions, Given, Speed
-from galinx.solvers.layers.free_contact import Contacts, FoundSpeed, Punch
+from galinx.solvers.layers.contact import (
+    COARSE,
+    FINE,
+    ContactsAtSpeed,
+    ConvergedPressure,
+    PrescribedPressure,
+    PressuresByFriction,
+)
+from galinx.solvers.layers.free_contact import Contacts, FreeContactsAtSpeed, Punch
 from galinx.solvers.layers.kernel import Kernel, Level
-from galinx.solvers.layers.layered import Stack
+from galinx.solvers.layers.layered import LayersAtSpeed
 from galinx.solvers.layers.stiffness import Medium
 from galinx.solvers.profiles import cusp, jumps, kinks
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -40,7 +47,7 @@ from ...plan.task import Task
 from .method import Solver
 
 
-def sharp_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "AtSpeed":
+def sharp_at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> "AtSpeed":
     """Punches with two sharp edges at one speed, with frictions from which all others follow.
 
     Args:
@@ -49,7 +56,7 @@ def sharp_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "A
         tolerance: relative tolerance.
         g: all values of σ_XY/σ_YY that will be solved, sorted.
     """
-    speed = Speed(task.response, stack, task.body.slope, tolerance)
+    speed = ContactsAtSpeed(task.response, stack, task.body.slope, tolerance)
     return AtSpeed(task, speed, *speed.solved(g))
 
 
@@ -65,8 +72,8 @@ class AtSpeed:
     """
 
     task: Task
-    speed: Speed
-    nodes: Frictions
+    speed: ContactsAtSpeed
+    nodes: PressuresByFriction
     interpolated: NDArray[np.float64]
 
     def states(self, g: NDArray) -> Any:
@@ -310,7 +317,7 @@ def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> ND
     return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
 
 
-def free_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "FreeAtSpeed":
+def free_at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> "FreeAtSpeed":
     """Contacts at one speed, with frictions from which all others follow.
 
     Args:
@@ -323,7 +330,7 @@ def free_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "Fr
     punch = Punch(body.profile, body.half_width, body.compression)
     # A place inside is in one layer with one friction and in another with the next.
     every = bool(len(task.places.points))
-    speed = FoundSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
+    speed = FreeContactsAtSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
     nodes, interpolated = speed.solved(g)
     assert isinstance(nodes, Contacts)
     return FreeAtSpeed(task, speed, nodes, interpolated)
@@ -334,7 +341,7 @@ class FreeAtSpeed(AtSpeed):
     """Contacts with free ends at one speed; positions are over each half-width, from its middle."""
 
     nodes: Contacts
-    speed: FoundSpeed
+    speed: FreeContactsAtSpeed
 
     def states(self, g: NDArray) -> Any:
         return FreePunches(self, g)
@@ -507,7 +514,9 @@ class FreePunches(Punches):
 _NODES = np.array([0.0, 1.0])
 
 
-def prescribed_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) -> "PrescribedAtSpeed":
+def prescribed_at_speed(
+    task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray
+) -> "PrescribedAtSpeed":
     """Prescribed pressure at one speed.
 
     Args:
@@ -518,12 +527,14 @@ def prescribed_at_speed(task: Task, stack: Stack, tolerance: float, g: NDArray) 
     """
     pressure = task.body.pressure
     assert pressure
-    speed = Speed(task.response, stack, np.zeros_like, tolerance)
+    speed = ContactsAtSpeed(task.response, stack, np.zeros_like, tolerance)
     kernel: Kernel = speed.kernel
     length = float(stack.layers[0].H)
-    fine, coarse = (Given(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
-    at_node = Found(fine, coarse, 0.0)  # type: ignore[arg-type]
-    return PrescribedAtSpeed(task, speed, Frictions(_NODES, [at_node] * len(_NODES)), np.zeros(1))
+    fine, coarse = (PrescribedPressure(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
+    at_node = ConvergedPressure(fine, coarse, 0.0)  # type: ignore[arg-type]
+    return PrescribedAtSpeed(
+        task, speed, PressuresByFriction(_NODES, [at_node] * len(_NODES)), np.zeros(1)
+    )
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ from .error import (
     gauged,
     of_in_plane,
     of_inside,
-    reached,
+    solved_to_tolerance,
 )
 from .method import Pressure
 
@@ -91,7 +91,10 @@ class PrescribedStates:
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PiecesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (ladder, error):
+    with solved_to_tolerance(work, task, g, lambda space, _: PiecesLevel(work, task, space)) as (
+        ladder,
+        error,
+    ):
         yield PiecesAtSpeed(ladder, error)
 
 
@@ -267,7 +270,10 @@ class PiecesStates(PrescribedStates):
 @contextmanager
 def formula_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FormulaAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, g: LoadsAtDegree(work, task, space, g)) as (ladder, error):
+    with solved_to_tolerance(work, task, g, lambda space, g: LoadsAtDegree(work, task, space, g)) as (
+        ladder,
+        error,
+    ):
         yield FormulaAtSpeed(ladder, error)
 
 
@@ -403,7 +409,10 @@ class FormulaStates(PrescribedStates):
 @contextmanager
 def layered_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["LayeredAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, _: LoadsLevel(work, task, space)) as (ladder, error):
+    with solved_to_tolerance(work, task, g, lambda space, _: LoadsLevel(work, task, space)) as (
+        ladder,
+        error,
+    ):
         yield LayeredAtSpeed(ladder, error)
 
 

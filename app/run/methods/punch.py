@@ -54,7 +54,7 @@ from ...plan.task import Task
 from . import error
 from .discretisation import Discretisation
 from .displacement import Displacement
-from .error import Gauge, StressGauges, reached
+from .error import Gauge, StressGauges, solved_to_tolerance
 from .method import Pressure
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
@@ -74,7 +74,10 @@ def negligible(work: Any) -> float:
 @contextmanager
 def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (ladder, error):
+    with solved_to_tolerance(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (
+        ladder,
+        error,
+    ):
         yield PunchesAtSpeed(ladder, error)
 
 
@@ -359,7 +362,10 @@ _NEAREST = 1e-6
 @contextmanager
 def free_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FreeAtSpeed"]:
     """Raise the degree until the measured error of sample states is within tolerance."""
-    with reached(work, task, g, lambda space, g: FreeLevel(work, task, space, g)) as (ladder, error):
+    with solved_to_tolerance(work, task, g, lambda space, g: FreeLevel(work, task, space, g)) as (
+        ladder,
+        error,
+    ):
         yield FreeAtSpeed(ladder, error)
 
 

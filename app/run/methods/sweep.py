@@ -21,13 +21,13 @@ from galinx.postprocess.quantities.stresses import BELOW, YIELD
 from galinx.solvers.approximation import (
     Rational,
     chebyshev_nodes,
-    fitted,
+    fit_rational,
     leja,
     polynomial_weights,
     rotated,
 )
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.punch import FittedPunch, Frictions, Sampled, Singular, sampled, together
+from galinx.solvers.fem.punch import EdgeFactors, FittedPunch, Frictions, Sampled, sampled, together
 from galinx.solvers.fem.space import Space
 from galinx.solvers.sie.closed_form import FlatPunch
 
@@ -75,7 +75,7 @@ class Fit:
     records: dict[int, dict[str, Any]] = field(default_factory=dict)
     rational: Rational | None = None
 
-    def singular(self, task: Task) -> Singular:
+    def singular(self, task: Task) -> EdgeFactors:
         """Singular factors of the edges: powers of the distance with exponents of the local analysis."""
         s, places = self.space.contact.s, task.places.X
         d_left, d_right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
@@ -88,7 +88,7 @@ class Fit:
             return np.asarray(np.exp(logs))
 
         slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
-        return Singular(power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0])
+        return EdgeFactors(power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0])
 
     def sampled(self, task: Task, level: Any) -> Sampled:
         """Sample of a solved speed for the fit, without the singular factors of the edges."""
@@ -108,7 +108,7 @@ class Fit:
     def _rational(self) -> Rational:
         """Rational function without poles among the speeds, else the polynomial."""
         z = self.sweep.z[self.solved]
-        rational = fitted(z, self.values, _NOISE)
+        rational = fit_rational(z, self.values, _NOISE)
         if np.abs(rational.shares(self.sweep.z)).sum(axis=1).max() < _LARGEST:
             return rational
         return Rational(z, polynomial_weights(z))

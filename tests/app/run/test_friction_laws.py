@@ -15,7 +15,7 @@ from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.motion import Partial, friction_along
-from galinx.solvers.parameters import made
+from galinx.solvers.parameters import build_model
 
 STROKES = '["forward", {to = 0.2}, {to = 0.6}, {to = 0.2}, {to = 1.0}]'
 SCENE = """
@@ -45,7 +45,7 @@ def scene(model, friction, motion=f"speed = 2e-3, strokes = {STROKES}", quantiti
 def test_every_law_goes_from_the_scene_to_the_contact(name, tmp_path):
     parameters = random.parameters(name, np.random.default_rng(5))
     result = galinx.compute(scene(name, parameters, quantities='["friction", "sif"]'))
-    law = made(LAWS[name], parameters)
+    law = build_model(LAWS[name], parameters)
     strokes = ["forward", Partial(0.2), Partial(0.6), Partial(0.2), Partial(1.0)]
     known = friction_along(law, strokes, 1e-4, (0.2, 0.8), 2e-3)
     f = np.concatenate([stroke.f for stroke in known])

@@ -207,7 +207,7 @@ def test_a_library_that_drops_the_request_says_nothing_of_it():
         "class Library:\n"
         "    def __init__(self, error): self.error = error\n"
         "    def __del__(self): raise self.error\n"
-        "Library(process.Asked()); Library(ValueError('its own'))"
+        "Library(process.Interrupted()); Library(ValueError('its own'))"
     )
     done = subprocess.run(
         [sys.executable, "-c", script],

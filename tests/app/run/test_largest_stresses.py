@@ -9,7 +9,7 @@ from galinx.app.scene.read import parse
 from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.solvers.profiles import cusp
 from galinx.solvers.sie.free_contact import contacts
-from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
 MISSED, NEXT_TO_CUSP = 1e-6, 1e-4
@@ -155,7 +155,7 @@ def prescribed(rng):
 
 def in_plane_sampled(pressure, solid, c, g):
     """Highest and lowest σ_XX of a pressure, 0.01 a and more from where it jumps."""
-    exact, knots = GivenPressure(solid.response(c), g, pressure), pressure.knots
+    exact, knots = PrescribedPressureSolution(solid.response(c), g, pressure), pressure.knots
     near = np.concatenate([sign * np.geomspace(1e-13, 1.0, 4000) for sign in (-1.0, 1.0)])
     X = np.concatenate([np.add.outer(knots, near).ravel(), knots, np.linspace(-4.0, 4.0, 10001)])
     jumps = knots[[0, -1]][pressure.values[[0, -1]] != 0.0]

@@ -10,7 +10,7 @@ from support import THOROUGH
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
-from galinx.meshes.kind import Wanted, check_cells
+from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.postprocess import stresses
@@ -162,7 +162,7 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
 @pytest.mark.parametrize("depths", [(0.01,), (1.0,), (100.0,), (0.05, 0.1, 7.0)])
 def test_meshes_follow_interfaces(depths):
     kind = on_layers(depths)
-    for wanted in (Wanted(1e-6), Wanted(1e-6, nearest=1e-6)):
+    for wanted in (Requirements(1e-6), Requirements(1e-6, nearest=1e-6)):
         mesh = kind.drawn(wanted)
         check_cells(mesh)
         Y = -mesh.points[mesh.cells][..., 1]

@@ -17,7 +17,7 @@ from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess import stresses
 from galinx.solvers.layers.contact import Equation
-from galinx.solvers.layers.free_contact import FoundSpeed, Punch, conditions
+from galinx.solvers.layers.free_contact import FreeContactsAtSpeed, Punch, conditions
 from galinx.solvers.profiles.power import Parabolic
 from galinx.solvers.solution import Body
 
@@ -48,7 +48,7 @@ def random_scene(seed, graded, quantities=("sif",), tolerance=1e-6):
     f = np.random.default_rng(2000 + seed).uniform(-1.0, 1.0)
     base = scene_of(solid, c, f, quantities, tolerance)
     load, response = 1e-3, solid.response(0.0)
-    speed = FoundSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
+    speed = FreeContactsAtSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
     equation = Equation(response, speed.kernel, 0.0, np.zeros_like)
     punch = Punch(Parabolic(1.0), 1.0, load / solid.μ)
     contact = conditions(equation, 0.5 if speed.kernel.rough else 60, punch, 1.0)

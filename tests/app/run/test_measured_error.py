@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from galinx.app.run.methods import error
-from galinx.app.run.methods.error import Gauge, Ladder, MeasuredError, climb, reached
-from galinx.meshes import MESHES, Wanted
+from galinx.app.run.methods.error import Gauge, Ladder, MeasuredError, climb, solved_to_tolerance
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.pressure import MOMENTS, JacobiPressure
 
@@ -34,7 +34,7 @@ class Work:
     """Spaces that are numbers: the degree; ``errors`` are those of a level by its degree."""
 
     def __init__(self, tolerance, errors, finer=None):
-        kind, wanted = MESHES["confocal"], Wanted(tolerance)
+        kind, wanted = MESHES["confocal"], Requirements(tolerance)
         self.plan = SimpleNamespace(
             kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1
         )
@@ -74,7 +74,7 @@ def test_an_estimate_holds_rounding_and_what_a_level_knows_of_itself():
 
 def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges():
     """Measured at far boundaries of 1e2 to 1e4 a: compliance times leaning, and 1.8 of what is left."""
-    kind, wanted = MESHES["confocal"], Wanted(1e-3)
+    kind, wanted = MESHES["confocal"], Requirements(1e-3)
     innermost, far = kind.unseen(wanted, FIRST, 1, 1.0), kind.truncation(wanted, 1.0)
     leaning = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.1)
     assert estimated() == pytest.approx(innermost + far * (leaning + 1.8 * far), rel=1e-12)
@@ -113,11 +113,11 @@ def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_
     slow, good = (lambda p: 1e-3 * 0.8**p), (lambda p: 10.0 ** (-1.0 - 1.2 * p))
     finer = Work(1e-8, good)
     work = Work(1e-6, slow, finer)
-    with reached(work, TASK, G, solved) as (ladder, error):
+    with solved_to_tolerance(work, TASK, G, solved) as (ladder, error):
         assert ladder.work is finer and not error.excessive and error.worst <= 1e-6
     assert work.solved and finer.solved and not work.said + finer.said
     finer = Work(1e-8, slow)
-    with reached(Work(1e-6, slow, finer), TASK, G, solved) as (ladder, error):
+    with solved_to_tolerance(Work(1e-6, slow, finer), TASK, G, solved) as (ladder, error):
         assert error.excessive and ladder.degree < DEGREES[1]
     (said,) = finer.said
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
@@ -129,7 +129,7 @@ def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
     def rounded(space, g):
         return level(1e-8 * (-1.0) ** space[1], rounding=1e-7)
 
-    with reached(work, TASK, G, rounded) as (ladder, error):
+    with solved_to_tolerance(work, TASK, G, rounded) as (ladder, error):
         assert error.excessive and not error.of_cells and ladder.work is work
     assert work.said
 

@@ -96,10 +96,10 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
 
 def test_fields_of_a_state_are_those_of_its_speed(run):
     """Energy: twice the work that the load does is in no other state the same."""
-    from galinx.app.results.fields import chosen
+    from galinx.app.results.fields import select_states
 
     numbers = [0, 2, 12]
-    states = chosen(run.scene, numbers)
+    states = select_states(run.scene, numbers)
     assert [one.task.response.c for one in states] == run.data["states/c"][numbers].tolist()
     assert [one.g for one in states] == run.data["states/g"][numbers].tolist()
 

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from galinx.postprocess.stresses import von_mises
 from galinx.postprocess.yielding import Strength
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solution import Body
 
@@ -42,7 +42,7 @@ def hertz(g):
 def of_pressure(pressure, g, strength=1.0, stresses=None):
     """Yield below a pressure at rest; the strength is over N/(2a)."""
     g = np.asarray(g, dtype=float)
-    exact = GivenPressure(AT_REST, g[:, None], pressure)
+    exact = PrescribedPressureSolution(AT_REST, g[:, None], pressure)
     body = Body(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
     field = stresses or (lambda points: exact.stresses(points[..., 0], points[..., 1]))
     return Strength(field, body, AT_REST, g, None)

@@ -5,11 +5,11 @@ import pytest
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.kind import Wanted
+from galinx.meshes.kind import Requirements
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import TAGS
 from galinx.solvers.fem import space as spaces
-from galinx.solvers.fem.cells import alike, standing_for
+from galinx.solvers.fem.cells import congruent_cells, model_cells
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
@@ -24,7 +24,7 @@ def cells(*moved):
 
 def test_cells_that_are_moved_and_scaled_are_alike():
     corners = cells((0.5, 0.0, 0.0), (2.0, 3.0, -1.0), (1e-9, 1.0, 0.0), (1.0, -1e4, 7.0))
-    models, like = alike(corners, np.zeros(4, dtype=int))
+    models, like = congruent_cells(corners, np.zeros(4, dtype=int))
     np.testing.assert_array_equal(models, [1])  # the largest
     np.testing.assert_array_equal(like, [0, 0, 0, 0])
 
@@ -34,7 +34,7 @@ def test_what_differs_stands_alone():
     corners[1, 3, 0] += 1e-9  # less than digits by which they are looked for
     corners[2] = corners[2] * [1.0, 2.0]
     corners[3] = corners[3] * [-1.0, 1.0]  # its mirror image
-    models, like = alike(corners, np.array([0, 0, 0, 0, 7]))
+    models, like = congruent_cells(corners, np.array([0, 0, 0, 0, 7]))
     assert len(models) == 5 and len(set(like)) == 5
 
 
@@ -43,7 +43,7 @@ def test_digits_that_a_small_cell_cannot_have_are_not_asked_of_it():
     for off, count in ((1e-15, 1), (1e-12, 2)):
         corners = cells((1.0, 5.0, 0.0), (1e-10, 1.0, 0.0))
         corners[1, 2, 0] += off
-        assert len(alike(corners, np.zeros(2, dtype=int))[0]) == count
+        assert len(congruent_cells(corners, np.zeros(2, dtype=int))[0]) == count
 
 
 STEEL, SOFT = (Isotropic(E, ν, 1.0) for E, ν in ((2.5, 0.25), (1.0, 0.4)))
@@ -55,14 +55,14 @@ COATED = Layered((Layer(1.0, SOFT),), STEEL)
 def test_the_matrix_is_that_of_each_cell_by_itself(solid, fewer, monkeypatch):
     """Of a graded layer only cells below it have others that are like them."""
     response = LayersInCells(solid, 0.2)
-    mesh = on_layers((1.0,)).drawn(Wanted(1e-6, nearest=1e-2))
+    mesh = on_layers((1.0,)).drawn(Requirements(1e-6, nearest=1e-2))
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), 5, solid.form)
-    models, members = standing_for(space.vertices, space.chart, response, space.form.constants)
+    models, members = model_cells(space.vertices, space.chart, response, space.form.constants)
     assert sorted(np.concatenate(members)) == list(range(space.cells))
     assert space.cells > fewer * len(models)
     A = space.assemble(response)
     each = np.arange(space.cells)
-    monkeypatch.setattr(spaces, "standing_for", lambda *_: (each, each[:, None]))
+    monkeypatch.setattr(spaces, "model_cells", lambda *_: (each, each[:, None]))
     B = space.assemble(response)
     size = B.norm()
     B.axpy(-1.0, A)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import space_on
 
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.solvers import rays
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import traction
@@ -21,7 +21,7 @@ VALUES = np.array([-1.0, -2.0, -1.0, -4.0, -2.0, 0.0])
 @pytest.fixture(scope="module")
 def loads():
     """The mesh of a tolerance of 1e-6, at a degree to which measured errors raise it there."""
-    refinement = MESHES["confocal"].refinement(Wanted(1e-6, rays.NEAR, 1e7))
+    refinement = MESHES["confocal"].refinement(Requirements(1e-6, rays.NEAR, 1e7))
     return LinearLoads(space_on("confocal", refinement, 10), FRAME)
 
 

@@ -3,7 +3,7 @@ from mpi4py import MPI
 from support import space_on
 
 from galinx.app.plan.fem import unknowns
-from galinx.meshes import MESHES, Wanted
+from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.space import Space, distribute
@@ -18,6 +18,6 @@ def test_a_missing_boundary_part_is_named():
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_planned_sizes_are_those_of_the_run(mesh):
-    pattern = MESHES[mesh].refinement(Wanted(1e-3))
+    pattern = MESHES[mesh].refinement(Requirements(1e-3))
     cells, space = MESHES[mesh].build(pattern), space_on(mesh, pattern, 3)
     assert (space.cells, space.size) == (len(cells.cells), unknowns(cells, 3))

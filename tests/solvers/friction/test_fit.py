@@ -5,7 +5,7 @@ import pytest
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.fit import fit, friction, moves
-from galinx.solvers.parameters import made
+from galinx.solvers.parameters import build_model
 
 #: Standard deviation of the noise.
 NOISE = 0.003
@@ -55,7 +55,7 @@ def test_known_parameters_are_found_within_three_standard_deviations(name):
     speeds, true, fixed = CASES[name]
     kind, (t, X) = LAWS[name], motion(speeds)
     way = moves(t, X, kind.depends_on_speed)
-    clean = friction(made(kind, true | fixed), way, len(t))
+    clean = friction(build_model(kind, true | fixed), way, len(t))
     f = clean + NOISE * np.random.default_rng(3).standard_normal(len(t))
     rows = len(next((value for value in true.values() if isinstance(value, tuple)), ()))
     found = fit(kind, way, f, fixed, {}, rows or 3)
@@ -69,14 +69,14 @@ def test_without_noise_the_parameters_are_found_to_the_last_digits():
     t, X = motion(ONE)
     true = {"mu_c": 0.4, "sigma0_over_load": 2.2e4, "delta": 0.7}
     way = moves(t, X, False)
-    found = fit(LAWS["dahl"], way, friction(made(LAWS["dahl"], true), way, len(t)), {}, {})
+    found = fit(LAWS["dahl"], way, friction(build_model(LAWS["dahl"], true), way, len(t)), {}, {})
     np.testing.assert_allclose(found.best, [*true.values()], rtol=1e-7)
 
 
 def test_deviations_are_those_of_repeated_measurements():
     t, X = motion(ONE, 150)
     way, kind = moves(t, X, False), LAWS["dahl"]
-    clean = friction(made(kind, {"mu_c": 0.4, "sigma0_over_load": 2.2e4}), way, len(t))
+    clean = friction(build_model(kind, {"mu_c": 0.4, "sigma0_over_load": 2.2e4}), way, len(t))
     rng, best, told = np.random.default_rng(1), [], []
     for _ in range(30):
         found = fit(kind, way, clean + NOISE * rng.standard_normal(len(t)), {"delta": 1.0}, {})
@@ -101,7 +101,7 @@ def test_what_the_data_do_not_determine_has_no_deviation():
     """At one speed Stribeck's curve is one number."""
     t, X = motion(ONE)
     way = moves(t, X, True)
-    f = friction(made(LAWS["coulomb"], {"mu_c": 0.4}), way, len(t))
+    f = friction(build_model(LAWS["coulomb"], {"mu_c": 0.4}), way, len(t))
     f += NOISE * np.random.default_rng(0).standard_normal(len(f))
     found = fit(LAWS["stribeck"], way, f, {"stribeck_exponent": 2.0}, {})
     assert np.isnan(found.deviations).any()

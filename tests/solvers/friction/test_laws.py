@@ -11,7 +11,7 @@ from support import at_most
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.elasto_plastic import ElastoPlastic
 from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
-from galinx.solvers.parameters import made
+from galinx.solvers.parameters import build_model
 
 #: Random sets of parameters, each with a motion of its own.
 SETS = 20 if os.environ.get("GALINX_THOROUGH") else 5
@@ -35,7 +35,7 @@ def follow(law, strokes, places=PLACES):
 def test_exact_laws_are_their_equations(name, seed):
     rng = np.random.default_rng([seed, *name.encode()])
     parameters, strokes = random.parameters(name, rng), random.strokes(rng)
-    f, done = follow(made(LAWS[name], parameters), strokes)
+    f, done = follow(build_model(LAWS[name], parameters), strokes)
     f_wanted, wanted = getattr(reference, name)(strokes, PLACES, **parameters)
     scale = np.abs(f_wanted).max()
     np.testing.assert_allclose(f, f_wanted, rtol=0.0, atol=1e-12 * max(scale, 1.0))
@@ -57,7 +57,7 @@ def test_a_rate_alone_is_integrated(seed):
     """Each state to the last digits, a curve as well as a figure wants, against the formula."""
     rng = np.random.default_rng([seed, 5])
     parameters = random.parameters("elasto_plastic", rng)
-    by_formula, law = made(ElastoPlastic, parameters), made(Integrated, parameters)
+    by_formula, law = build_model(ElastoPlastic, parameters), build_model(Integrated, parameters)
     d, starts = np.linspace(0.0, random.LENGTH, 23), ((0.0, 1), (-0.9 * law.μ_C, 1), (0.5 * law.μ_C, -1))
     for z, s in starts:
         z = np.array([z])
@@ -74,10 +74,10 @@ def test_a_switch_may_come_before_the_first_place(stiffness):
     """Bristles so stiff that they break away within a hundredth of the stroke, or a thousandth."""
     curve = {"mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 1e-3, "sigma0_over_load": stiffness}
     d = np.linspace(0.0, random.LENGTH, 101)
-    wanted, z = made(ElastoPlastic, curve).exact(np.zeros(1), 1, 1e-3, d), np.zeros(1)
+    wanted, z = build_model(ElastoPlastic, curve).exact(np.zeros(1), 1, 1e-3, d), np.zeros(1)
     with at_most(20.0):
         for advance in (closely, adaptively):
-            found = advance(made(Integrated, curve), z, 1, 1e-3, random.LENGTH, d)
+            found = advance(build_model(Integrated, curve), z, 1, 1e-3, random.LENGTH, d)
             np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-7)
 
 
@@ -127,7 +127,7 @@ def test_laws_far_from_usual_sizes_are_their_equations(name, seed):
         (int(rng.choice([-1, 1])), _power(rng, -7.0, 1.0), slip * _power(rng, -2.0, 1.0), rest)
         for rest in (0.0, 2.0, 0.0, 0.3)
     ]
-    f, done = follow(made(LAWS[name], parameters), strokes)
+    f, done = follow(build_model(LAWS[name], parameters), strokes)
     f_wanted, wanted = getattr(reference, name)(strokes, PLACES, **parameters)
     scale = np.abs(f_wanted).max()
     # Integrated in time, the reference itself has no more digits on bristles as stiff as these.
@@ -136,7 +136,7 @@ def test_laws_far_from_usual_sizes_are_their_equations(name, seed):
 
 
 def of(name, **parameters):
-    return made(LAWS[name], parameters)
+    return build_model(LAWS[name], parameters)
 
 
 def both(one, other, rng, count=20, one_speed=False):
@@ -265,6 +265,6 @@ def test_loads_below_breakaway_do_not_let_the_elasto_plastic_law_drift():
 )
 def test_parameters_outside_their_range_are_refused(name, changes, said):
     good = random.parameters(name, np.random.default_rng(0))
-    made(LAWS[name], good)
+    build_model(LAWS[name], good)
     with pytest.raises(ValueError, match=said):
-        made(LAWS[name], good | changes)
+        build_model(LAWS[name], good | changes)

@@ -8,7 +8,7 @@ import random_laws as random
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import exactly, work
-from galinx.solvers.parameters import made
+from galinx.solvers.parameters import build_model
 
 SETS = range(20 if os.environ.get("GALINX_THOROUGH") else 5)
 ALL = random.EXACT
@@ -17,7 +17,7 @@ ALL = random.EXACT
 def drawn(name, seed):
     """A law, and the numbers that follow."""
     rng = np.random.default_rng([seed, *name.encode(), 7])
-    return made(LAWS[name], random.parameters(name, rng)), rng
+    return build_model(LAWS[name], random.parameters(name, rng)), rng
 
 
 def moved(law, z, way, V=1e-3):
@@ -142,7 +142,7 @@ def test_many_laws_at_once_are_each_of_them(name):
     rng = np.random.default_rng(11)
     one = [random.parameters(name, rng) for _ in range(5)]
     together = {key: np.array([given[key] for given in one])[:, None] for key in one[0]}
-    laws, many = [made(LAWS[name], given) for given in one], made(LAWS[name], together)
+    laws, many = [build_model(LAWS[name], given) for given in one], build_model(LAWS[name], together)
     single, z = [law.rest() for law in laws], np.broadcast_to(many.rest(), (5, 1, 1))
     for s, V, length, rest in random.strokes(rng):
         slip = np.linspace(0.0, length, 4)

@@ -6,14 +6,14 @@ from scipy.integrate import solve_ivp, trapezoid
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.slider import Slider, cycle, pull
-from galinx.solvers.parameters import made
+from galinx.solvers.parameters import build_model
 
 CURVE = {"mu_c": 1.0, "mu_s": 1.5, "stribeck_velocity": 1e-3}
 BRISTLES = {"sigma0_over_load": 1e5, "sigma1_over_load": np.sqrt(1e5), "sigma2_over_load": 0.4}
 
 
 def of(name, **parameters):
-    return made(LAWS[name], parameters)
+    return build_model(LAWS[name], parameters)
 
 
 def test_lugre_sticks_and_slips_as_published():

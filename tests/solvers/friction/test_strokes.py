@@ -8,7 +8,7 @@ import random_laws as random
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.motion import friction_along
-from galinx.solvers.parameters import made, parameters
+from galinx.solvers.parameters import build_model, parameters
 
 STROKES = ["forward", "backward", "forward"]
 
@@ -70,7 +70,7 @@ def test_friction_is_finite_or_refused_whatever_the_parameters(name, size, recwa
     for key, known in parameters(LAWS[name]).items():
         if known.single and not known.options:
             try:
-                law = made(LAWS[name], {**usual, key: size})
+                law = build_model(LAWS[name], {**usual, key: size})
                 for stroke in friction_along(law, STROKES, 1e-4, [0.0, 0.3, 1.0], 1e-3):
                     assert np.isfinite(stroke.f).all(), key
             except ValueError as error:

@@ -7,7 +7,7 @@ from layers_cases import COAT, SUBSTRATE, equation, flat
 from layers_reference import plane_strain, punch
 from support import THOROUGH
 
-from galinx.solvers.layers.contact import Polynomial, Speed, found
+from galinx.solvers.layers.contact import ContactsAtSpeed, Polynomial, converged_pressure
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.layers.panelled import solved as panelled
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -29,7 +29,7 @@ def read(pressure):
 
 @pytest.mark.parametrize("V2", EXAMPLE)
 def test_the_example_to_all_digits(V2):
-    one = found(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 1e-11)
+    one = converged_pressure(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 1e-11)
     assert np.abs(read(one.pressure) - EXAMPLE[V2]).max() <= 2e-12
 
 
@@ -57,7 +57,7 @@ def test_panels_find_the_example_too(V2):
 @pytest.mark.parametrize("g", [-0.9, 0.0, 0.4])
 def test_layers_of_one_solid_are_the_half_plane(g):
     solid = Layered((Layer(0.3, COAT), Layer(0.2, COAT), Layer(1.5, COAT)), COAT)
-    one = found(equation(solid, 0.9, g), 1e-11).pressure
+    one = converged_pressure(equation(solid, 0.9, g), 1e-11).pressure
     exact = FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), g)
     assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-12
 
@@ -66,7 +66,9 @@ def test_a_thick_layer_is_the_coating_alone():
     """What the substrate does falls like a/H."""
     off = []
     for H in (10.0, 100.0):
-        one = found(equation(Layered((Layer(H, COAT),), SUBSTRATE), 0.2, -0.4), 1e-11).pressure
+        one = converged_pressure(
+            equation(Layered((Layer(H, COAT),), SUBSTRATE), 0.2, -0.4), 1e-11
+        ).pressure
         exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
         off.append(np.abs(-0.5 * one.series(ENDS) / exact.K_I - 1.0).max())
     assert off[0] <= 0.05 and 9.0 < off[0] / off[1] < 12.0
@@ -75,12 +77,18 @@ def test_a_thick_layer_is_the_coating_alone():
 def test_graded_layer_is_the_limit_of_uniform_ones():
     bottom = Isotropic(2.5, 0.25, 1.0)
     graded = Layer(1.0, COAT, bottom)
-    exact = read(found(equation(Layered((graded,), bottom), 0.2, -0.4, tolerance=1e-10), 1e-8).pressure)
+    exact = read(
+        converged_pressure(
+            equation(Layered((graded,), bottom), 0.2, -0.4, tolerance=1e-10), 1e-8
+        ).pressure
+    )
     off = []
     for count in (4, 8, 16) + (32,) * THOROUGH:
         middles = (np.arange(count) + 0.5) / count
         layers = tuple(Layer(1.0 / count, graded.at(float(s))) for s in middles)
-        one = found(equation(Layered(layers, bottom), 0.2, -0.4, tolerance=1e-9), 1e-6).pressure
+        one = converged_pressure(
+            equation(Layered(layers, bottom), 0.2, -0.4, tolerance=1e-9), 1e-6
+        ).pressure
         # The exponents are those of the uppermost solid, so the middle is looked at.
         off.append(abs(read(one)[3] / exact[3] - 1.0))
     rates = np.log2(np.array(off[:-1]) / off[1:])
@@ -89,7 +97,9 @@ def test_graded_layer_is_the_limit_of_uniform_ones():
 
 def test_graded_solid_that_does_not_change_is_uniform():
     almost = Isotropic(7.5 * (1.0 + 1e-9), 0.3, 1.2)
-    one = found(equation(Layered((Layer(1.0, COAT, almost),), COAT), 0.2, -0.4, tolerance=1e-10), 1e-8)
+    one = converged_pressure(
+        equation(Layered((Layer(1.0, COAT, almost),), COAT), 0.2, -0.4, tolerance=1e-10), 1e-8
+    )
     exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
     assert np.abs(-0.5 * one.pressure.series(ENDS) - exact.K_I).max() <= 1e-8
 
@@ -97,7 +107,9 @@ def test_graded_solid_that_does_not_change_is_uniform():
 def test_mirror_image():
     """X to -X changes g in sign and swaps the ends."""
     solid = Layered((Layer(0.4, SUBSTRATE, COAT), Layer(0.3, COAT)), COAT)
-    left, right = (found(equation(solid, 0.2, g, tolerance=1e-9), 1e-6).pressure for g in (0.5, -0.5))
+    left, right = (
+        converged_pressure(equation(solid, 0.2, g, tolerance=1e-9), 1e-6).pressure for g in (0.5, -0.5)
+    )
     assert np.abs(left.series(ENDS) - right.series(-ENDS)).max() <= 1e-7
 
 
@@ -108,7 +120,7 @@ def test_sharp_punch_with_a_profile():
     def slope(r):
         return 0.3 * np.asarray(r) + 0.1
 
-    one = found(equation(solid, 0.2, -0.4, slope), 1e-11).pressure
+    one = converged_pressure(equation(solid, 0.2, -0.4, slope), 1e-11).pressure
     exact = solve(COAT.response(0.2**0.5 / COAT.c_s), -0.4, 40, slope)
     assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-10
 
@@ -117,7 +129,7 @@ def test_sharp_punch_with_a_profile():
 def test_thin_coatings_tend_to_the_substrate(H):
     """The middle of the contact sees the substrate the more the thinner the coating."""
     solid = Layered((Layer(H, COAT),), SUBSTRATE)
-    one = found(equation(solid, 0.2, 0.0, tolerance=1e-8), 1e-5).pressure
+    one = converged_pressure(equation(solid, 0.2, 0.0, tolerance=1e-8), 1e-5).pressure
     exact = FlatPunch(SUBSTRATE.response(0.2**0.5), 0.0)
     r = np.linspace(-0.5, 0.5, 5)
     σ = (1.0 - r) ** one.α * (1.0 + r) ** one.β * one.series(r)
@@ -127,13 +139,15 @@ def test_thin_coatings_tend_to_the_substrate(H):
 def test_frictions_between_are_interpolated_within_the_tolerance():
     solid = Layered((Layer(1.0, COAT),), SUBSTRATE)
     response = solid.response(0.3)
-    speed = Speed(response, response.stack(1.0), flat, 1e-8)
+    speed = ContactsAtSpeed(response, response.stack(1.0), flat, 1e-8)
     g = np.linspace(-1.0, 1.0, 301)
     nodes, left = speed.solved(g)
     assert len(nodes.each) < 40 and left.max() <= 1e-8
     ends = nodes.at(g) @ nodes.read(lambda pressure: pressure.series(ENDS))
     for i in (3, 150):
-        exact = found(equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11).pressure.series(ENDS)
+        exact = converged_pressure(
+            equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11
+        ).pressure.series(ENDS)
         assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8
 
 

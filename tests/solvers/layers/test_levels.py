@@ -6,7 +6,7 @@ import pytest
 from layers_cases import COAT, SUBSTRATE, constants, equation
 from layers_reference import system
 
-from galinx.solvers.layers.contact import found
+from galinx.solvers.layers.contact import converged_pressure
 from galinx.solvers.layers.kernel import Level
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.sie.closed_form import FlatPunch
@@ -18,7 +18,7 @@ X = np.linspace(-3.0, 3.0, 25)
 def test_layers_of_one_solid_have_the_field_of_the_half_plane(depth):
     solid = Layered((Layer(0.3, COAT), Layer(0.4, COAT)), COAT)
     one = equation(solid, 0.9, -0.4)
-    pressure = found(one, 1e-10).pressure
+    pressure = converged_pressure(one, 1e-10).pressure
     exact = FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), -0.4).inside(X, -depth + 0.0 * X)
     level = Level(one.kernel.stack, depth, 4.0, 1e-9)
     u_X, σ_YY, σ_XY = level.read(*pressure.points(depth), -0.4, X)

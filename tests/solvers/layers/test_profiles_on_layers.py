@@ -9,7 +9,7 @@ from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
 from support import THOROUGH
 
-from galinx.solvers.layers.free_contact import FoundSpeed, Punch, local_exponents
+from galinx.solvers.layers.free_contact import FreeContactsAtSpeed, Punch, local_exponents
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.sie.free_contact import contacts
@@ -39,7 +39,7 @@ def found(solid, profile, g, share=0.5, tolerance=1e-8, load=LOAD):
     response = solid.response(share * solid.limit())
     unit = float(contacts(solid.response(0.0), np.zeros(1), profile, load).of("half_width")[0])
     punch = Punch(profile, unit, load)
-    speed = FoundSpeed(response, response.stack(unit), np.zeros_like, tolerance, punch)
+    speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, tolerance, punch)
     return speed.contact(g), response, unit
 
 

@@ -10,7 +10,7 @@ from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.table import Table
 from galinx.solvers.sie.free_contact import contacts
-from galinx.solvers.sie.prescribed_pressure import GivenPressure, LinearPressure
+from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 
 
 def parabola(rng):
@@ -60,7 +60,7 @@ def solved(seed):
         rule = Rule([*((t, 0.0) for t in knots), *lines.feet(X, Y)])
         σ, solution = (
             np.interp(rule.t, knots, values),
-            GivenPressure(response, g, LinearPressure(knots, values)),
+            PrescribedPressureSolution(response, g, LinearPressure(knots, values)),
         )
         return solution.inside(X, Y), lines.stresses(rule, σ, X, Y)
     profile = make(rng)

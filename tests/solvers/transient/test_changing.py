@@ -9,7 +9,7 @@ from started import THOROUGH, ByFiniteElements
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.march import Between
+from galinx.solvers.transient.march import FrictionInterpolation
 from galinx.solvers.transient.punch import StartingPunch, smooth
 from galinx.solvers.transient.transform import Basis, Transformed
 
@@ -31,13 +31,13 @@ def at_speed():
 
 def test_pressures_of_all_frictions_lie_between_those_of_a_few():
     response = random_solid(1).response(0.1)
-    between, X = Between(response, -0.9, 0.2, 24), np.cos(np.linspace(0.05, 3.1, 50))
+    between, X = FrictionInterpolation(response, -0.9, 0.2, 24), np.cos(np.linspace(0.05, 3.1, 50))
     for g in (-0.9, -0.31, 0.2):
         found = np.tensordot(between.shares(g), [one.pressure(X) for one in between.bases], 1)
         exact = Basis(response, g, 24).pressure(X)
         np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-9 * np.abs(exact).max())
     assert 5 < len(between.bases) < 16
-    assert len(Between(response, 0.3, 0.3, 24).bases) == 1
+    assert len(FrictionInterpolation(response, 0.3, 0.3, 24).bases) == 1
 
 
 def test_friction_that_stays_is_a_special_case(at_speed):

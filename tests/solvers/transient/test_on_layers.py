@@ -17,7 +17,7 @@ from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.line_load import Echoes, Sheets
+from galinx.solvers.transient.line_load import Echoes, UniformLayers
 from galinx.solvers.transient.punch import StartingPunch, smooth
 
 ONE, COAT, SOFT = Isotropic(2.5, 0.25, 1.0), Isotropic(7.5, 0.3, 1.2), Isotropic(1.5, 0.1, 0.7)
@@ -27,7 +27,7 @@ DIGITS = [(7.5, 0.3, 1.2), (1.5, 0.1, 0.7), (2.5, 0.25, 1.0)]
 
 
 def sheets(solid, c):
-    return Sheets.of(LayersInCells(solid, c, 1.0))
+    return UniformLayers.of(LayersInCells(solid, c, 1.0))
 
 
 def random_points(count):
@@ -129,4 +129,4 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
 def test_a_graded_layer_is_refused():
     graded = Layered((Layer(1.0, ONE, bottom=COAT),), COAT)
     with pytest.raises(ValueError, match="graded"):
-        Sheets.of(LayersInCells(graded, 0.3, 1.0))
+        UniformLayers.of(LayersInCells(graded, 0.3, 1.0))

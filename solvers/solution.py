@@ -210,7 +210,7 @@ class Turns:
         return Turns(self.X[rows], self.σ[:, rows], between)
 
     def joined(self, other: "Turns") -> "Turns":
-        """These turns and others of the same states."""
+        """Turns joined with others of the same states."""
         σ = np.concatenate([self.σ, other.σ], axis=2)
         return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
 

@@ -1,7 +1,7 @@
 """Layers on a substrate as one solid: all that solvers need of a solid, and its layers besides.
 
-:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`LayersAtSpeed` the
-layers at that speed with lengths over a, with the stiffness of their surface.
+:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`LayersAtSpeed`
+the layers at that speed with lengths over a, with the stiffness of their surface.
 
 Below the highest speed over layers the stiffness against every wave, on the surface and inside, is
 positive; it falls with speed, so that the speed at which the smallest of all vanishes is found by

@@ -1,1 +1,1 @@
-"""Singular integral equation of the flat punch: closed form, collocation, field, Fourier check."""
+"""Singular integral equation of the flat punch: closed form, collocation, field."""

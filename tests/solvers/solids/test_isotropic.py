@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from fourier_reference import surface_response
 
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.fourier import surface_response
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 
 mpmath = pytest.importorskip("mpmath")

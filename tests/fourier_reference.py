@@ -1,6 +1,6 @@
 """Surface response of the moving frame from the Fourier solution, solved numerically (Eqs 17-21, 31, 33).
 
-A check of :class:`galinx.solvers.solids.isotropic.MovingFrame` that shares no formula with it: for
+A reference of :class:`galinx.solvers.solids.isotropic.MovingFrame` that shares no formula with it: for
 tractions exp(iX) the decaying solutions of Eqs 15-16 are found from their characteristic polynomial,
 and the amplitudes from the two boundary conditions. The two roots meet as c → 0, so digits are lost
 there.

@@ -1,4 +1,4 @@
-"""Failures of archives and other files, without the library that reads them, which is slow to import."""
+"""Exceptions of archives and other files; HDF5, which is slow to import, is not needed for them."""
 
 import shutil
 from contextlib import suppress
@@ -6,7 +6,10 @@ from pathlib import Path
 
 
 class UnreadableArchive(Exception):
-    """No archive, a damaged or changed one, or one of a newer layout; the message says what to do."""
+    """A file is no archive, or an archive that is damaged, changed or of a newer layout.
+
+    The message says what to do.
+    """
 
 
 class UnwritableArchive(Exception):
@@ -14,7 +17,7 @@ class UnwritableArchive(Exception):
 
 
 class Occupied(Exception):
-    """A file cannot have that name: what is there may not be replaced, or the ending is another's."""
+    """A file cannot have this name: another one may not be replaced, or the ending is of another kind."""
 
 
 class ArchiveInUse(UnwritableArchive):
@@ -22,16 +25,19 @@ class ArchiveInUse(UnwritableArchive):
 
 
 class LeftOver(UnwritableArchive):
-    """An interrupted run left something; the message says what can be done with it."""
+    """An interrupted run left finished states; the message says how to use or discard them."""
 
 
 def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchive:
-    """Failure to raise where the file system refuses a file, with the reason, and space needed and free.
+    """Exception for a file that the file system refuses: its message has the reason and the space.
 
     Args:
         target: the file.
-        error: what the file system or HDF5 raised.
-        needed: size of the file in bytes; 0 where it is not known.
+        error: exception of the file system or of HDF5.
+        needed: size of the file in bytes; 0 where it is unknown.
+
+    Returns:
+        The exception, to be raised by the caller.
     """
     reason = getattr(error, "strerror", None) or str(error)
     space = f"; it needs {_size(needed)}" if needed else ""

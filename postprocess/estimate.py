@@ -1,4 +1,4 @@
-"""Error of a finite element result, measured on results of other degrees, no exact solution used."""
+"""Error of a finite element result, estimated from results of other degrees without an exact solution."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 #: says that it is large.
 SLOWEST = 0.9
 
-#: Share of the largest first difference below which a state's own is not believed.
+#: Share of the largest first difference below which that of a single state is not used.
 TYPICAL = 0.25
 
 #: The ratio of successive differences is not quite constant; this covers it.
@@ -22,9 +22,9 @@ class Rate:
     """Rate at which errors fall from one level to the next.
 
     Attributes:
-        usual: least ratio of successive differences that is assumed.
-        believed: a ratio below it is a lucky coincidence, or a level was too coarse.
-        least: a second difference below this share of the first is not believed itself.
+        usual: ratio of successive differences that is assumed where the measured one is not believed.
+        believed: least ratio that is believed: a smaller one is a coincidence, or a level was too coarse.
+        least: least second difference over the first that is believed; a smaller one is replaced by it.
     """
 
     usual: float
@@ -32,13 +32,13 @@ class Rate:
     least: float = 0.0
 
 
-#: Differences of less than so many times the measured rounding are rounding; from twice that on
-#: they are none. In between the estimate passes from one to the other: were it to jump, so would what
-#: is archived, with the last digit of anything.
+#: Differences of less than so many times the measured rounding are rounding; from twice that on they are
+#: errors of discretisation. In between the estimate passes gradually from one to the other: if it jumped,
+#: the archived estimate would jump with the last digit of any input.
 _NOISE = 5.0
 
-#: Ratio of successive differences below which those of derivatives are not believed: what one cell does
-#: at the sampled places is not what the next one does.
+#: Ratio of successive differences below which those of derivatives are not believed: neighbouring cells
+#: err differently at the sampled places.
 _ERRATIC = 0.1
 
 
@@ -51,7 +51,7 @@ def of_degrees(order: int) -> Rate:
     return Rate(0.16, 0.16) if order == 2 else Rate(0.5, 0.5, _ERRATIC)
 
 
-#: Rate for moments where convergence was seen to be uneven.
+#: Rate for moments that converge unevenly.
 SLOWER = Rate(0.3, 0.3)
 
 #: Rate for derivatives at depths, away from all singularities, where many cells contribute evenly.
@@ -67,18 +67,20 @@ def remaining(
 ) -> NDArray[np.float64]:
     """Errors that remain after two successive differences, by a geometric series, (states,).
 
-    d₁ ρ/(1 - ρ), with ``SAFETY``. A state's own ratio ρ = d₁/d₀ shows where its singularity is too strong
-    for the degree; but its first difference may happen to vanish, so that it is not taken for smaller
-    than a share ``TYPICAL`` of the sample's largest, nor ρ for smaller than the sample's.
+    The series of differences d₀, d₁ with ratio ρ leaves d₁ ρ/(1 - ρ), here times ``SAFETY``. The ratio
+    ρ = d₁/d₀ of a single state shows where its singularity is too strong for the degree. Its first
+    difference may happen to vanish; so it counts as at least a share ``TYPICAL`` of the sample's largest
+    first difference, and ρ as at least the sample's ratio.
 
     Args:
         first, second: successive differences of each state, (states,).
-        sample: both successive differences of states that stand for all of them.
+        sample: both successive differences of representative states, (m,) each.
         rate: assumed rate of convergence.
-        rounding: differences of less than a few times this are not summed.
+        rounding: rounding of the results, in their unit; differences of less than a few times this are
+            not summed.
 
     Returns:
-        Errors of the last level, (states,).
+        Errors of the last level, in the unit of the differences, (states,).
     """
     second = np.maximum(second, rate.least * first)
     largest = max(sample[0].max(), np.finfo(float).tiny)
@@ -93,5 +95,5 @@ def remaining(
 
 
 def before(difference: NDArray, rate: Rate) -> NDArray[np.float64]:
-    """Errors of a level from its differences from the next one, (states,), with ``SAFETY``."""
+    """Errors of a level from its differences from the next level, times ``SAFETY``, (states,)."""
     return SAFETY * difference / (1.0 - rate.usual)

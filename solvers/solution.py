@@ -1,4 +1,10 @@
-"""Solutions of every method: friction states at one speed; lengths over a, stresses over N/(2a)."""
+"""Contact of a punch and a half-plane, and its solutions by any method: friction states at one speed.
+
+Lengths are over the contact's half-width a, stresses over N/(2a), N the load per depth. A
+:class:`Body` has the units of both in SI. At free ends of a contact and at kinks of its punch stresses
+change with a power of the distance, and the largest may lie between samples: a :class:`Surface` has
+limits there, :class:`Turns`.
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -25,7 +31,7 @@ class Places:
         points: positions X, Y inside, (m, 2).
         around: positions X, Y at which stresses are compared with the yield strength, (k, 2).
         interfaces: depths of a layered solid's interfaces, (layers,).
-        along: positions X along each of them, (l,).
+        along: positions X along each interface, (l,).
     """
 
     X: NDArray[np.float64]
@@ -42,14 +48,16 @@ class Places:
 
 @dataclass(frozen=True)
 class Body:
-    """Punch and half-plane in SI; units of results are numbers, or arrays where the load is one.
+    """Punch and half-plane in SI.
+
+    The units of results are numbers for a single load, and arrays (states,) for a load of each state.
 
     Attributes:
-        solid: the half-plane.
-        profile: the punch.
-        load: N per depth [N/m], a number or one for each state, (states,).
+        solid: elastic solid of the half-plane.
+        profile: shape of the punch.
+        load: N per depth [N/m], a number, or that of each state, (states,).
         pressure: prescribed pressure; None where the punch determines it.
-        yield_strength: of the solid, uniaxial [Pa]; None where it is not known.
+        yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
     """
 
     solid: Solid
@@ -60,21 +68,26 @@ class Body:
 
     @cached_property
     def found(self) -> bool:
-        """True if an end of the contact is free; every state has a half-width of its own then."""
+        """True if an end of the contact is free: the half-width then depends on the state."""
         return has_free_end(self.profile)
 
     def response(self, c: float) -> Response:
-        """Response of the half-plane at a speed over its wave speed.
+        """Response of the half-plane at a speed over its wave speed, dimensionless.
 
         Raises:
-            ValueError: a wave in it is not faster.
+            ValueError: a wave in the half-plane is not faster than this speed.
         """
         if isinstance(self.solid, Layered):
             return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
         return self.solid.response(c)
 
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Normal stress out of the plane of σ_XX, σ_YY, σ_XY (3, ..., n) at heights Y over a, (n,)."""
+        """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
+
+        Args:
+            σ: σ_XX, σ_YY, σ_XY, (3, ..., n).
+            Y: heights over a, not above 0, (n,).
+        """
         if not isinstance(self.solid, Layered):
             return self.solid.σ_ZZ(*σ)
         values = np.empty(σ.shape[1:])
@@ -90,7 +103,7 @@ class Body:
 
     @cached_property
     def free(self) -> bool:
-        """True if both ends of the contact are free, whatever the load is."""
+        """True if both ends of the contact are free at every load."""
         return not any(getattr(self.profile, "sharp", (True, True)))
 
     @cached_property
@@ -100,9 +113,10 @@ class Body:
 
     @cached_property
     def alike(self) -> bool:
-        """True if contacts under all loads differ in size alone.
+        """True if contacts under all loads are similar: they differ in size alone.
 
-        That is so for a flat punch, a power of |X| on a uniform solid, and a prescribed pressure.
+        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
+        prescribed pressure.
         """
         if self.pressure is not None or self.flat:
             return True
@@ -114,13 +128,13 @@ class Body:
         return self if load is None else replace(self, load=load)
 
     def growth(self, load: Any) -> Any:
-        """Half-widths at other loads over that at this load, of contacts that differ in size alone."""
+        """Half-widths of similar contacts at other loads [N/m], over that at this load."""
         k = exponent(self.profile) if self.free else None
         return (load / self.load) ** (1.0 / k) if k else np.ones_like(load)
 
     @cached_property
     def half_width(self) -> Any:
-        """Half-width a [m]; with free ends that of the contact at rest without friction."""
+        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
         if not self.found:
             return half_width(self.profile)
         if np.ndim(self.load) and self.alike:
@@ -136,7 +150,7 @@ class Body:
         return rest if np.ndim(self.load) else float(rest[0])
 
     def _at_rest(self, load: float) -> float:
-        """Half-width over layers under a load [m]."""
+        """Half-width [m] on layers at rest, with free ends, under a load N per depth [N/m]."""
         from .layers.free_contact import half_width_at_rest
 
         profile: Any = self.profile
@@ -145,15 +159,15 @@ class Body:
 
     @property
     def compression(self) -> Any:
-        """N/μ [m]."""
+        """Load over the shear modulus, N/μ [m]."""
         return self.load / self.solid.μ
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
-        """The profile's height over N/(2μ) at X over a."""
+        """Height of the punch over N/(2μ) at X over a, in the shape of X."""
         return self.profile.height(self.half_width * X) / self.displacement
 
     def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Slope μ v,X under the punch over N/(2a), at X over a."""
+        """Slope μ v,X under the punch over N/(2a), at X over a, in the shape of X."""
         a = self.half_width
         return self.profile.slope(a * X) * a / self.displacement
 
@@ -166,22 +180,25 @@ class Body:
 
     @property
     def force(self) -> Any:
-        """Unit of nodal forces [N/m]: stresses over N/(2a), lengths over a."""
+        """Unit of nodal forces, N/2 [N/m]: that of stresses, N/(2a), times that of lengths, a."""
         return self.load / 2.0
 
     @property
     def displacement(self) -> Any:
-        """Unit of displacements [m]."""
+        """Unit of displacements, N/(2μ) [m]."""
         return self.load / (2.0 * self.solid.μ)
 
     @property
     def strain(self) -> Any:
-        """Unit of strains, dimensionless."""
+        """Unit of strains, N/(2aμ), dimensionless."""
         return self.stress / self.solid.μ
 
     @property
     def stress(self) -> Any:
-        """Unit of stresses [Pa]; with free ends each state has its own instead."""
+        """Unit of stresses, N/(2a) [Pa], a as in :attr:`half_width`.
+
+        With free ends a state's stresses are over its own half-width instead.
+        """
         return self.load / (2.0 * self.half_width)
 
 
@@ -189,13 +206,13 @@ class Body:
 class Turns:
     """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.
 
-    Near these places stresses go with a power of the distance, and samples miss the largest one.
+    Near these places stresses go with a power of the distance, and samples miss the largest stress.
 
     Attributes:
-        X: the places over a, (states, k).
-        σ: σ_XX, σ_YY, σ_XY there, (3, states, k).
-        between: the in-plane stress between them, where samples of the surface are not near enough to
-            them; None where they are.
+        X: places over a, NaN for none, (states, k).
+        σ: σ_XX, σ_YY, σ_XY over N/(2a) at these places, NaN for none, (3, states, k).
+        between: in-plane stress between the places, where samples of the surface are too far from them;
+            None where samples are near enough.
     """
 
     X: NDArray[np.float64]
@@ -203,26 +220,27 @@ class Turns:
     between: "Between | None" = None
 
     def of(self, rows: NDArray) -> "Turns":
-        """Turns of some of the states, or of each several times."""
+        """Turns of the states with these numbers, which may repeat."""
         between = self.between and Between(
             self.between.X, self.between.x, self.between.σ_XX[rows]
         )  # fmt: skip
         return Turns(self.X[rows], self.σ[:, rows], between)
 
     def joined(self, other: "Turns") -> "Turns":
-        """Turns joined with others of the same states."""
+        """Turns at these places and at other places of the same states."""
         σ = np.concatenate([self.σ, other.σ], axis=2)
         return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
 
 
 @dataclass(frozen=True)
 class Between:
-    """In-plane stress between neighbouring kinks, towards both of which it has a distance's logarithm.
+    """In-plane stress between neighbouring kinks, near both of which it has a logarithm of the distance.
 
     Attributes:
         X: positions over a, in intervals between kinks, (intervals, n).
-        x: logarithm of the ratio of their distances from both kinks, in which stresses are smooth, (n,).
-        σ_XX: there, (states, intervals, n).
+        x: logarithm of the ratio of a position's distances from both kinks, in which stresses are
+            smooth, (n,).
+        σ_XX: in-plane stress over N/(2a) at these positions, (states, intervals, n).
     """
 
     X: NDArray[np.float64]
@@ -231,13 +249,20 @@ class Between:
 
 
 def together(each: list[Turns]) -> Turns | None:
-    """Turns of one state each as those of all, as many places as the state with most; None of none."""
+    """Turns of all states from those of each, padded with NaN where a state has fewer places than others.
+
+    Args:
+        each: turns of a single state.
+
+    Returns:
+        Turns of as many states; None where the list is empty.
+    """
     if not each:
         return None
-    most = max(one.X.shape[1] for one in each)
+    most = max(turns.X.shape[1] for turns in each)
     X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
-    for i, one in enumerate(each):
-        X[i, : one.X.shape[1]], σ[:, i, : one.X.shape[1]] = one.X[0], one.σ[:, 0]
+    for i, turns in enumerate(each):
+        X[i, : turns.X.shape[1]], σ[:, i, : turns.X.shape[1]] = turns.X[0], turns.σ[:, 0]
     return Turns(X, σ)
 
 
@@ -246,12 +271,13 @@ class Surface:
     """Stresses on the surface Y = 0.
 
     Attributes:
-        places: positions.
-        σ_YY: contact stress, NaN beside the punch, (states, n).
-        σ_XX: in-plane stress, (states, n).
-        raw: contact stress without an assumed exponent; finite elements alone have it.
-        v_X: slopes μ v,X; finite elements alone have them.
-        turns: limits of the stresses; None where they are infinite at both ends, and nowhere cusped.
+        places: positions at which the stresses are computed.
+        σ_YY: contact stress over N/(2a), NaN beside the punch, (states, n).
+        σ_XX: in-plane stress over N/(2a), (states, n).
+        raw: contact stress over N/(2a) without an assumed exponent, (states, n); of finite elements
+            alone.
+        v_X: slopes μ v,X over N/(2a), (states, n); of finite elements alone.
+        turns: limits of the stresses; None where they are infinite at both ends and have no cusp.
     """
 
     places: Places
@@ -269,7 +295,7 @@ class Solution(Protocol):
         g: σ_XY/σ_YY under the punch, (states,).
         local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
         surface: stresses on the surface.
-        inside: σ_XX, σ_YY, σ_XY at points inside, (3, states, m).
+        inside: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m).
     """
 
     @property

@@ -1,12 +1,12 @@
 """Comparisons of finite elements with other methods, and the figures by which they are judged.
 
-A rule measures one figure of disagreement: between finite elements and the closed form, or the integral
-equation over layers, in stress intensities, stresses, ends of the contact and yield; of nodal forces with
-their balance; and of each method with its own estimated error. Rules are registered by name, and
-quantities say which of them apply.
+Each rule measures one figure. Rules compare finite elements with the closed form, or on layers with the
+integral equation, in stress intensities, stresses, ends of the contact and yield. They hold nodal forces
+against their balance, and judge the estimated errors of each method. Rules are registered by name, and
+quantities name those that apply to them.
 
-Nothing is compared next to a tip of a punch, at which stresses are infinite. A NaN or an infinity is a
-fault wherever the table of quantities does not allow it.
+Nothing is compared next to a tip of a punch, where stresses are infinite. A NaN or an infinity is a fault
+wherever the table of quantities does not allow it.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -40,7 +40,13 @@ from .quantities.stresses import PRESSURE, SURFACE_X
 
 @dataclass(frozen=True)
 class Comparison:
-    """One figure of disagreement: its short ``name``, what it says, and the ``value`` (1)."""
+    """Figure of disagreement between two results.
+
+    Attributes:
+        name: name of the rule that measured it.
+        text: its meaning in words, by which archives and reports list it.
+        value: the figure, dimensionless.
+    """
 
     name: str
     text: str
@@ -49,17 +55,18 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule of comparison: the quantities compared, the figure measured, and its limit for a PASS.
+    """Rule of comparison: the quantities compared, the figure measured, and its limit for a PASS.
 
     Attributes:
-        text: what the figure says.
+        text: meaning of the figure in words.
         needs: the quantities that are compared.
-        measure: the figure (1) from datasets by path and the load N per depth [N/m], that of each state
-            where they differ in it; None where there is nothing to say.
-        limit: largest value of a PASS; None where it is no fixed number.
-        tolerances: largest value of a PASS in units of the scene's tolerance.
-        mode: in which it is judged, as of a quantity; "" for each.
-        own_pressure: judged also under a prescribed pressure.
+        measure: function of the datasets by path and the load N per depth [N/m], a number or (states,),
+            that gives the figure, dimensionless; None where there is nothing to compare.
+        limit: largest value of a PASS; None where that is no fixed number.
+        tolerances: largest value of a PASS over the scene's tolerance; None where it does not depend on
+            that.
+        mode: mode of solution in which the rule is applied, as of a quantity; "" for every mode.
+        own_pressure: True where the rule is applied under a prescribed pressure, too.
     """
 
     text: str
@@ -76,7 +83,7 @@ class Rule:
 
 
 def largest_of(row: Quantity) -> Callable[[dict[str, Any], Any], float]:
-    """Measure that is the largest value of a quantity."""
+    """Measure of a rule: the largest value of a quantity over all states."""
     return lambda data, _: float(data[row.path].max())
 
 
@@ -85,7 +92,8 @@ def next_to_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.boo
 
     Args:
         data: datasets by path.
-        inside: only places of infinite pressure nearer to the middle than this count, over a.
+        inside: distance over a from the middle of the contact; infinite pressures farther out do not
+            count.
     """
     X = data[SURFACE_X.path]
     if LARGEST[CLOSED_FORM].path not in data or PRESSURE[CLOSED_FORM].path not in data:
@@ -100,7 +108,7 @@ def not_finite(data: dict[str, Any]) -> list[str]:
     """Paths of datasets with a value that is not finite and that the table of quantities does not allow.
 
     Args:
-        data: datasets of some states by path, the positions on the surface among them.
+        data: datasets of any states by path, the positions on the surface among them.
     """
     rows, paths = table(), []
     for path, values in data.items():
@@ -136,7 +144,7 @@ def _largest_pressure(other: str) -> Callable[[dict[str, Any], Any], float | Non
 
 
 def extremes_of(other: str) -> Callable[[dict[str, Any], Any], float]:
-    """The measure of highest and lowest in-plane stresses, against another method."""
+    """Measure of a rule: error of highest and lowest σ_XX against another method, dimensionless."""
 
     def measure(data: dict[str, Any], _: Any) -> float:
         rows = (at.HIGHEST, at.LOWEST) if other == CLOSED_FORM else (on_layers.HIGHEST, on_layers.LOWEST)
@@ -170,8 +178,8 @@ OF_ENDS: dict[str, Rule] = {
 }
 
 
-#: Share of the larger intensity, or of the mean pressure, below which an error is over this share rather
-#: than over the value itself.
+#: Share of the larger intensity, or of the mean pressure; where a value is smaller, its error is relative
+#: to this share instead.
 _VANISHING = 0.1
 
 
@@ -191,7 +199,7 @@ def _pressures(data: dict[str, Any]) -> tuple[Any, Any]:
 
 
 def _pressure_between_free_ends_on_layers(data: dict[str, Any], _: float) -> float:
-    """Error of σ_YY over each state's largest, since it vanishes next to free ends."""
+    """Largest error of σ_YY relative to each state's largest: it vanishes next to free ends."""
     fem, sie = _pressures(data)
     return float((np.abs(fem - sie) / np.abs(sie).max(axis=1, keepdims=True)).max())
 
@@ -286,12 +294,12 @@ ON_LAYERS: dict[str, Rule] = {
 
 
 def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
-    """Every comparison that some states' data allow, in the order of ``RULES``.
+    """Every comparison that the data of states allow, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
-        load: N per depth [N/m], or that of each state, (states,).
-        names: of the rules of the quantities that the data hold.
+        load: N per depth [N/m], a number or (states,).
+        names: names of the rules that the quantities in the data have.
     """
     figures, applicable = [], set(names)
     for name, rule in RULES.items():
@@ -331,7 +339,7 @@ def _exponents(data: dict[str, Any], _: float) -> float | None:
 
 
 def _tension(data: dict[str, Any], _: float) -> float | None:
-    """A punch cannot pull; what was computed is not what would happen, and it is not clipped."""
+    """Largest tension under the punch over N/(2a), None without any; a punch would lift off there."""
     largest = float(np.nanmax(data[at.PRESSURE[FEM].path], initial=0.0))
     return largest if largest > 0.0 else None
 
@@ -346,7 +354,7 @@ def _pressure(data: dict[str, Any], _: float) -> float:
 
 
 def _pressure_between_free_ends(data: dict[str, Any], _: float) -> float:
-    """Error of σ_YY over each state's largest, except next to a tip, where it is infinite."""
+    """Largest error of σ_YY relative to each state's largest, not next to tips, where it is infinite."""
     under = under_punch(data[at.SURFACE_X.path])
     fem, exact = _both(data, at.PRESSURE, under)
     left_out = next_to_tips(data)[:, under]
@@ -355,7 +363,7 @@ def _pressure_between_free_ends(data: dict[str, Any], _: float) -> float:
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
-    """Error of σ_XX, except next to a tip inside the contact; at edges relative to itself."""
+    """Largest error of σ_XX relative to its size, see ``stresses.of_in_plane``, not next to tips inside."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
     off = np.abs(fem - exact) / stresses.of_in_plane(exact, data[at.SURFACE_X.path])
     return np.where(next_to_tips(data, 1.0 - stresses.NEAR_TIP), 0.0, off).max()
@@ -375,7 +383,7 @@ def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
 
 
 def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
-    """Error of the reach of yield, as a stress, which at a distance d from an edge is a power of d."""
+    """Largest relative error of stresses that the reach d of yield stands for: they are a power of d."""
     off = []
     for rows, exponent in ((to.REACH_LEFT, of.BETA), (to.REACH_RIGHT, of.ALPHA)):
         power = -data[exponent.path]
@@ -394,13 +402,13 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
 
-#: Distance over a from an edge that is as good as none.
+#: Distance over a from an edge that counts as none.
 _NO_REACH = 1e-300
 
-#: The rule by which every quantity is judged.
+#: Name of the rule that applies to every quantity.
 FINITE = "finite"
 
-#: A balance of nodal forces further off than its limit, over N, is a fault whatever the tolerance.
+#: Balance of nodal forces; its limit, relative to N, holds at every tolerance.
 BALANCE = Rule(
     "nodal forces against the load, over N",
     (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RATIO), _imbalance, limit=1e-9,
@@ -459,7 +467,7 @@ RULES: Registry[Rule] = Registry(
             "σ_YY pointwise, relative",
             (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure, tolerances=1.0,
         ),
-        # Where exponents are not assumed; at a sharp edge sigma_YY is the stricter rule.
+        # For free ends, where no exponent is assumed; at a sharp edge sigma_YY is the stricter rule.
         "sigma_YY of found ends": Rule(
             "σ_YY of contacts whose ends are found, over the largest further than 0.02 a from a tip",
             (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _pressure_between_free_ends,
@@ -505,8 +513,8 @@ RULES: Registry[Rule] = Registry(
             "estimated error of stresses in which yield is looked for, relative", (to.ESTIMATE_YIELD,),
             largest_of(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
         ),
-        # In the traction mode v,X under the punch has to vanish; it is a derivative of the displacement
-        # and so has about half the digits of the moments that the tolerance speaks of.
+        # In the traction mode v,X under the punch has to vanish. It is a derivative of the displacement,
+        # with about half the digits of the moments to which the tolerance refers.
         "slope under the punch": Rule(
             "v,X under the punch over that beside it",
             (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",

@@ -1,7 +1,7 @@
 """Measures of stresses and slopes: invariants, extremes, tension, flatness under the punch.
 
-A relative error of stresses is relative to the sizes of :func:`of_in_plane`, :func:`of_inside`,
-:func:`of_interfaces` and :func:`of_factor`.
+Relative errors of stresses are relative to the sizes that :func:`of_in_plane`, :func:`of_inside`,
+:func:`of_interfaces` and :func:`of_factor` give.
 """
 
 from collections.abc import Iterable
@@ -26,7 +26,10 @@ def flatness(surface: Any) -> NDArray[np.float64]:
 
 
 def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) -> NDArray[np.float64]:
-    """√(½[(σ_XX - σ_YY)² + (σ_YY - σ_ZZ)² + (σ_ZZ - σ_XX)²] + 3σ_XY²), in the unit of the stresses."""
+    """Von Mises stress in the unit and the shape of the stresses.
+
+    √(½[(σ_XX - σ_YY)² + (σ_YY - σ_ZZ)² + (σ_ZZ - σ_XX)²] + 3σ_XY²).
+    """
     normal = (σ_XX - σ_YY) ** 2 + (σ_YY - σ_ZZ) ** 2 + (σ_ZZ - σ_XX) ** 2
     return np.sqrt(normal / 2.0 + 3.0 * σ_XY**2)
 
@@ -64,7 +67,7 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray, NDArray]
 
 
 def tension(surface: Any) -> NDArray[np.float64]:
-    """Largest tension under the punch over N/(2a), and where over a; 0 and NaN for none, (2, states).
+    """Largest tension under the punch over N/(2a), and its X over a; 0 and NaN for none, (2, states).
 
     Args:
         surface: :class:`galinx.solvers.solution.Surface`.
@@ -75,14 +78,15 @@ def tension(surface: Any) -> NDArray[np.float64]:
     return np.array([size, np.where(size > 0.0, X[under.argmax(axis=1)], np.nan)])
 
 
-#: Distance over a from a punch edge within which stresses, infinite there, are no measure of others.
+#: Distance over a from an edge of the punch, where stresses are infinite; nearer stresses are no measure
+#: for the size of others.
 NEAR = 1e-2
 
 #: Distance over a from a tip of the punch, where stresses are infinite, within which none is compared.
 NEAR_TIP = 0.02
 
-#: Share of the largest below which an error of a pressure's smooth factor, which may vanish, is over this
-#: share rather than over the factor itself.
+#: Share of the largest smooth factor of a pressure; where the factor is smaller, its error is relative to
+#: this share instead, since it may vanish.
 _VANISHING = 0.1
 
 
@@ -92,24 +96,24 @@ def of_in_plane(σ_XX: NDArray, X: NDArray) -> NDArray[np.float64]:
     Far from the edges is further than ``NEAR``.
 
     Args:
-        σ_XX: on the surface, (states, n).
+        σ_XX: in-plane stress on the surface, (states, n).
         X: positions over a, (n,).
 
     Returns:
-        (states, n).
+        Sizes in the unit of the stress, (states, n).
     """
     return _at_least_far(np.abs(σ_XX), from_edge(X) >= NEAR)
 
 
 def off_tips(X: NDArray, tips: NDArray, Y: Any = 0.0) -> NDArray[np.bool_]:
-    """Mask of places further than ``NEAR_TIP`` from all tips.
+    """Mask of places further than ``NEAR_TIP`` from all tips of the punch.
 
     Args:
-        X, Y: of the places over a, (n,).
-        tips: their positions over a on the surface, (k,) for all states, or (states, k).
+        X, Y: coordinates of the places over a, (n,).
+        tips: positions X of the tips over a, (k,) for all states, or (states, k).
 
     Returns:
-        (n,), or (states, n).
+        True far from all tips, (n,), or (states, n).
     """
     from_tips = np.hypot(X[:, None] - np.asarray(tips)[..., None, :], np.reshape(Y, (-1, 1)))
     return np.all(from_tips >= NEAR_TIP, axis=-1)
@@ -121,20 +125,20 @@ def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float
     Far from the edges is further than ``NEAR``; the result has the shape (states, m).
 
     Args:
-        σ: components, each (states, m).
+        σ: components of the stress, each (states, m).
         X, Y: positions over a, (m,).
     """
     return _at_least_far(largest(σ), np.hypot(from_edge(X), Y) >= NEAR)
 
 
 def of_interfaces(σ: NDArray) -> NDArray[np.float64]:
-    """Size of stresses at interfaces: the largest along each of tractions, or of these and σ_XX.
+    """Size of stresses at interfaces: the largest along each interface of the component or a traction.
 
     Args:
-        σ: σ_YY, σ_XY, σ_XX above and below, (4, states, interfaces, n).
+        σ: σ_YY, σ_XY, σ_XX above and σ_XX below, (4, states, interfaces, n).
 
     Returns:
-        (4, states, interfaces, 1).
+        Sizes in the unit of the stresses, (4, states, interfaces, 1).
     """
     size = np.abs(σ).max(axis=3, keepdims=True)
     tractions = np.maximum(size[0], size[1])
@@ -142,7 +146,7 @@ def of_interfaces(σ: NDArray) -> NDArray[np.float64]:
 
 
 def largest(components: Iterable[NDArray]) -> NDArray[np.float64]:
-    """Largest absolute value of some arrays of one shape, element by element."""
+    """Largest absolute value, element by element, of arrays of equal shape."""
     return reduce(np.maximum, map(np.abs, components))
 
 

@@ -1,4 +1,4 @@
-"""Sentences where the answers of a run do not hold; all of it is archived state by state."""
+"""Warnings where the answers of a run do not hold, from quantities that are archived for each state."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,20 +11,21 @@ from numpy.typing import NDArray
 from .quantities import validity as of
 from .quantities.states import RATIO, SPEED
 
-#: Wave crossings in a stroke below which a steady state is not reached.
+#: Wave crossings of the contact in a stroke below which steady motion is not reached.
 FEW = 30.0
 
-#: Share of the half-width from which on a zone at an edge is reported.
+#: Width over a beyond which a zone at an edge is reported.
 WIDE = 0.01
 
 
 @dataclass(frozen=True)
 class Steady:
-    """Time that a start from rest takes to be steady, against that of a stroke.
+    """Time that a start from rest takes to come near steady motion, compared with that of a stroke.
 
     Attributes:
-        within: time over a/c_s from which on K_I and the pressure's centre are within 1 % of those of
-            steady motion, by speed over c_s and σ_XY/σ_YY.
+        within: function of the speed over c_s and σ_XY/σ_YY that gives the time over a/c_s from which on
+            K_I and the pressure's centre are within 1 % of those of steady motion; infinite where they
+            never are.
         unit: a/c_s [s].
     """
 
@@ -32,12 +33,12 @@ class Steady:
     unit: float
 
     def words(self, c: float, g: float, crossings: float, too_short: bool = False) -> str:
-        """Comparison with a stroke that a wave crosses so often, in words; "" where it never is steady.
+        """Comparison with the time of a stroke, in words; "" where motion never is steady.
 
         Args:
             c, g: speed over c_s and σ_XY/σ_YY.
-            crossings: of the stroke.
-            too_short: say nothing of a stroke that is long enough.
+            crossings: number of times that a shear wave crosses the contact during the stroke.
+            too_short: return "" for a stroke that is long enough, too.
         """
         needed, lasts = self.within(c, g), 2.0 * crossings
         if not isfinite(needed) or (too_short and lasts >= needed):
@@ -49,10 +50,10 @@ class Steady:
 
 
 class Validity:
-    """Collects where answers do not hold from the datasets of states, some at a time.
+    """Warnings where answers do not hold, collected from datasets that come in parts.
 
     Args:
-        steady: time that steady motion takes; None where it is not known.
+        steady: time that a start from rest takes to come near steady motion; None where it is unknown.
     """
 
     def __init__(self, steady: Steady | None = None) -> None:
@@ -63,11 +64,11 @@ class Validity:
         self._states: dict[str, int] = {}
         self._worst: dict[str, float] = {}
         self._where = 0.0
-        #: Thresholds of |σ_XY/σ_YY| that are passed.
+        #: Thresholds of |σ_XY/σ_YY| that a state passes.
         self._steep: set[float] = set()
 
     def see(self, data: Mapping[str, Any]) -> None:
-        """Take datasets of some states into account, by path."""
+        """Take datasets by path of further states into account."""
         if of.CROSSINGS.path in data:
             often = data[of.CROSSINGS.path]
             self._count("crossings", often < FEW, -often)
@@ -110,7 +111,7 @@ class Validity:
             self._worst[name] = max(self._worst.get(name, -np.inf), float(np.max(size[bad])))
 
     def words(self) -> list[str]:
-        """A sentence for each thing that does not hold."""
+        """Warnings, one sentence for each assumption that does not hold."""
         return [*self._words()]
 
     def _words(self) -> Iterator[str]:
@@ -121,7 +122,7 @@ class Validity:
             yield (
                 "in a stroke a shear wave crosses the contact "
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
-                f"{states['crossings']}: the steady state that is told is a limit which such a stroke "
+                f"{states['crossings']}: the results are for steady motion, a limit that such a stroke "
                 "does not reach" + f"; {text}" * bool(text)
             )
         if (
@@ -129,7 +130,7 @@ class Validity:
             and self._fastest
             and (text := self._steady.words(*self._fastest, too_short=True))
         ):
-            yield f"the steady state is told, but {text}"
+            yield f"the results are for steady motion, but {text}"
         if "ratio" in worst:
             least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
             yield (

@@ -363,7 +363,7 @@ def _pressure_between_free_ends(data: dict[str, Any], _: float) -> float:
 
 
 def _in_plane(data: dict[str, Any], _: float) -> float:
-    """Largest error of σ_XX relative to its size, see ``stresses.of_in_plane``, not next to tips inside."""
+    """Largest error of σ_XX relative to its size, but not next to tips inside the contact."""
     fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
     off = np.abs(fem - exact) / stresses.of_in_plane(exact, data[at.SURFACE_X.path])
     return np.where(next_to_tips(data, 1.0 - stresses.NEAR_TIP), 0.0, off).max()

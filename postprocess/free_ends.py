@@ -1,28 +1,29 @@
-"""Free ends of contacts, and what is singular there and at kinks, from solutions of finite elements.
+"""Free ends of contacts, and pressure and stresses next to ends and kinks, from finite elements.
 
 **Ends.** A contact between two free ends follows from solutions of a few polynomial shapes. With
-v = P - v₀ held from m - h to m + h the load and the intensities K at both ends are linear in P, and v₀
-follows from the load. A half-plane has no length, so what then remains of the intensities is
+v = P - v₀ prescribed from m - h to m + h, the load and the intensities K at both ends are linear in P,
+and v₀ follows from the load. A half-plane has no length, so the remaining intensities are
 
     B(P) = ∫ h P'(m + h s) b(s) ds - 2 K(1)/N(1),        s over h from m,
 
-where b are two functions of s alone. By the local analysis of the ends they are (1 - s)^β (1 + s)^α times
-smooth ones, α and β the exponents of a flat punch; shapes whose slopes are Chebyshev polynomials give the
-moments of b, and thereby these. B = 0 is solved for m and h of any profile under any load, by quadrature.
+where b are two functions of s alone, one for each end. By the local analysis of the ends they are
+(1 - s)^β (1 + s)^α times smooth functions, α and β the exponents of a flat punch. Shapes whose slopes are
+Chebyshev polynomials give the moments of b, and thereby the smooth functions. B = 0 is solved for m and h
+of any profile under any load, by quadrature.
 
 **Next to ends and kinks.** Pressure and slopes are continued from a little farther away to free ends and
-kinks, where finite elements have few digits. By the local analysis they are sums of two smooth functions
-there, one of them times a power of the distance, or its logarithm.
+kinks, where finite elements have few digits. By the local analysis they are sums of two terms there: a
+smooth function, and a smooth function times a power of the distance or its logarithm.
 
 **Extremes.** The highest and the lowest in-plane stress on the surface include free ends and kinks. The
-curve is known at samples. Between those next to its tops it is a polynomial of the confocal coordinate,
-in which it is smooth up to a free end; at the end itself, and at kinks, it is a limit. Places next to
-sharp edges and tips, where it is infinite, do not count.
+stress is computed at samples. Around its highest samples it is interpolated by a polynomial of the
+confocal coordinate, in which it is smooth up to a free end; at the end itself, and at kinks, its limit is
+taken. Places next to sharp edges and tips, where it is infinite, do not count.
 
 **Pressure.** The pressure of a contact with free ends and kinks follows from its nodal forces alone. Its
-moments converge slowly where it has a logarithm. Cells are small and many there instead, so that the
-piecewise polynomial that has the nodal forces is as good as they are; towards the ends it falls as the
-local analysis says.
+moments converge slowly where it has a logarithm. But cells are small and many there, so that the
+piecewise polynomial with these nodal forces is as accurate as the forces; towards the ends it falls as
+the local analysis says.
 """
 
 from collections.abc import Callable
@@ -51,27 +52,35 @@ from .pressure import (
 )
 from .stresses import NEAR, NEAR_TIP
 
-#: Shapes: two determine the factors, the third says how good they are.
+#: Number of shapes: two determine the factors, the third measures their error.
 SHAPES = 3
 
-#: Gauss points of a panel; sizes of panels towards a kink and towards an end, over the next larger one's.
+#: Gauss points of a panel; size of a panel over that of the next larger one; numbers of panels towards a
+#: kink and towards an end.
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
 
-#: First half-width tried [m], doublings of it, and of the middle over it; halvings.
+#: First half-width tried [m]; most doublings of the half-width, and of the middle over it; halvings of
+#: the middle's interval.
 _FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
-#: Steps of Newton's method, the largest of m/h and of log h, difference for derivatives; residual at
-#: which it stops, and residuals of rounding.
+#: Steps of Newton's method, largest step of m/h and of log h, difference for derivatives; residual at
+#: which it stops, and largest residual that rounding leaves.
 _STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11
 
 
 def heights_of_shapes(s: NDArray, count: int = SHAPES) -> NDArray[np.float64]:
-    """Heights at s, (count, n), of shapes whose slopes are T_0, T_1, …, and which are 0 at s = 0."""
+    """Heights of shapes at s, (count, n), whose slopes are T_0, T_1, …, and which are 0 at s = 0."""
     T = np.polynomial.chebyshev
     return np.array([T.chebval(s, T.chebint([0.0] * k + [1.0])) for k in range(count)])
 
 
 def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int) -> NDArray[np.float64]:
-    """Coefficients of a profile in so many shapes: dP/ds [m] at centre + half_width·s, (count,)."""
+    """Chebyshev coefficients of a profile's slope dP/ds [m] at X = centre + half_width·s, (count,).
+
+    Args:
+        profile: shape P of the punch.
+        centre, half_width: of the contact [m].
+        count: number of shapes.
+    """
     s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
     slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
     T = np.cos(np.outer(np.arange(count), np.arccos(s)))
@@ -81,13 +90,13 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
 
 
 def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[FreeEnds]":
-    """Conditions on free ends, one for each state's friction.
+    """Conditions on both free ends of a contact, for each state's friction.
 
     Args:
         local: exponents α and β of a flat punch, (states,) each.
-        K: intensities at both ends, of the flat punch at v = -1 and of ``SHAPES`` shapes,
-            (states, 2, parts).
-        N: loads of these, (states, parts).
+        K: intensities at both ends under a flat punch at v = -1 and under ``SHAPES`` shapes,
+            (states, 2, 1 + shapes).
+        N: loads under the same punches, (states, 1 + shapes).
     """
     share = K[..., :1] / N[:, None, :1]
     moments, constants = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
@@ -113,8 +122,11 @@ class FreeEnds:
 
     @cached_property
     def factors(self) -> NDArray[np.float64]:
-        """Chebyshev coefficients of smooth factors, (2, ``SHAPES``): of the combination of both ends that
-        does not depend on the load, and of the one that is 1 under it."""
+        """Chebyshev coefficients of the smooth factors of two combinations of b, (2, ``SHAPES``).
+
+        The first combination is that in which 2 K(1)/N(1) of both ends cancels; it vanishes where the
+        ends are in balance. The second gives the load that a contact carries.
+        """
         block = np.s_[0, :SHAPES, :SHAPES]
         ends = np.array([self.β]), np.array([self.α])
         P, norms = jacobi_in_chebyshev(*ends)[block], jacobi_norms(*ends)[0, :SHAPES]
@@ -125,21 +137,21 @@ class FreeEnds:
 
     @property
     def unseen(self) -> float:
-        """Relative size of coefficients beyond the first two, which are 0 for a half-plane."""
+        """Relative size of the coefficients beyond the first two, which are 0 for a half-plane."""
         return float((np.abs(self.factors[:, 2:]).sum(axis=1) / np.abs(self.factors).max(axis=1)).max())
 
     def found(
         self, profile: Any, unit: float, start: tuple[float, float] | None = None
     ) -> tuple[float, float]:
-        """Middle and half-width of the contact [m].
+        """Middle and half-width of the contact [m], at which both conditions are satisfied.
 
         Args:
-            profile: of the punch.
+            profile: shape of the punch.
             unit: N/(2μ) [m].
-            start: middle and half-width [m] of a contact like it.
+            start: middle and half-width [m] of a similar contact; None without any.
 
         Raises:
-            SolveError: there is none, or it reaches beyond where the profile of the punch is given.
+            SolveError: no contact satisfies the conditions, or it reaches beyond the given profile.
         """
         point = self._first(profile, unit) if start is None else np.array(start) / [start[1], 1.0]
         point[1] = np.log(point[1])
@@ -163,7 +175,7 @@ class FreeEnds:
                 return self.found(profile, unit)
             raise SolveError(
                 f"finite elements did not find the ends of the contact of a {profile.words()}: its "
-                f"conditions are left at {np.abs(value).max():.3g}, wanted {_ROUNDING:g}"
+                f"conditions are off by {np.abs(value).max():.3g}, expected at most {_ROUNDING:g}"
             )
         h = float(np.exp(point[1]))
         X_left, X_right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
@@ -171,6 +183,7 @@ class FreeEnds:
         return float(point[0]) * h, h
 
     def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
+        """Newton's step of m/h and log h from a point, (2,); wider by a tenth where it is not defined."""
         J = np.empty((2, 2))
         for i, d in enumerate(np.eye(2) * _ε):
             after, before = (self._residual(profile, unit, point + sign * d) for sign in (1.0, -1.0))
@@ -186,7 +199,7 @@ class FreeEnds:
         return np.array([lifted, np.log(carried) if carried > 0.0 else np.inf])
 
     def _conditions(self, profile: Any, unit: float, lean: float, h: float) -> tuple[float, float]:
-        """Imbalance of the ends over its largest value, and the load over the prescribed one."""
+        """Imbalance of the ends over its largest value, and the carried load over the prescribed load."""
         at = np.array(kinks(profile), dtype=float) / h - lean
         s, weights = _rule(at[np.abs(at) < 1.0], self.α, self.β)
         slope = np.asarray(profile.slope(h * (lean + s)), dtype=float)
@@ -196,7 +209,7 @@ class FreeEnds:
         return float(lifted / whole) if whole > 0.0 else 0.0, float(h * carried / unit)
 
     def _first(self, profile: Any, unit: float) -> NDArray[np.float64]:
-        """Middle over half-width, and half-width [m], of a contact that carries about the load, (2,)."""
+        """Middle over half-width, and half-width [m] of a contact that carries about the load, (2,)."""
         h, narrow, wide = _FIRST, 0.0, np.inf
         for _ in range(_DOUBLINGS):
             lean = self._lean(profile, unit, h)
@@ -211,7 +224,7 @@ class FreeEnds:
         )
 
     def _lean(self, profile: Any, unit: float, h: float) -> float:
-        """Rough m/h at which the ends are in balance; in the middle of such places in a flat part."""
+        """Rough m/h at which the ends are in balance; the centre of these where they are an interval."""
         far = 1.0
         while far < 2.0**_FARTHER and not (
             self._conditions(profile, unit, -far, h)[0] < 0.0 < self._conditions(profile, unit, far, h)[0]
@@ -230,7 +243,7 @@ class FreeEnds:
 
 @lru_cache(maxsize=64)
 def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points in [0, 1] and weights of ∫ t^exponent F(t) dt, finer and finer towards 0."""
+    """Points in [0, 1] and weights of ∫ t^exponent F(t) dt on panels graded towards 0, (n,) each."""
     τ, w = np.polynomial.legendre.leggauss(_POINTS)
     x = (τ + 1.0) / 2.0
     ends = _RATIO ** np.arange(panels + 1)
@@ -243,7 +256,7 @@ def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray
 
 
 def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and weights of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between the places ``at``."""
+    """Points and weights, (n,) each, of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between places ``at``."""
     places = np.concatenate([[-1.0], np.unique(at), [1.0]])
     last, s, weights = len(places) - 2, [], []
     for i, half in enumerate(np.diff(places) / 2.0):
@@ -258,8 +271,8 @@ def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
     return np.concatenate(s), np.concatenate(weights)
 
 
-#: Distances from an end, over that of the nearest kink, between which its pressure is sampled; places
-#: there, and the degree of the polynomial through them.
+#: Distances from an end, over that of the nearest kink, between which the pressure is sampled; number of
+#: samples, and degree of the polynomial fitted to them.
 _SAMPLED_AT_END, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
 
 
@@ -278,30 +291,31 @@ def towards_end(d: NDArray, samples: NDArray, σ_YY: NDArray, exponent: float) -
     """Pressure d^a times a smooth function, nearer to the end than its samples, (n,).
 
     Args:
-        d: distances over a, (n,).
-        samples: distances of :func:`places_at_end`.
-        σ_YY: pressure at these.
-        exponent: a, at the free end.
+        d: distances from the end over a, (n,).
+        samples: distances of :func:`places_at_end`, (m,).
+        σ_YY: contact stress at the samples, (m,), in the unit of the result.
+        exponent: a, positive.
     """
     smooth = np.polynomial.Chebyshev.fit(samples, σ_YY / samples**exponent, _DEGREE)
     return d**exponent * smooth(d)
 
 
-#: Distances from an end, over that of the nearest kink, between which a function A(d) + d^a B(d) on one
-#: side, A and B smooth, is sampled: slopes next to an end, the pressure next to a cusp. Number of
-#: samples, even in the root of d; terms of each of the two series.
+#: Distances from an end, over that of the nearest kink, between which a function A(d) + d^a B(d), A and B
+#: smooth, is sampled on either side: slopes next to an end, the pressure next to a cusp. Number of
+#: samples, Chebyshev's in the root of d; terms of each of the two series.
 _RANGE_AT_END, _SAMPLES, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
-#: Next to a kink: the nearest of these distances over the farthest, the least and the most of that, and
-#: what the series leave out there over its cube, whose tenth of the tolerance is small enough.
+#: Next to a kink: the nearest sample's distance over the farthest's; the least and the largest distance
+#: of the farthest sample; and the truncation error of the series over the cube of that distance, which
+#: may be a tenth of the tolerance.
 _NEAREST_AT_KINK, _FARTHEST_AT_KINK, _LEFT_OUT = 0.015, (5e-3, 2e-2), 7e-4
-#: Distance over the usual one up to which a kink is sampled to measure what its series leave out.
+#: Distance of the farthest sample over the usual one, to measure the truncation error of the series.
 FARTHER = 2.0
-#: Distance over a from an end within which stresses beside it give the limit at it; singular values below
-#: which terms are dependent.
+#: Distance over a from an end within which stresses outside the contact give the limit at the end;
+#: relative singular value below which terms count as dependent.
 _BESIDE_END, _NO_DIGIT = 2e-4, 1e-12
 #: Powers of the distance, over d^a, with which solids graded from the surface on add logarithms.
 _LOGS = (1.0, 2.0)
-#: Distance from an end, over that of the nearest kink, up to which a remaining intensity shows.
+#: Distance from an end, over that of the nearest kink, up to which a remaining intensity is subtracted.
 _CLEARED = 0.1
 
 
@@ -311,16 +325,16 @@ def _two_series(
     """Distances at which A(d) + d^a B(d) is sampled, its terms, and the map from samples to amplitudes.
 
     Args:
-        gap: distance over a to which the others are relative.
-        span: the nearest and the farthest sample, over the gap.
+        gap: unit of the distances over a.
+        span: distances of the nearest and the farthest sample, over the gap.
         exponent: a.
-        logs: the second series' terms are times log d.
         at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
             and that of a remaining intensity, d^(a - 1), the last of the terms.
+        logs: multiply the terms of the second series by log d.
 
     Returns:
-        Distances (m,), a function that gives the terms at others, (n,) to (n, terms), and the map from
-        samples to amplitudes, (terms, m).
+        Distances of the samples over a, (m,); a function that gives the terms at any distances, (n,) to
+        (n, terms); and the map from values at the samples to amplitudes of the terms, (terms, m).
     """
     low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
     t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
@@ -343,24 +357,24 @@ def _two_series(
 
 @dataclass(frozen=True)
 class Series:
-    """Continuation of A(d) + d^a B(d), A and B smooth, from samples at some distances d.
+    """Continuation of A(d) + d^a B(d), A and B smooth, from samples to other distances d.
 
     Attributes:
-        known: distances of the samples over a, (m,).
-        terms: gives the two series' terms at other distances, (n,) to (n, terms).
-        amplitudes: map from values at the samples to the terms' amplitudes, (terms, m).
+        samples: distances of the samples over a, (m,).
+        terms: function that gives the terms of both series at any distances, (n,) to (n, terms).
+        amplitudes: map from values at the samples to amplitudes of the terms, (terms, m).
     """
 
-    known: NDArray[np.float64]
+    samples: NDArray[np.float64]
     terms: Callable[[NDArray], NDArray]
     amplitudes: NDArray[np.float64]
 
     def by_samples(self, d: NDArray) -> NDArray[np.float64]:
-        """Map from values at the samples to those at distances d, (n, m)."""
+        """Map from values at the samples to values at distances d, (n, m)."""
         return np.asarray(self.terms(d) @ self.amplitudes)
 
     def through(self, values: NDArray) -> Callable[[NDArray], NDArray]:
-        """Function of the distance that continues its values at the samples, (m,)."""
+        """Function of the distance, (n,) to (n,), that continues values at the samples, (m,)."""
         return lambda d: self.by_samples(d) @ values
 
 
@@ -369,27 +383,27 @@ def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 
 
     Args:
         gap: distance of the next kink or end, over a.
-        exponent: of the distance d from the kink, in (0, 1) at a cusp; 1 where they go as d log d.
-        farthest: distance over the gap from :func:`farthest_at_kink`.
-        farther: distance up to which they are sampled, over that.
+        exponent: power of the distance d from the kink, in (0, 1) at a cusp; 1 for d log d.
+        farthest: usual distance of the farthest sample over the gap, from :func:`farthest_at_kink`.
+        farther: distance of the farthest sample over the usual distance.
     """
     span = _NEAREST_AT_KINK * farthest, farther * farthest
     return Series(*_two_series(gap, span, exponent, logs=exponent == 1.0))
 
 
 def farthest_at_kink(tolerance: float) -> float:
-    """Distance from a kink, over that of the next kink or end, up to which it is sampled.
+    """Distance from a kink, over that of the next kink or end, of the farthest sample.
 
-    Nearer to it finite elements have less digits, farther away the series leave out more.
+    Nearer to the kink finite elements have fewer digits, farther away the series converge less.
     """
     return float(np.clip((0.1 * tolerance / _LEFT_OUT) ** (1.0 / 3.0), *_FARTHEST_AT_KINK))
 
 
 def error_at_kink(usual: NDArray, farther: NDArray) -> float:
-    """Error of the limits from the left and the right of a kink.
+    """Error of the limits from the left and the right of a kink, in their unit.
 
-    Terms that the series lack grow with their order. Both limits should be equal: half of their
-    difference is the other error.
+    One part is the truncation error, which grows with the distance like the first term that the series
+    lack. The other is half of the difference of both limits, which should be equal.
 
     Args:
         usual: both limits, (2,), from series sampled up to the usual distance.
@@ -400,12 +414,12 @@ def error_at_kink(usual: NDArray, farther: NDArray) -> float:
 
 
 def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[np.float64]:
-    """In-plane stress at the ends of contacts by the limit from outside, NaN at sharp ones, (states, 2).
+    """In-plane stress at the ends of contacts by the limit from outside, NaN at sharp edges, (states, 2).
 
     Args:
         X: positions over a, (n,).
-        σ_XX: there, (states, n).
-        exponents: of the pressure at the left and the right end, (states, 2).
+        σ_XX: in-plane stress at these, (states, n), in the unit of the result.
+        exponents: exponents of the pressure at the left and the right end, (states, 2).
     """
     limits = np.full(exponents.shape, np.nan)
     for i, side in enumerate((-1.0, 1.0)):
@@ -420,10 +434,10 @@ def in_plane_at_ends(X: NDArray, σ_XX: NDArray, exponents: NDArray) -> NDArray[
 
 
 def turns_at_ends(surface: Surface, local: Any) -> Turns:
-    """Stresses of states at both ends, NaN at sharp ones.
+    """Limits of stresses at both ends of contacts, NaN at sharp edges.
 
     Args:
-        surface: of the states.
+        surface: stresses of the states on the surface.
         local: exponents α at X = a and β at X = -a, (states,).
     """
     exponents = np.column_stack([local.β, local.α])
@@ -432,22 +446,23 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
     return Turns(np.tile([-1.0, 1.0], (len(σ_XX), 1)), np.array([σ_XX, none, none]))
 
 
-#: log(d/d') between two knots, distances d and d' from them: a few places, and the many between which a
-#: stress is interpolated.
+#: log(d/d') between two knots at the distances d and d': at a few places that show where the stress is
+#: highest, and at the many between which it is interpolated.
 _COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
-#: Highest and lowest places among the few next to which the many are evaluated.
+#: Number of the highest, and of the lowest, of the few places next to which the many are evaluated.
 _TOPS = 4
 
 
 def turns_at_knots(
     pressure: LinearPressure, g: NDArray, σ_XX: Callable[[NDArray], NDArray[np.float64]]
 ) -> Turns:
-    """Stresses at the knots of a prescribed pressure, NaN where it jumps, and between them.
+    """Limits of stresses at the knots of a prescribed pressure, NaN where it jumps, and between knots.
 
     Args:
-        pressure: prescribed.
+        pressure: the prescribed pressure.
         g: σ_XY/σ_YY, (states,).
-        σ_XX: in-plane stress over N/(2a) at positions on the surface, (states, n).
+        σ_XX: function of positions on the surface over a, (n,), that gives the in-plane stress over
+            N/(2a), (states, n).
     """
     X = np.column_stack([pressure.knots[:-1], _between_knots(pressure, _COARSE)]).ravel()
     each = σ_XX(np.append(X, 1.0))
@@ -466,13 +481,13 @@ def turns_at_knots(
 
 
 def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
-    """Positions over a between neighbouring knots by log(d/d'), see ``_COARSE``, (intervals, n)."""
+    """Positions over a between neighbouring knots from x = log(d/d'), see ``_COARSE``, (intervals, n)."""
     X_left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
     return np.asarray(X_left + width / (1.0 + np.exp(-x)))
 
 
 def _tops(values: NDArray) -> NDArray[np.int64]:
-    """Numbers of the highest places (n,) of curves, (states, n)."""
+    """Numbers of the highest places of any of the curves (states, n), (m,)."""
     padded = np.pad(np.nan_to_num(values, nan=-np.inf), ((0, 0), (1, 1)), constant_values=-np.inf)
     inner = padded[:, 1:-1]
     heights = np.where((inner >= padded[:, :-2]) & (inner >= padded[:, 2:]), inner, -np.inf)
@@ -484,17 +499,17 @@ def slopes_towards_ends(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Map from displacement gradients a little farther away to those next to free ends.
 
-    Nearer than ``_RANGE_AT_END`` a derivative of finite elements has less digits than these two series.
-    A remaining intensity, d^(a - 1), which the pressure's few moments do not contain and a free end does
-    not have, is subtracted up to ``_CLEARED``.
+    Nearer than ``_RANGE_AT_END`` a derivative of finite elements has fewer digits than two series have.
+    A remaining intensity, d^(a - 1), is subtracted up to ``_CLEARED``: a free end has none, and the few
+    moments of the pressure do not contain it.
 
     Args:
         X: positions over a, (n,).
         gaps: distances of the left and the right end from the nearest kink, over a.
-        exponents: a, at the left and at the right end.
+        exponents: exponents a at the left and at the right end.
 
     Returns:
-        Positions (m,) of the gradients that are needed, and the map from these, (n, m).
+        Positions over a of the gradients that are needed, (m,), and the map from these, (n, m).
     """
     places, rows = [X], [np.eye(len(X))]
     for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
@@ -513,8 +528,8 @@ def slopes_towards_ends(
     return np.concatenate(places), np.concatenate(rows, axis=1)
 
 
-#: Tops of the samples that are refined; samples that a polynomial goes through; places between the
-#: neighbours of a top.
+#: Most tops of the samples that are refined; samples that a polynomial goes through; places between the
+#: neighbours of a top at which it is evaluated.
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
 
 
@@ -522,9 +537,9 @@ def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float6
     """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
 
     Args:
-        solution: of one method, see :class:`galinx.solvers.solution.Solution`.
-        body: what slides over what.
-        sign: which of the two.
+        solution: states solved by any method, see :class:`galinx.solvers.solution.Solution`.
+        body: punch and half-plane, see :class:`galinx.solvers.solution.Body`.
+        sign: 1 for the highest, -1 for the lowest.
     """
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
@@ -547,13 +562,13 @@ def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float6
 
 
 def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
-    """Mask of positions, (n,) or (states, n), off all places of :func:`_infinite`, (states, n)."""
+    """Mask of positions X, (n,) or (states, n), away from places of :func:`_infinite`, (states, n)."""
     each = [~(np.abs(X - place[:, None]) <= reach) for place, reach in infinite]
     return np.logical_and.reduce(each)
 
 
 def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Both ends and kinks, where the curve may turn, and its limits or NaN, (states, k) each."""
+    """Positions of ends and kinks over a, and limits of σ_XX there, NaN for none, (states, k) each."""
     surface, ends = solution.surface, np.tile([-1.0, 1.0], (len(solution.g), 1))
     if surface.turns is not None:
         at = np.concatenate([ends, surface.turns.X], axis=1)
@@ -563,7 +578,7 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
 
 
 def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.float64], float]]:
-    """Places of infinite stresses, (states,), NaN for none, with the distance that does not count."""
+    """Positions of infinite stresses, (states,), NaN for none, and the excluded distance, all over a."""
     if body.pressure:
         sharp = np.tile(body.pressure.values[[0, -1]] != 0.0, (states, 1))
     else:
@@ -579,9 +594,9 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
     """Largest of curves, by polynomials through the samples around their highest tops, (states,).
 
     Args:
-        u: coordinate in which they are smooth, growing, (n,).
+        u: rising coordinate in which the curves are smooth, (n,).
         values: values of the curves, -inf where they do not count, (states, n).
-        pieces: number of the smooth piece of the curve to which a sample belongs, (states, n).
+        pieces: number of the smooth piece of its curve to which a sample belongs, (states, n).
     """
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
     inner = values[:, 1:-1]
@@ -625,12 +640,13 @@ def _between(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArra
     return np.where(inside, vertex, curve.max(axis=1))
 
 
-#: Most tops that are refined; places at a time; steps between them that are small enough.
+#: Most tops of a pressure that are refined; places evaluated at a time; distance between them over a at
+#: which refinement ends.
 _KINKED_TOPS, _PLACES_AT_A_TIME, _STEP = 4, 41, 2e-5
 
 
 def gaps_of(kinks: NDArray) -> tuple[float, float]:
-    """Distances of the left and the right end from the nearest kink, or from one another."""
+    """Distances over a of the left and the right end from the nearest kink, or 2 without kinks."""
     return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
 
 
@@ -640,13 +656,13 @@ class KinkedPressure:
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: the mesh's chart, see :class:`galinx.solvers.fem.cells.Chart`.
+        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
         forces: consistent nodal forces over N/2, (F p + 1,).
-        kinks: places of the kinks over a, in their order.
-        exponents: of the pressure at the left and the right end, positive.
-        exponent: of the distance from a kink with which the pressure leaves its value there; 1 where a
-            logarithm multiplies it; 0 where it is smooth enough for the cells, or infinite.
-        tolerance: relative, of its limit there.
+        kinks: rising positions of the kinks over a, (k,).
+        exponents: exponents of the pressure at the left and the right end, positive.
+        exponent: power of the distance d with which the pressure departs from its value at a kink; 1 for
+            d log d; 0 where the pressure is smooth enough for the cells, or infinite.
+        tolerance: relative error allowed for the limit at a kink.
     """
 
     def __init__(
@@ -674,11 +690,11 @@ class KinkedPressure:
 
     @property
     def breaks(self) -> NDArray[np.float64]:
-        """Positions over a between which it is a polynomial but for the chart's stretch, (n,)."""
+        """Positions over a between which pressure times the chart's stretch is a polynomial, (n,)."""
         return np.asarray(self._chart.surface_position(self._start[1:]))
 
     def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
-        """Lengths over a of the longer of both facets that meet at ends or kinks (n,), (n,)."""
+        """Length over a of the longer of the two facets that meet at each end or kink, (n,)."""
         edges = np.concatenate([[-1.0], self.breaks, [1.0]])
         lengths = np.pad(np.diff(edges), 1)
         i = np.abs(edges[:, None] - places).argmin(axis=0)
@@ -695,13 +711,13 @@ class KinkedPressure:
         for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)
-                near = (d >= 0.0) & (d < series.known.min())
+                near = (d >= 0.0) & (d < series.samples.min())
                 if near.any():
-                    σ[near] = series.through(self._piecewise(at + side * series.known))(d[near])
+                    σ[near] = series.through(self._piecewise(at + side * series.samples))(d[near])
         return σ
 
     def largest(self) -> tuple[float, float]:
-        """Largest pressure over N/(2a), and its place over a, by refinement around the best nodes."""
+        """Largest pressure over N/(2a), and its place X over a, by refinement around the best nodes."""
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         r = r[under_punch(r)]
@@ -714,9 +730,10 @@ class KinkedPressure:
         return max(peaks)
 
     def _nearer(self, low: float, high: float) -> tuple[float, float]:
+        """Largest pressure over N/(2a) between two positions over a, and its place over a."""
         step = 1.0
         while step > _STEP:
-            # Next to a kink it may have a cusp, which is no place that a grid would meet.
+            # At a kink the pressure may have a cusp, which no grid meets.
             r = np.linspace(low, high, _PLACES_AT_A_TIME)
             r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
             p = -self.σ_YY(r)
@@ -731,11 +748,12 @@ class KinkedPressure:
     def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
         """Stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
 
-        The innermost cells are so small that rounding of the nodal forces shows in their values.
+        A limit is taken because the innermost cells are so small that rounding of the nodal forces shows
+        in their values.
 
         Args:
-            number: of the kink.
-            values: at positions over a, (n,).
+            number: number of the kink, from the left.
+            values: function of positions over a, (n,), that gives the stress or strain, (n,).
         """
         if not self._exponent:
             return float(values(self.kinks[[number]])[0])
@@ -743,7 +761,7 @@ class KinkedPressure:
 
     @property
     def left_at_kinks(self) -> float:
-        """Error over N/(2a) of the limits at kinks, as the limits themselves show it."""
+        """Largest error over N/(2a) of the limits at kinks, measured on limits from both sides."""
         if not self._exponent:
             return 0.0
         return max(
@@ -758,7 +776,7 @@ class KinkedPressure:
         at, limits = self.kinks[number], np.empty(2)
         for i, side in enumerate((-1.0, 1.0)):
             series = self._series(number, side, farther)
-            limits[i] = series.through(values(at + side * series.known))(np.zeros(1))[0]
+            limits[i] = series.through(values(at + side * series.samples))(np.zeros(1))[0]
         return limits
 
     def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
@@ -768,6 +786,7 @@ class KinkedPressure:
         return towards_kink(float(gap), self._exponent, self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""
         at = self._chart.surface_coordinate(r)
         facet = np.clip(np.searchsorted(self._start, at, side="right") - 1, 0, len(self._start) - 1)
         values = lagrange(self._nodes, (at - self._start[facet]) / self._length[facet])

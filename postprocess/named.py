@@ -1,4 +1,4 @@
-"""Archives as named arrays."""
+"""Archives as xarray datasets: named arrays over states, positions and parameters."""
 
 from typing import Any
 
@@ -22,11 +22,14 @@ _POSITIONS = {
 
 
 def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
-    """Dataset over ``state``, and ``X_over_a`` or ``point``; paths become names, without ``states``.
+    """Quantities of an archive's states as an xarray dataset over ``state`` and positions.
+
+    Variables are named like the paths of an archive, with ``_`` for ``/`` and without ``states``. The
+    parameters that differ between states are coordinates.
 
     Args:
-        data: datasets by path.
-        attributes: of the archive's root.
+        data: datasets of the archive by path.
+        attributes: attributes of the archive's root.
     """
     rows, apart = table(), parameters(data)
     variables: dict[str, Any] = {}
@@ -50,10 +53,15 @@ def dataset(data: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
 
 
 def _has_names(row: Quantity) -> bool:
+    """True where all dimensions of a quantity have names."""
     return bool(row.over) and set(row.over) <= _DIMENSIONS.keys()
 
 
 def over_parameters(states: xarray.Dataset) -> xarray.Dataset:
-    """Dataset of arrays over ``c``, the law's parameters, ``motion`` and ``X_over_L``."""
+    """Dataset whose ``state`` is unfolded into ``c``, the law's parameters, ``motion`` and ``X_over_L``.
+
+    Args:
+        states: dataset over ``state``, see :func:`dataset`.
+    """
     apart = [name for name in states.coords if states[name].dims == ("state",)]
     return states.set_index(state=apart).unstack("state")

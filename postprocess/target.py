@@ -1,4 +1,4 @@
-"""Targets that a command writes to: existing files are not lost, and inputs are not overwritten."""
+"""Files that a command writes: existing ones are not lost, and inputs are not overwritten."""
 
 import mmap
 import os
@@ -15,24 +15,24 @@ from .errors import Occupied, UnwritableArchive, refused
 
 @dataclass(frozen=True)
 class Kind:
-    """Kind of file that a command makes, and so may make again.
+    """Kind of file that a command makes, and so may replace by a new one.
 
     Attributes:
-        noun: what messages call one.
-        looks: pattern that the whole of such a file matches from its beginning.
-        option: option by which another name is given.
-        asked: --overwrite may replace a file of another kind.
-        endings: endings that names may have, by which other programs know the kind; none for any.
+        noun: name of such a file in messages.
+        looks: pattern that the bytes of such a file match from their beginning.
+        option: option of the command line by which the file is named.
+        replaceable: True where --overwrite may replace a file of another kind.
+        endings: endings that names may have, by which other programs recognise the kind; none for any.
     """
 
     noun: str
     looks: re.Pattern[bytes]
     option: str = "-o"
-    asked: bool = True
+    replaceable: bool = True
     endings: tuple[str, ...] = ()
 
     def of(self, path: Path) -> bool:
-        """True where a file is of this kind."""
+        """True where the file of a path is of this kind."""
         with open(files.open_file(path), "rb") as file:
             if not os.fstat(file.fileno()).st_size:  # which cannot be mapped
                 return bool(self.looks.match(b""))
@@ -67,21 +67,21 @@ LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3}
 
 
 class Target:
-    """File to be made; whether it may be is checked here, before any work is done.
+    """File to be written. Permission to write it is checked when it is named, before any work is done.
 
     Args:
-        path: its name; where that is a link, what it points to is meant.
-        kind: kind of file that it replaces without --overwrite; none at all if not given.
-        overwrite: it replaces any file.
+        path: name of the file; a link stands for the file to which it points.
+        kind: kind of file that may be replaced without --overwrite; None for no file at all.
+        overwrite: replace any file.
         inputs: files that are read, and never replaced.
 
     Attributes:
-        path: as given.
+        path: the name as it was given.
         place: the name at the end of all links.
 
     Raises:
-        Occupied: something is there that may not be replaced, the folder does not exist, or the name has
-            the ending of another kind of file.
+        Occupied: a file of this name may not be replaced, the folder does not exist, or the name has the
+            ending of another kind of file.
     """
 
     def __init__(
@@ -112,10 +112,10 @@ class Target:
         """Write the file, whole or not at all.
 
         Args:
-            data: all of it, or pieces, each of which is made when the one before is written.
+            data: all bytes, or consecutive pieces, each of which is made when the last is written.
 
         Raises:
-            UnwritableArchive: the file system refused, or something has appeared there.
+            UnwritableArchive: the file system refused, or another file of this name has appeared.
         """
         needed = len(data) if isinstance(data, bytes) else 0
         try:
@@ -130,11 +130,11 @@ class Target:
         """Give a finished file its name.
 
         Args:
-            new: the file, at :attr:`place`.
-            needed: its size in bytes, for messages.
+            new: the finished file, to be named :attr:`place`.
+            needed: size of the file in bytes, for messages; 0 where it is unknown.
 
         Raises:
-            UnwritableArchive: the file system refused, or something has appeared there.
+            UnwritableArchive: the file system refused, or another file of this name has appeared.
         """
         try:
             now = self._there()
@@ -150,7 +150,8 @@ class Target:
             raise refused(self.path, error, needed) from error
 
     def _followed(self) -> Path:
-        if not os.path.islink(self.path):  # what cannot be examined is no link, and is refused below
+        """Path at the end of all links."""
+        if not os.path.islink(self.path):  # a path that cannot be examined is refused later
             return self.path
         try:
             return self.path.resolve(strict=True)
@@ -179,7 +180,7 @@ class Target:
             raise Occupied(f"{self.path} is protected against writing; {self._another}")
         if self._overwrite:
             return
-        or_else = ", or add --overwrite" if not self._kind or self._kind.asked else ""
+        or_else = ", or add --overwrite" if not self._kind or self._kind.replaceable else ""
         if not self._kind:
             raise Occupied(f"{self.path} exists; {self._another}{or_else}")
         try:
@@ -191,20 +192,20 @@ class Target:
 
 
 def as_target(path: Path | Target) -> Target:
-    """Target of a path; where it is a path alone, nothing is replaced."""
+    """Target of a path that replaces no file; a target is returned unchanged."""
     return path if isinstance(path, Target) else Target(path)
 
 
 class Folder:
-    """Folder to write several files into; it is made.
+    """Folder for several files, which is made if it does not exist.
 
     Args:
-        path: its name.
-        overwrite: files of any kind are replaced.
+        path: name of the folder.
+        overwrite: replace files of any kind.
         inputs: files that are read, and never replaced.
 
     Raises:
-        Occupied: something else has that name.
+        Occupied: a file has this name.
         UnwritableArchive: the file system refused.
     """
 
@@ -218,16 +219,16 @@ class Folder:
             raise refused(path, error) from error
 
     def target(self, name: str, kind: Kind) -> Target:
-        """Target of a file in the folder.
+        """Target of a file of some kind in the folder.
 
         Raises:
-            Occupied: something is there that may not be replaced.
+            Occupied: a file of this name may not be replaced.
         """
         return Target(self.path / name, kind, self._overwrite, self._inputs)
 
 
 def _same(path: Path, other: Path) -> bool:
-    """True where two names are of one file, or would be."""
+    """True where two names stand for the same file, existing or not."""
     try:
         return path.samefile(other)
     except OSError:

@@ -1,8 +1,8 @@
 """Motions in time: numbers from contact forces, comparison of both methods, distance from steady motion.
 
-Nodal forces that change in time give the centre of the pressure, and K_I at both ends. The rules by which
-two methods are compared on starts from rest are among those of all comparisons. How far a start is from
-steady motion, and when it is near, follows from the same numbers.
+Nodal forces that change in time give the load, the centre of the pressure, and K_I at both ends. Rules of
+comparison for starts from rest are registered here. The same numbers give the distance of a start from
+steady motion, and the time from which on it is small.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,16 +15,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
 from .compare import RULES, Rule
-from .quantities import over_time as of
 from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
 
-#: Moments of the pressure that elements give, over their degree: they have to represent the polynomials
-#: with which forces are tested, too. And how many fewer polynomials the smooth factor has: a wave that
-#: runs little faster than the punch is short under it.
+#: Moments of the pressure that elements give, over their degree: elements have to represent the
+#: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
+#: a wave that runs little faster than the punch is short under it.
 _MOMENTS, _FEWER = 2.5, 4
-#: Points that give moments of r log r.
+#: Points of the quadrature of moments of r log r.
 _POINTS = 400
 
 
@@ -33,10 +32,10 @@ class ContactNumbers:
     """Load, centre of the pressure and K_I from nodal forces at several times, (times,) each.
 
     Attributes:
-        load: over N.
-        centre: of the pressure over a.
-        K_left, K_right: normalised intensities at X = -a and X = a over the final load, by the exponents
-            of steady motion.
+        load: carried load over N.
+        centre: centre of the pressure over a.
+        K_left, K_right: normalised intensities at X = -a and X = a over the final load, dimensionless, by
+            the exponents of steady motion.
     """
 
     load: NDArray[np.float64]
@@ -51,10 +50,10 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     Tested with smooth functions, the forces give moments of the pressure.
 
     Args:
-        X: contact nodes over a, (nodes,).
-        forces: over N/2, (times, nodes), ∫σ_YY = -2 where all of the load is there.
+        X: positions of the contact nodes over a, (nodes,).
+        forces: nodal forces over N/2, (times, nodes); their sum is -2 under the whole load.
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
-        degree: of the elements.
+        degree: polynomial degree of the elements.
     """
     moments = ceil(_MOMENTS * degree)
     polynomials = moments - _FEWER
@@ -79,24 +78,24 @@ def _tests(X: NDArray, α: float, β: float, count: int) -> NDArray[np.float64]:
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:
-    """r log r of the distances from both ends, (2, points): what inertia adds there."""
+    """Terms r log r of the distances from both ends, (2, points), which inertia adds to the pressure."""
     return np.array([xlogy(r, r) for r in (1.0 + X, 1.0 - X)])
 
 
 def _squares(α: float, β: float, count: int) -> NDArray[np.float64]:
-    """Logarithm of ∫ w P_j² where α + β = -1."""
+    """Logarithm of ∫ w P_j² for α + β = -1, (count,)."""
     j = np.arange(1, count)
     first = gammaln(α + 1.0) + gammaln(β + 1.0)
     rest = gammaln(j + α + 1.0) + gammaln(j + β + 1.0) - gammaln(j + 1.0) - gammaln(j) - np.log(2.0 * j)
     return np.concatenate([[first], rest])
 
 
-#: Rules by name: of both methods, and of finite elements.
+#: Names of rules: for both methods, and for finite elements.
 BOTH, OF_FEM = "over time", "estimate over time"
 
-#: Centre of the pressure over a that is as good as none.
+#: Least centre of the pressure over a to which differences are relative.
 _NO_LEAN = 1e-2
-#: Indentation over N/(2μ) that is as good as none.
+#: Least indentation over N/(2μ) to which differences are relative.
 _NO_SINKING = 1e-2
 
 #: Numbers that both methods give.
@@ -104,21 +103,20 @@ COMPARED = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
 
 def largest_change(
-    found: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray, lean: ArrayLike = 0.0
+    histories: Sequence[NDArray], expected: Sequence[NDArray], load: NDArray, lean: ArrayLike = 0.0
 ) -> float:
-    """Largest difference of v₀, centre, K_I left and right (starts, times), over a start's largest.
+    """Largest difference of v₀, centre and K_I over time, relative to a start's largest, dimensionless.
 
-    The centre is multiplied by the load: where there is hardly any, it says hardly anything. K_I is over
-    that of the stronger end, and left out where it is NaN.
+    The centre is multiplied by the load: it is uncertain where there is hardly any load. K_I is relative
+    to that of the stronger end, and left out where it is NaN.
 
     Args:
-        found, expected: of both methods.
-        load: share of N, (times,).
-        lean: centre of steady motion, (starts, times), which counts among those of which the largest is
-            taken.
+        histories, expected: v₀, centre, K_I left and right by two methods, (starts, times) each.
+        load: load over N, (times,).
+        lean: centre of steady motion over a, (starts, times), counted when the largest centre is taken.
     """
     off, sizes = [], []
-    for n, (values, other) in enumerate(zip(found, expected)):
+    for n, (values, other) in enumerate(zip(histories, expected)):
         share = load if n == 1 else np.ones_like(load)
         off.append(np.abs((values - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
@@ -129,7 +127,7 @@ def largest_change(
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float:
-    """Largest difference of both methods, up to where the integral equation has numbers."""
+    """Largest difference of both methods at times at which the integral equation has a solution."""
     solved = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
     if not solved.any():
         return np.inf
@@ -138,9 +136,9 @@ def _both(data: Mapping[str, Any], _: Any) -> float:
 
 
 def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Centre of steady motion where friction changes, 0 elsewhere, (starts, times).
+    """Centre of steady motion over a where friction changes, 0 elsewhere, (starts, times).
 
-    Friction that changes faster than waves run has a steady lean that the pressure never comes to.
+    Where friction changes faster than waves run, the pressure never reaches this centre.
     """
     changing = np.ptp(data[rows.RATIOS.path], axis=-1) > 0.0
     return np.asarray(np.where(changing[:, None], data[rows.CENTRES.path], 0.0))
@@ -167,8 +165,8 @@ RULES.register(
 )
 
 
-#: How much the distance times the time may change over the second half of a motion that comes to steady
-#: motion like 1/t.
+#: Largest relative change of distance times time, over the second half of a motion, that counts as an
+#: approach to steady motion like 1/t.
 _STEADY_TAIL = 0.1
 
 
@@ -177,7 +175,7 @@ def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
 
     Args:
         data: datasets of starts from rest by path.
-        method: of solution.
+        method: name of the method of solution.
     """
     K, centre = data[rows.STEADY_K_I.path][:, None], data[rows.STEADY_CENTRE.path][:, None]
     of_K = [np.abs(data[row[method].path] / K - 1.0) for row in (rows.K_I_LEFT, rows.K_I_RIGHT)]
@@ -185,16 +183,16 @@ def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
 
 
 def times_near_steady(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
-    """Times from which on starts are within ``SHARES`` of steady motion, (starts, shares).
+    """Times over a/c_s from which on starts are within ``SHARES`` of steady motion, (starts, shares).
 
-    Where that is later than the last time, the distance is taken to fall like 1/t from there on, t from
-    when the load was half, if it does so to a tenth in the second half of that time; else it is NaN:
-    the motion is too short.
+    A time after the last one is extrapolated: the distance is taken to fall like 1/t, t from when half of
+    the load was applied. That is done if distance times t changes by a tenth at most in the second half
+    of the motion; else the motion is too short, and the time is NaN.
 
     Args:
         t: times over a/c_s, (times,).
-        load: over N, (times,).
-        off: how far they are, (starts, times).
+        load: load over N, (times,).
+        off: distances from steady motion, see :func:`from_steady`, (starts, times).
     """
     lacks, steps = np.concatenate([[1.0], 1.0 - load]), np.diff(t, prepend=0.0)
     begun = float(steps @ (lacks[1:] + lacks[:-1])) / 2.0
@@ -217,12 +215,12 @@ def times_near_steady(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.flo
 
 
 def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDArray[np.float64]]:
-    """Datasets of a method by path: distance from steady motion at the end, and times when near."""
+    """Datasets of a method by path: distance from steady motion at the end, and times of nearness."""
     off = from_steady(data, method)
-    off = np.where(np.isnan(off), np.inf, off)  # without K_I nothing is known to be near
+    off = np.where(np.isnan(off), np.inf, off)  # without K_I no state counts as near
     times, load = data[rows.TIMES.path], data[rows.LOAD.path]
     datasets = {
-        of.OFF[method].path: off[:, -1],
-        of.WITHIN[method].path: times_near_steady(times, load, off),
+        rows.OFF[method].path: off[:, -1],
+        rows.WITHIN[method].path: times_near_steady(times, load, off),
     }
     return {path: np.where(np.isfinite(values), values, np.nan) for path, values in datasets.items()}

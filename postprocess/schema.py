@@ -1,7 +1,8 @@
-"""Schema of archives: names, types, shapes, units and values; no command reads one that does not fit.
+"""Schema of archives: names, types, shapes, units and values of datasets and attributes.
 
-All follows from the table of quantities and from ``ATTRIBUTES``, the table of the root's attributes. A
-fault is a sentence that names the dataset or attribute, what was found and what was expected.
+The schema follows from the table of quantities and from ``ATTRIBUTES``, the table of the root's
+attributes. No command reads an archive that does not fit. A fault is a sentence that names the dataset or
+attribute, what was found and what was expected.
 """
 
 import hashlib
@@ -29,10 +30,10 @@ class Attribute:
     """Attribute of an archive's root: its meaning, and the values that it may have.
 
     Attributes:
-        about: what it says.
-        expected: what it may be, in words.
-        fits: true of the values that it may have, for whatever HDF5 gives.
-        since: first schema version that has it.
+        about: its meaning.
+        expected: allowed values in words.
+        fits: function of a value as HDF5 gives it, True for allowed values.
+        since: first schema version with this attribute.
     """
 
     about: str
@@ -42,7 +43,7 @@ class Attribute:
 
 
 def is_text(value: Any) -> bool:
-    """True of a text that can be written anywhere: HDF5 and JSON have some that UTF-8 has not."""
+    """True for a text that UTF-8 can encode: HDF5 and JSON can hold others."""
     try:
         return isinstance(value, str) and bool(value.encode() or True)
     except UnicodeEncodeError:
@@ -54,7 +55,7 @@ def _number(value: Any) -> bool:
         return False
     try:
         return isinstance(float(value), float)
-    except OverflowError:  # JSON's integers have no end
+    except OverflowError:  # integers of JSON may be of any size
         return False
 
 
@@ -86,7 +87,7 @@ def _list(value: Any) -> bool:
 
 
 def _constant(value: Any, depth: int = 2) -> bool:
-    """True of a text or a number, a list of them, or a table: what parameters of a solid may be."""
+    """True for a value that a parameter of a solid may have: a text or a number, a list or a table."""
     if isinstance(value, list) and depth:
         return all(_constant(entry, depth - 1) for entry in value)
     return is_text(value) or _number(value)
@@ -156,7 +157,7 @@ ATTRIBUTES = {
 }
 
 
-#: Version of the layout, and the first whose archives carry a digest of their bytes.
+#: Version of the layout, and the first version whose archives have a digest of their bytes.
 VERSION, SEALED = 4, 2
 
 #: Datasets that every run writes.
@@ -164,7 +165,7 @@ _ALWAYS = (
     runs.SCENE, states.MOTION, states.POSITION, states.SPEED, states.FRICTION, states.RATIO,
     runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F, runs.DONE, runs.SKIPPED, runs.SECONDS, runs.STEPS,
 )  # fmt: skip
-#: Positions of the values of these dimensions.
+#: Datasets of positions by the dimensions of other datasets that need them.
 _POSITIONS = {
     POINT: (stresses.SURFACE_X,), INSIDE: (stresses.INSIDE_X, stresses.INSIDE_Y),
     ALONG: (layers.ALONG_X,),
@@ -173,13 +174,13 @@ _POSITIONS = {
 
 @dataclass(frozen=True)
 class Described:
-    """Dataset as a file describes it.
+    """Description of a dataset in a file.
 
     Attributes:
-        type: ``"text"``, or numpy's name of its numbers' type.
+        type: ``"text"``, or numpy's name of the type of its numbers.
         shape: numbers of rows, columns, ….
-        attributes: its own, by name.
-        whole: all its values are in the file, numbers with a checksum.
+        attributes: attributes of the dataset by name.
+        whole: True where all values are in the file, numbers with a checksum.
     """
 
     type: str
@@ -189,11 +190,11 @@ class Described:
 
 
 def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Described]) -> list[str]:
-    """Faults of an archive that show before any of its values is read, one sentence each.
+    """Faults of an archive that are visible before any of its values is read, one sentence each.
 
     Args:
-        attributes: of the root, ``schema_version`` an integer.
-        datasets: by path.
+        attributes: attributes of the root, ``schema_version`` an integer.
+        datasets: descriptions of the datasets by path.
     """
     rows = table()
     sentences = [*_of_attributes(attributes), *_of_names(attributes, datasets, rows)]
@@ -247,7 +248,7 @@ def _of_dataset(name: str, dataset: Described, row: Quantity) -> Iterator[str]:
 
 
 def _of_shapes(datasets: Mapping[str, Described], rows: Mapping[str, Quantity]) -> Iterator[str]:
-    """Faults of shapes: one dimension has one size everywhere, that of most datasets."""
+    """Faults of shapes: a dimension has the same size in all datasets, that in most of them."""
     sizes: dict[str, Counter[int]] = {}
     fitting = {
         name: dataset for name, dataset in datasets.items() if len(dataset.shape) == len(rows[name].over)
@@ -261,7 +262,7 @@ def _of_shapes(datasets: Mapping[str, Described], rows: Mapping[str, Quantity]) 
         over = rows[name].over
         words = " × ".join(over) or "a single one"
         expected = tuple(most.get(dimension, 1) for dimension in over)
-        if runs.LINE in over:  # each has as many as it has to say
+        if runs.LINE in over:  # numbers of lines differ between datasets
             expected = dataset.shape if name in fitting else (0,)
         elif 0 in expected:
             yield f"{name}: found no {over[expected.index(0)]}, expected some"
@@ -270,15 +271,15 @@ def _of_shapes(datasets: Mapping[str, Described], rows: Mapping[str, Quantity]) 
 
 
 def faults_of_values(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
-    """Faults of the values of some datasets, one sentence each.
+    """Faults of the values of datasets, one sentence each.
 
     Args:
-        data: by path, of all states or some; the positions on the surface and the failures among them.
-        attributes: of the root, without faults.
+        data: datasets by path, of any states; the positions on the surface and the failures among them.
+        attributes: attributes of the root, without faults.
     """
     rows = table()
     sentences = [fault for name, values in data.items() for fault in _out_of_range(values, rows[name])]
-    excused = _says_so_itself(data, attributes)
+    excused = _reports_failures(data, attributes)
     return sentences + [
         f"{name}: found a number that is not finite, expected none"
         for name in not_finite(dict(data))
@@ -293,8 +294,8 @@ def _out_of_range(values: Any, row: Quantity) -> Iterator[str]:
             yield f"{row.path}: found {outside[0]:g}, expected numbers {row.range}"
 
 
-def _says_so_itself(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> bool:
-    """True where the archive reports states that have no solution, or a wrong one."""
+def _reports_failures(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> bool:
+    """True where the archive itself reports failed states or values that are not finite."""
     comparisons = json.loads(attributes["comparisons"])
     return len(data.get(runs.FAILURES.path, ())) > 0 or bool(comparisons.get(RULES[FINITE].text))
 
@@ -303,8 +304,8 @@ def faults_between(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> It
     """Faults where one dataset does not fit another, one sentence each.
 
     Args:
-        data: by path, of all states.
-        attributes: of the root, without faults.
+        data: datasets by path, of all states.
+        attributes: attributes of the root, without faults.
     """
     digest = hashlib.sha256(data[runs.SCENE.path].encode()).hexdigest()
     if digest != attributes["scene_sha256"]:

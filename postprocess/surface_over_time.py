@@ -1,8 +1,8 @@
-"""Rules of motions in time: works and energies, and stresses along the surface by both methods.
+"""Rules of comparison of motions in time: works and energies, and stresses along the surface.
 
-Works and energies have to balance, and both methods have to give the same works. Along the surface the
-stresses of finite elements are compared with the integral equation's, and with those of a coarser motion
-for an estimate of their error.
+Works and energies have to balance, and both methods have to give equal works. Along the surface the
+stresses of finite elements are compared with those of the integral equation, and with those of a coarser
+motion for an estimate of their error.
 """
 
 from collections.abc import Mapping
@@ -15,20 +15,20 @@ from galinx.solvers.contact import from_edge
 from galinx.solvers.transient.punch import ON_SURFACE
 
 from .compare import RULES, Rule
-from .quantities import over_time as energy
 from .quantities import over_time as rows
 from .quantities.over_time import LEFT, OF_FRICTION, OF_LOAD, RIGHT
 from .quantities.quantity import FEM, SIE, Quantity
 
-#: Rules by name.
+#: Names of rules.
 WORKS, BALANCE = "works over time", "energy over time"
 
-_DONE = OF_LOAD[FEM], OF_FRICTION[FEM], energy.CARRIED
-_HELD = energy.STRAIN, energy.KINETIC, energy.RADIATED
+#: Terms of the balance: works and energy that come in, and energies that are held or radiated.
+_DONE = OF_LOAD[FEM], OF_FRICTION[FEM], rows.CARRIED
+_HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
 
 
 def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Work that no energy accounts for, over the largest work of a motion, (motions, times)."""
+    """Work less energy, over the largest work of a motion, (motions, times)."""
     done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
@@ -46,10 +46,10 @@ def off_until_turn(data: Mapping[str, Any], rows: tuple[dict[str, Quantity], ...
 
     Args:
         data: datasets by path.
-        rows: histories by method, (motions, times) each.
+        rows: quantities by method whose histories are compared, (motions, times) each.
 
     Returns:
-        Dimensionless; None where the integral equation has none of them.
+        Dimensionless difference; None where the integral equation has no solution.
     """
     fem, sie = (np.array([data[row[method].path] for row in rows]) for method in (FEM, SIE))
     solved = np.isfinite(sie).all(axis=(0, 1))
@@ -78,28 +78,35 @@ RULES.register(
 )
 
 
-#: Distance over a from the edges, where stresses are infinite, further than which they are compared.
+#: Distance over a from the edges, where stresses are infinite; stresses further away are compared.
 NEAR = 0.01
-#: Stresses that are compared; friction's stress is the pressure's by a factor.
+#: Stresses that are compared; the shear stress is proportional to the pressure.
 COMPARED = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
 
 
-def largest_change(found: Any, expected: Any) -> float:
-    """Largest difference of stresses along the surface, over a motion's largest of each.
+def largest_change(stresses: Any, expected: Any) -> float:
+    """Largest difference of stresses along the surface, over a motion's largest, dimensionless.
 
     Args:
-        found, expected: of σ_XX and σ_YY, (motions, times, places) each.
+        stresses, expected: σ_XX and σ_YY by two methods, (motions, times, places) each.
     """
     far = from_edge(ON_SURFACE) > NEAR
     off, size = (
         np.abs(of[..., far]).max(axis=(-2, -1))
-        for of in (np.subtract(found, expected), np.asarray(expected))
+        for of in (np.subtract(stresses, expected), np.asarray(expected))
     )
     return float((off / size).max())
 
 
 def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict[str, NDArray]:
-    """Estimated error of a motion from two solutions; none where they have no stresses."""
+    """Estimated error of a motion's stresses from two successive solutions, by path.
+
+    Args:
+        before, now: datasets by path of the coarser and of the finer solution.
+
+    Returns:
+        A dataset by path, relative to the largest stress; empty where a solution has no stresses.
+    """
     of_both = [
         [of[row[FEM].path] for row in COMPARED] for of in (before, now) if COMPARED[0][FEM].path in of
     ]
@@ -107,7 +114,7 @@ def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict
 
 
 def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
-    """Datasets of a method's σ_XX, σ_YY and σ_XY, (3, times, places)."""
+    """Datasets by path of a method's σ_XX, σ_YY and σ_XY over N/(2a), (3, times, places)."""
     return dict(
         zip(
             (
@@ -120,12 +127,12 @@ def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
 
 
 def place_datasets(t: NDArray) -> dict[str, NDArray]:
-    """Datasets of the times and places of stresses along the surface."""
+    """Datasets by path of the times t over a/c_s, (times,), and places of stresses along the surface."""
     return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
 
 
 def _both(data: Mapping[str, Any], _: Any) -> float | None:
-    """Difference of both methods up to the first turn; None where no time of output is before it."""
+    """Largest difference of both methods up to the first turn; None without output before it."""
     solved = np.isfinite(data[COMPARED[0][SIE].path]).all(axis=(0, 2))
     if not solved.any():
         return None
@@ -139,13 +146,13 @@ def _estimate(data: Mapping[str, Any], _: Any) -> float:
 
 
 def _beside(data: Mapping[str, Any], _: Any) -> float | None:
-    """Difference of both methods beside the ends, over the largest at either end."""
+    """Largest difference of both methods' σ_XX beside the ends, over the largest at either end."""
     return off_until_turn(data, ENDS)
 
 
-#: Rules by name: of the surface by both methods, and by finite elements; of what is beside both ends.
+#: Names of rules: for the surface by both methods, for finite elements, and for places beside both ends.
 ALONG, OF_FEM, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
-#: σ_XX beside both ends, which is reported and not judged: waves ahead of a fast punch are short.
+#: σ_XX beside both ends; its difference is reported, not judged: waves ahead of a fast punch are short.
 ENDS = LEFT, RIGHT
 
 RULES.register(

@@ -1,8 +1,8 @@
-"""Finished parts of a run, kept beside the archive until that is complete.
+"""Finished parts of a run, kept beside the archive until the archive is complete.
 
-A killed HDF5 file cannot be opened again, so every part is a file of its own that appears at once or not
-at all. It says itself which rows it has, of which run; one that is damaged, or bears another's name, is
-not there. The folder's name is hidden: ``.NAME.work`` beside the archive ``NAME``.
+An HDF5 file whose writer was killed cannot be opened again. So every part is a file of its own, written
+whole or not at all. Each file names its run and its rows; a file that is damaged, or has the name of
+another part, is ignored. The files are in a hidden folder, ``.NAME.work`` beside the archive ``NAME``.
 """
 
 import fcntl
@@ -29,13 +29,14 @@ _MARK = "published"
 
 @dataclass(frozen=True)
 class Part:
-    """Results of some states.
+    """Results of consecutive states.
 
     Attributes:
-        rows: which rows of the archive.
-        data: datasets by path.
+        rows: rows of the archive that the states fill.
+        data: datasets of the states by path.
         comparisons: figures of comparisons over these states.
-        record: of the speed that ends with these rows, else None; numbers by name.
+        record: numbers by name on the computation of the speed that ends with these rows; None where no
+            speed ends.
     """
 
     rows: slice
@@ -45,7 +46,7 @@ class Part:
 
 
 def joined(parts: Sequence[Part]) -> Part:
-    """Single part from parts that follow one another, with the worst comparisons and the last record."""
+    """Single part from consecutive parts, with the worst comparisons and the last record."""
     if len(parts) == 1:
         return parts[0]
     data = {name: np.concatenate([part.data[name] for part in parts]) for name in parts[0].data}
@@ -58,30 +59,30 @@ def joined(parts: Sequence[Part]) -> Part:
 
 
 class Journal:
-    """The parts of a run that are finished; use it as a context manager.
+    """Finished parts of a run, as a context manager that locks them.
 
-    An error leaves the parts where they are, and their lock is given up even by a killed process.
+    After an error the parts stay; the lock is released even if the process is killed.
 
     Args:
-        target: the archive's final name.
-        key: what the parts depend on; parts of another key are not taken for these.
-        resume: go on with what an interrupted run left.
-        overwrite: give up what an interrupted run left.
+        target: final name of the archive.
+        key: text that identifies the run; parts of other keys are ignored.
+        resume: continue with the parts of an interrupted run.
+        overwrite: discard the parts of an interrupted run.
 
     Raises:
         ArchiveInUse: another run writes the same archive.
-        LeftOver: parts of an interrupted run are there, and neither ``resume`` nor ``overwrite`` says
-            what is to become of them; or those to go on with belong to another key.
+        LeftOver: an interrupted run left parts, but neither ``resume`` nor ``overwrite`` is set; or
+            ``resume`` is set, but all parts have other keys.
         UnwritableArchive: the file system refused.
     """
 
     def __init__(self, target: Path, key: str, resume: bool = False, overwrite: bool = False) -> None:
         self.target, self._key = target, key
-        #: Where the parts are, and what else belongs to the unfinished run.
+        #: Folder of the parts, and of other files of the unfinished run.
         self.folder = target.with_name(f".{target.name}.work")
         self._resume, self._overwrite = resume, overwrite
         self._lock: IO[bytes] | None = None
-        #: How many of the parts to go on with are damaged, or another run's: as good as not kept.
+        #: Number of parts that are damaged or of another run, and so are computed again.
         self.damaged = 0
         self._rows: set[tuple[int, int]] = set()
         self._complete = False
@@ -109,25 +110,25 @@ class Journal:
             self._lock.close()
 
     def leave(self) -> None:
-        """Tidy up for a process that ends, in order or at once: what is finished stays."""
+        """Clean up at the end of a process, regular or not: finished parts stay until all are archived."""
         if self._complete or not any(self._files()):
-            for path in self._files():  # before the mark: it says that they are not needed
+            for path in self._files():  # before the mark, which says that parts are not needed
                 path.unlink(missing_ok=True)
             shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
     def states(self) -> int:
-        """Number of states that are kept."""
+        """Number of states in the kept parts."""
         return sum(stop - start for start, stop in self._rows)
 
     def parts(self) -> Iterator[Part]:
-        """The kept parts in order of their rows; damaged ones are left out and will be done again."""
+        """Kept parts in the order of their rows, without damaged ones, which are computed again."""
         for key, part in filter(None, map(_load, self._files())):
             if key == self._key:
                 yield part
 
     def keep(self, part: Part) -> None:
-        """Keep a part.
+        """Write a part to a file of its own.
 
         Raises:
             UnwritableArchive: the file system refused.
@@ -137,14 +138,16 @@ class Journal:
             with files.NewFile(path) as new:
                 with new.temporary.open("wb") as file:
                     file.writelines(_packed(part, self._key))
-                # Not synchronised: what a power cut tears does not fit its digest, and is computed again.
+                # Not synchronised: after a power cut a torn file does not fit its digest and is ignored.
                 os.replace(new.temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
         self._rows.add((part.rows.start, part.rows.stop))
 
     def about_to_publish(self, archive: Path) -> None:
-        """Let whoever finds this folder know the archive that is to make it useless, should this end.
+        """Mark the folder with the identity of the archive that will make it useless.
+
+        If this process is killed after it has published the archive, a later run removes the folder.
 
         Args:
             archive: the finished file, before it gets its name.
@@ -155,7 +158,7 @@ class Journal:
         (self.folder / _MARK).write_text(_identity(archive), encoding="utf-8")
 
     def complete(self) -> None:
-        """The archive holds everything; the parts are no longer needed."""
+        """Declare the archive complete; the parts are removed at the end."""
         self._complete = True
 
     def _files(self) -> list[Path]:
@@ -187,7 +190,7 @@ class Journal:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove what runs left beside archives that they had published when they were killed."""
+    """Remove folders of runs that were killed after they had published their archives."""
     for mark in folder.glob(f".*.work/{_MARK}"):
         with suppress(OSError):
             archive = folder / mark.parent.name.removeprefix(".").removesuffix(".work")
@@ -196,7 +199,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _identity(archive: Path) -> str:
-    """Device, number, size and time of a file, which tell it from all others whatever its name is."""
+    """Device, number, size and time of a file, which identify it under any name."""
     about = archive.stat()
     return f"{about.st_dev} {about.st_ino} {about.st_size} {about.st_mtime_ns}"
 
@@ -216,9 +219,9 @@ def _packed(part: Part, key: str) -> Iterator[Any]:
 
 
 def _load(path: Path) -> tuple[str, Part] | None:
-    """Key of a part's run, and the part; None where it is damaged or bears another's name."""
+    """Key of a part's run, and the part; None if it is damaged or has the name of another part."""
     header, data = sealed.read(path) or ({}, {})
-    with suppress(Exception):  # whatever is wrong with a part, it is not there
+    with suppress(Exception):  # a part with any fault is ignored
         rows = slice(*header["rows"])
         if path.name == _name(rows):
             comparisons = [Comparison(**figure) for figure in header["comparisons"]]

@@ -1,24 +1,24 @@
 """Contact pressure, edge exponents and stress intensity factors from consistent nodal forces.
 
-Nodal forces tested with smooth functions give moments of the pressure that converge at twice the
-rate of the displacement. So K_I and the smooth pressure are taken from Jacobi moments, whose weight
-uses the exponents of the local edge analysis; the exponents reported for the finite elements are
-fitted from the raw pressure, which uses none. The largest contact pressure and its place follow from the
-smooth pressure.
+Nodal forces tested with smooth functions give moments of the pressure that converge at twice the rate of
+the displacement. So K_I and the smooth pressure follow from Jacobi moments, whose weight uses the
+exponents of the local edge analysis; the exponents reported for the finite elements are fitted to the raw
+pressure, for which none are assumed. The largest contact pressure and its place follow from the smooth
+pressure.
 
-All states of a speed are treated at once: what depends on the mesh alone is a small matrix, made once.
+All states of a speed are treated at once: a small matrix, made once, has all that depends on the mesh.
 
 **Pressures that change fast towards the ends**, as over thin layers, have functions of their own. Without
-its weight such a pressure varies over a length h next to the ends, and over the distance from the end
-farther away. In
+its weight such a pressure varies over a length h next to the ends, and farther away over the distance
+from the end. In
 
     ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
 
-it is smooth all over, and few Chebyshev polynomials of ζ follow it, whatever h is. Under a solid that is
-graded from the surface on it has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end besides,
-which no polynomial follows; the first of them, of u = d/(d + h/4) for d, stand before these. Where
-constants change much within h the powers left out fall slowly with the number of functions, and the last
-of these show what they add to the intensities.
+it is smooth everywhere, and few Chebyshev polynomials of ζ represent it for any h. On a solid that is
+graded from the surface on it also has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end, which
+no polynomial represents; the first of these terms, with u = d/(d + h/4) for d, stand before the
+polynomials. Where elastic constants change much within h, omitted powers decrease slowly with the number
+of functions, and the last functions measure their effect on the intensities.
 """
 
 from collections.abc import Callable
@@ -34,14 +34,14 @@ from scipy.special import gammaln, roots_legendre
 from galinx.solvers.contact import under_punch
 from galinx.solvers.layers.panelled import Panels
 
-#: Moments used. The pressure under a flat punch has one; further ones carry what the mesh, the
-#: truncation or another profile adds, and the highest say how well they are resolved.
+#: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
+#: another profile add further moments, and the highest measure how well these are resolved.
 MOMENTS = 9
 
 
 @dataclass(frozen=True)
 class JacobiPressure:
-    """Pressure of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r).
+    """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r), r = X/a.
 
     Attributes:
         α, β: exponents at X = a and X = -a, (states,).
@@ -68,21 +68,24 @@ class JacobiPressure:
 
     @property
     def unresolved(self) -> Any:
-        """Relative error that the last of the functions show, 0 where there are functions enough."""
+        """Relative error measured on the last of the functions; 0 for enough functions."""
         return 0.0
 
     @property
     def K_I(self) -> NDArray[np.float64]:
-        """Stress intensity factors at X = -a and X = a, dimensionless, as in Eqs 56-57: (states, 2)."""
+        """Stress intensity factors at X = -a and X = a, dimensionless as in Eqs 56-57, (states, 2)."""
         return -0.5 * self.factor(np.array([-1.0, 1.0]))
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
-    """Chebyshev coefficients of smooth factors that vanish at ends of the contact, without these zeros.
+    """Chebyshev coefficients of smooth factors divided by 1 + r or 1 - r where they vanish at an end.
 
     Args:
-        p: of the factors, (states, ``MOMENTS``).
-        zeros: true where a factor vanishes at r = -1 and at r = 1, (states, 2).
+        p: Chebyshev coefficients of the factors, (states, ``MOMENTS``).
+        zeros: True where a factor vanishes at r = -1 and at r = 1, (states, 2).
+
+    Returns:
+        Coefficients of the quotients, (states, ``MOMENTS``).
     """
     coefficients = np.array(p)
     for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
@@ -100,10 +103,10 @@ def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
 
 
 def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
-    """Pressure that has the given moments.
+    """Pressure with given moments.
 
     Args:
-        moments: ∫ σ_YY T_k dr of each state, (states, ``MOMENTS``).
+        moments: ∫ σ_YY T_k dr of each state over N/(2a), (states, ``MOMENTS``).
         α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
     """
     maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
@@ -114,7 +117,7 @@ def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
 def _to_factors(α: bytes, β: bytes) -> NDArray[np.float64]:
     """Maps from moments to coefficients of the smooth factor, (states, k, moments).
 
-    The levels on which an error is measured have the same exponents, so they are kept for a while.
+    Levels by which an error is measured have equal exponents, so recent maps are kept.
     """
     of = np.frombuffer(α), np.frombuffer(β)
     P = jacobi_in_chebyshev(*of)
@@ -139,7 +142,7 @@ def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
 
 
 def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
-    """∫ (1-r)^α (1+r)^β P_n² dr for α + β = -1, (states, n).
+    """Norms ∫ (1-r)^α (1+r)^β P_n² dr of Jacobi polynomials for α + β = -1, (states, n).
 
     Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
     """
@@ -151,12 +154,13 @@ def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class ContactRecovery:
-    """Linear maps from nodal forces to what is read off them; they depend on the mesh alone.
+    """Linear maps from nodal forces to moments and to the raw pressure; they depend on the mesh alone.
 
     Attributes:
-        moments: to ∫ σ_YY T_k dr, or those with other tests, (nodes, moments).
-        raw: to the raw pressure at the given positions, NaN outside the contact, (nodes, points).
-        edges: at X = a and X = -a: distances over a, (q,), and the map to the raw pressure there.
+        moments: map to ∫ σ_YY T_k dr, or to moments with other test functions, (nodes, moments).
+        raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
+        edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
+            there, (nodes, q).
     """
 
     moments: NDArray[np.float64]
@@ -164,12 +168,12 @@ class ContactRecovery:
     edges: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]
 
     def exponents(self, forces: NDArray) -> NDArray[np.float64]:
-        """Exponents at X = a and X = -a fitted from the raw pressure: (states, 2)."""
+        """Exponents at X = a and X = -a fitted to the raw pressure, (states, 2)."""
         return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
 
 
 def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
-    """Exponent of σ ~ d^α by least squares on the logarithms; NaN where the sign changes.
+    """Exponent of σ ~ d^α by least squares on the logarithms, (states,); NaN where the sign changes.
 
     Args:
         d: distances, (q,).
@@ -189,20 +193,20 @@ def contact_recovery(
     farthest: float = 1e-3,
     tests: Callable[[NDArray], NDArray] = chebyshev,
 ) -> ContactRecovery:
-    """Maps for the contact nodes of a mesh.
+    """Linear maps from nodal forces at the contact nodes of a mesh to moments and raw pressure.
 
-    The raw pressure is the piecewise polynomial that has the nodal forces: the contact's mass matrix is
-    solved, no exponent is assumed. The exponents are fitted at its Gauss points, where a polynomial
-    is best at what it cannot represent.
+    The raw pressure is the piecewise polynomial with these nodal forces: the mass matrix of the contact
+    is solved, and no exponent is assumed. Exponents are fitted at its Gauss points, where a polynomial
+    best approximates functions that it cannot represent.
 
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: the mesh's chart, see :class:`galinx.solvers.fem.cells.Chart`.
-        r: positions X/a of the raw pressure.
-        farthest: of the facets within this distance of an edge, over a, the fit uses the outer half,
-            two at least: the innermost cannot follow the singularity and disturb their neighbours,
-            and beyond this distance the pressure's second term biases the exponent.
+        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
+        r: positions X/a of the raw pressure, (points,).
+        farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
+            the outer half of them, two at least: the innermost cannot follow the singularity and disturb
+            their neighbours, and beyond this distance the pressure's second term biases the exponent.
         tests: smooth functions of r, (points, moments), with which forces are tested.
     """
     facets = facets_of(s, degree)
@@ -238,12 +242,12 @@ def facets_of(s: NDArray, degree: int) -> NDArray[np.int64]:
 
 
 def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[np.float64]:
-    """σ_YY dX/ds at the nodes, by the contact's mass matrix per surface coordinate.
+    """Density σ_YY dX/ds of nodal forces at the nodes, by the mass matrix of the contact, (n, ...).
 
     Args:
         s: surface coordinates of the contact nodes, (n,).
-        facets: their numbers, (F, p + 1).
-        forces: at the nodes, (n, ...).
+        facets: numbers of the nodes of each facet, (F, p + 1).
+        forces: forces at the nodes, (n, ...).
     """
     degree = facets.shape[1] - 1
     t, w = roots_legendre(degree + 1)
@@ -259,20 +263,20 @@ def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[n
 
 
 def reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
-    """Nodes of a facet over its length, from the widest: rounding of positions spoils the smallest."""
+    """Nodes of a facet over its length, (p + 1,), taken from the widest, which rounding affects least."""
     widest = facets[np.argmax(s[facets[:, -1]] - s[facets[:, 0]])]
     return (s[widest] - s[widest[0]]) / (s[widest[-1]] - s[widest[0]])
 
 
 def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """Values at t of the Lagrange polynomials of the nodes, all in [0, 1]: (len(t), len(nodes))."""
+    """Lagrange polynomials of nodes in [0, 1] at points t in [0, 1], (len(t), len(nodes))."""
     at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
     return at_t @ np.linalg.inv(at_nodes)
 
 
-#: Positions at which the largest pressure is sought first, rounds of refinement, by how much each
-#: refines, and the least distance.
-_SOUGHT_AT = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+#: Positions over a at which the search for the largest pressure starts, rounds of refinement, factor of
+#: each, and least distance between places.
+_STARTS = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
 _ROUNDS, _NEARER, _NEAREST = 6, 8.0, 1e-4
 #: Most tops that are refined, and three places around each.
 _TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
@@ -281,13 +285,13 @@ _TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
 def largest(
     pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value and its place over a, (states,) each, of a pressure that is smooth.
+    """Largest value of a smooth pressure and its place over a, (states,) each.
 
     Args:
-        pressure: gives it for all states at positions (n,), (states, n).
-        of_state: gives it for a state, by its number.
+        pressure: function of positions over a, (n,), that gives the pressure of all states, (states, n).
+        of_state: function of a state's number and positions (n,), that gives its pressure, (n,).
     """
-    p = pressure(_SOUGHT_AT)
+    p = pressure(_STARTS)
     inner = p[:, 1:-1]
     top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
     best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
@@ -299,8 +303,8 @@ def largest(
 def _nearer(
     of_state: Callable[[int, NDArray], NDArray], i: NDArray
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value and its place between the neighbours of a position of each state, (states,) each."""
-    places = _SOUGHT_AT[i[:, None] + [-1, 0, 1]]
+    """Largest value and its place between the neighbours of position i of each state, (states,) each."""
+    places = _STARTS[i[:, None] + [-1, 0, 1]]
     for _ in range(_ROUNDS):
         three = np.stack([of_state(k, x) for k, x in enumerate(places)])
         half = (places[:, 2] - places[:, 0]) / 2.0
@@ -317,21 +321,22 @@ def _nearer(
     return value, top
 
 
-#: Longest panel of the rule for products of polynomials, over 1 and over h.
+#: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.
 _FINE = 0.3
-#: Polynomials that measure how well a pressure is resolved, and over graded solids, where the remainder
-#: falls like a power of their number.
+#: Number of last polynomials that measure how well a pressure is resolved, and on graded solids, where
+#: the remainder falls like a power of their number.
 _LAST, _LAST_GRADED = 2, 4
-#: Remainder there over what these add, measured on layers whose moduli grow three to a hundred times.
+#: Remainder on graded solids over the part of the last polynomials, measured on layers whose moduli grow
+#: three to a hundred times.
 _TAIL = 4.0
-#: Highest power of the distance from an end that stands before polynomials with its logarithms.
+#: Highest power of the distance from an end, with its logarithms, among the functions of an end.
 _POWERS = 3
-#: Share of h beyond which these are nearly constant: the larger it is, the more nearly functions depend
-#: on one another.
+#: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
+#: nearly dependent.
 _SHARE = 0.25
-#: Functions of both ends.
+#: Number of functions of both ends.
 _OF_ENDS = _POWERS * (_POWERS + 1)
-#: How often functions are made orthonormal: rounding leaves them so but for a share the first time.
+#: Times that functions are made orthonormal: rounding spoils the first result.
 _TIMES = 2
 
 
@@ -340,21 +345,21 @@ class Stretch:
     """Functions of a coordinate stretched towards the ends, which follow a pressure without its weight.
 
     Attributes:
-        h: length over a.
-        graded: the solid is graded from the surface on.
+        h: length over a within which the pressure changes next to an end.
+        graded: True where the solid is graded from the surface on.
     """
 
     h: float
     graded: bool = False
 
     def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Stretched coordinate ζ in [-1, 1] at r."""
+        """Stretched coordinate ζ in [-1, 1] at r, in the shape of r."""
         r = np.asarray(r, dtype=float)
         ζ = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
         return np.asarray(np.clip(ζ / np.arcsinh(2.0 / self.h), -1.0, 1.0))
 
     def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Functions of the ends, then so many polynomials of ζ, (len(r), functions)."""
+        """Functions of the ends, then ``count`` polynomials of ζ, at r, (len(r), functions)."""
         if not self.graded:
             return chebyshev(self(r), count)
         with np.errstate(divide="ignore"):
@@ -362,7 +367,7 @@ class Stretch:
         return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)
 
     def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Functions of the ends before they are orthonormal, then polynomials: nearly dependent."""
+        """Functions as in :meth:`functions`, before they are orthonormal, (len(r), functions)."""
         columns = []
         for d in (1.0 - r, 1.0 + r):
             d = np.maximum(d, 0.0)
@@ -372,7 +377,7 @@ class Stretch:
         return np.column_stack([*columns, chebyshev(self(r), count)])
 
     def polynomials(self, functions: int) -> int:
-        """Number of polynomials among so many functions."""
+        """Number of polynomials among a number of functions."""
         return functions - _OF_ENDS * self.graded
 
 
@@ -380,12 +385,12 @@ class Stretch:
 def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
 
-    The functions depend on one another nearly, and what rounds their combinations is different at every
-    place. So combinations are those polynomials on panels that have these values at the rule's points,
-    wherever they are evaluated: pressure and tests then have the same functions.
+    The functions are nearly dependent, and rounding of their combinations differs from place to place. So
+    combinations are represented by polynomials on panels through their values at the points of the
+    quadrature, and evaluated by these everywhere: pressure and test functions are then equal.
 
     Returns:
-        Values at the points of the rule, (points, functions).
+        Values at the points of the quadrature, (points, functions).
     """
     rule = _rule(-0.5, -0.5, stretch)
     f, root = stretch.of_ends(rule.t, count), np.sqrt(rule.weights)[:, None]
@@ -396,7 +401,7 @@ def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class StretchedPressure(JacobiPressure):
-    """Pressure of several states, (1 - r)^α (1 + r)^β Σ c_k f_k(r), f of :class:`Stretch`."""
+    """Contact stress of several states, (1 - r)^α (1 + r)^β Σ c_k f_k(r), f of :class:`Stretch`."""
 
     stretch: Stretch = Stretch(1.0)
 
@@ -405,14 +410,15 @@ class StretchedPressure(JacobiPressure):
         return np.asarray(self.c @ self.stretch.functions(r, count).T)
 
     def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges of the contact are a length off, (states, points).
+        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
 
-        The pressure is stretched from the opposite edge; its moments change by what the functions do
-        over that way, and the more functions there are, the more of it is read as pressure at the ends.
+        The pressure is stretched from the opposite edge. Its moments change like the functions over the
+        length of the misplacement; the more functions there are, the more of this change appears as
+        pressure at the ends.
 
         Args:
             r: positions over a in [-1, 1], (points,).
-            length: over a.
+            length: misplacement of each edge over a.
         """
         count = self.c.shape[1]
         f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
@@ -427,7 +433,7 @@ class StretchedPressure(JacobiPressure):
 
     @property
     def unresolved(self) -> NDArray[np.float64]:
-        """The last functions' share of the factor at the ends, of the larger one, (states,)."""
+        """Share of the last functions in the larger smooth factor at both ends, (states,)."""
         ends, last = np.array([-1.0, 1.0]), _LAST_GRADED if self.stretch.graded else _LAST
         f = self.stretch.functions(ends, self.stretch.polynomials(self.c.shape[1]))
         added = np.abs(self.c[:, None, -last:] * f[:, -last:]).sum(axis=2)
@@ -438,7 +444,13 @@ class StretchedPressure(JacobiPressure):
 def stretched_from_moments(
     moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch
 ) -> StretchedPressure:
-    """Pressure that has the given moments ∫ σ_YY f_k dr, (states, moments)."""
+    """Pressure with given moments.
+
+    Args:
+        moments: ∫ σ_YY f_k dr of each state over N/(2a), f of the stretch, (states, moments).
+        α, β: exponents at X = a and X = -a, (states,).
+        stretch: functions that represent the smooth factor.
+    """
     c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
     for i, row in enumerate(moments):
         weights = _rule(float(α[i]), float(β[i]), stretch).weights
@@ -447,20 +459,28 @@ def stretched_from_moments(
 
 
 def _rule(α: float, β: float, stretch: Stretch) -> Panels:
-    """Quadrature of products of functions under the weight of these exponents, all at the same points."""
+    """Quadrature of products of functions under a weight; its points do not depend on the exponents."""
     return Panels(α, β, _FINE * min(1.0, stretch.h))
 
 
 @lru_cache(maxsize=8)
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
-    """Functions at the points of the rule, (points, count)."""
+    """Functions at the points of the quadrature, (points, count)."""
     return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
 
 
 @lru_cache(maxsize=8)
 def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
-    """Changes of functions at the rule's points where the right, or the left, edge is a length off:
-    (2, count, points)."""
+    """Changes of functions at the points of the quadrature where the right or the left edge is misplaced.
+
+    Args:
+        stretch: the functions.
+        count: number of the functions.
+        length: misplacement over a.
+
+    Returns:
+        Changes for either edge, (2, count, points).
+    """
     t = _rule(-0.5, -0.5, stretch).t
     inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
     moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]

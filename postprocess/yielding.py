@@ -1,15 +1,16 @@
-"""Yield by von Mises under a punch or a pressure: where, how deep, and the load at first yield.
+"""Yield by von Mises under a punch or a pressure: largest stresses, zones, and the load at first yield.
 
-**Finite stresses.** The largest stress below a pressure is sought, and how deep a stress is reached.
-Stresses vary over the distance to the pressure's knots, all of which lie on the surface. So the solid is
-sampled in depths that double, at places along X half the depth apart: the finer the shallower,
-and only where knots are as near to one another; and on the surface itself, between all knots. Where a
-contact ends, or its punch has a kink, stresses rise like a power of the distance: there the solid is
-sampled in circles whose radii grow, and the stress at the place itself is that of the limit.
+**Finite stresses.** Computed are the largest stress below a pressure, and the largest depth at which the
+yield strength is reached. Stresses vary over the distance to the pressure's knots, all of which lie on
+the surface. So the solid is sampled at depths that double, at places along X half the depth apart.
+Shallow places are sampled only where knots are close enough to one another. The surface itself is sampled
+between all knots. Where a contact ends, or its punch has a kink, stresses vary like a power of the
+distance: there the solid is sampled on circles of growing radii, and the limit gives the stress at the
+place itself.
 
 **Sharp edges.** At the two edges of a punch stresses are infinite, and yielded zones have a reach and a
-depth. Seen from an edge, every ray leaves the zone for good at one place. The farthest and the deepest of
-these are those of the zone, whatever its shape.
+depth. Every ray from an edge has a last point in the zone. The farthest and the deepest of these points
+give the reach and the depth of a zone of any shape.
 """
 
 from collections.abc import Callable
@@ -27,39 +28,42 @@ from galinx.solvers.solution import Body, Turns
 
 from .stresses import maximum_shear, von_mises
 
-#: Distances over a between which rays are sampled. Nearer, stresses are continued; farther, a punch no
-#: longer carries such a load.
+#: Distances over a between which rays are sampled. Nearer, stresses are extrapolated; no zone reaches
+#: farther under a load that a punch can carry.
 NEAREST, FARTHEST = 1e-4, 10.0
 
 #: Angles from the free surface to the punch, and places along a ray.
 _ANGLES, _PLACES = np.linspace(0.0, np.pi, 33), 43
 
-#: Rounds in which the best angle is found, and by how much the step between angles falls in each.
+#: Rounds of the search for the best angle, and factor by which the step between angles falls in each.
 _EDGE_ROUNDS, _EDGE_FINER = 3, 8.0
 
-#: Steps to the place on a ray where yield is reached, and how far its logarithm may be off.
+#: Steps to the place on a ray where yield is reached, and allowed residual of the stress's logarithm.
 _STEPS, _OFF = 5, 1e-8
 
 #: Both edges, for reach and then for depth: the side of the punch, and whether it is a depth.
 _SIDE, _DEEP = np.array([-1.0, 1.0, -1.0, 1.0]), np.array([False, False, True, True])
 
-#: Stress over the yield strength at points (states or 1, n, 2) over a, of every state: (states, n).
+#: Function that gives the stress of every state over the yield strength, (states, n), at points over a,
+#: (states or 1, n, 2).
 Stress = Callable[[NDArray], NDArray]
 
 
 def edge_places() -> NDArray[np.float64]:
-    """Places over a at which every state is sampled, ray by ray: from X = -a, then from X = a, (n, 2)."""
+    """Places X, Y over a on rays from X = -a, then from X = a, at which stresses are sampled, (n, 2)."""
     rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in (-1.0, 1.0))
     return np.concatenate([*rays])
 
 
 @dataclass(frozen=True)
 class Zones:
-    """Reach and depth over a of the zones in which yield is passed.
+    """Reach and depth over a of the zones at sharp edges in which the yield strength is exceeded.
+
+    Both are NaN where a zone extends beyond ``FARTHEST``.
 
     Attributes:
         reach: largest distance from X = -a and from X = a, each on its side of the middle, (states, 2).
-        depth: largest depth, (states,). NaN, in both, where a zone goes on beyond ``FARTHEST``.
+        depth: largest depth, (states,).
     """
 
     reach: NDArray[np.float64]
@@ -67,12 +71,12 @@ class Zones:
 
 
 def zones(stress: Stress, stresses: NDArray, exponents: NDArray) -> Zones:
-    """Reach and depth of the zones in which yield is passed, from the stresses along rays.
+    """Reach and depth over a of the zones in which the yield strength is exceeded, from sharp edges.
 
     Args:
-        stress: von Mises over the yield strength.
-        stresses: that stress at :func:`places`, (states, n).
-        exponents: power of the distance of stresses next to X = -a and to X = a, (states, 2).
+        stress: von Mises stress over the yield strength.
+        stresses: von Mises stress over the yield strength at :func:`edge_places`, (states, n).
+        exponents: powers of the distance of stresses next to X = -a and to X = a, (states, 2).
     """
     rays = _Rays(stress, -np.tile(exponents, 2))
     at_edges = _log(stresses).reshape(len(stresses), 2, *_grid().shape)
@@ -83,23 +87,29 @@ def zones(stress: Stress, stresses: NDArray, exponents: NDArray) -> Zones:
 
 
 def _points(side: float | NDArray, φ: NDArray, r: NDArray) -> NDArray[np.float64]:
-    """Points at a distance from an edge over a and an angle from the free surface, (..., 2)."""
+    """Points X, Y over a from polar coordinates at an edge, (..., 2).
+
+    Args:
+        side: the edge's X over a.
+        φ: angles from the free surface.
+        r: distances over a.
+    """
     along = (φ <= 0.0) | (φ >= np.pi)  # the surface, to the last digit
     return np.stack([side * (1.0 + r * np.cos(φ)), np.where(along, 0.0, -r * np.sin(φ))], axis=-1)
 
 
 def _end(φ: NDArray) -> NDArray[np.float64]:
-    """Logarithm of the distance at which a ray meets the middle of the punch, or that of the farthest."""
+    """Logarithm of a ray's length over a, in the shape of φ: up to X = 0, or up to ``FARTHEST``."""
     return -np.log(np.maximum(-np.cos(φ), 1.0 / FARTHEST))
 
 
 def _grid() -> NDArray[np.float64]:
-    """Logarithms of the distances at which every ray is sampled, (angles, places)."""
+    """Logarithms of the distances over a at which every ray is sampled, (angles, places)."""
     return np.linspace(np.log(NEAREST), _end(_ANGLES), _PLACES, axis=-1)
 
 
 def _log(stress: NDArray) -> NDArray[np.float64]:
-    return np.log(np.maximum(stress, np.finfo(float).tiny))  # without friction the free surface has none
+    return np.log(np.maximum(stress, np.finfo(float).tiny))  # 0 on the free surface without friction
 
 
 def _height(φ: NDArray) -> NDArray[np.float64]:
@@ -109,24 +119,24 @@ def _height(φ: NDArray) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class _Rays:
-    """Rays from the edges; t is the logarithm of a distance.
+    """Rays from the edges, on which t is the logarithm of the distance over a.
 
     Attributes:
-        stress: von Mises over the yield strength.
-        power: with which stresses fall next to the edges, (states, 4).
+        stress: von Mises stress over the yield strength.
+        power: power of the distance with which stresses fall next to the edges, (states, 4).
     """
 
     stress: Stress
     power: NDArray[np.float64]
 
     def on_grid(self, L: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Approximate places where rays leave the zone, and how fast stresses fall there.
+        """Approximate places where rays leave the zone, and slopes of the stress there.
 
         Args:
             L: logarithm of the stress along the rays of the grid, (states, 2, angles, places).
 
         Returns:
-            t, dL/dt, and whether the zone goes on beyond ``FARTHEST``, (states, 2, angles) each.
+            t, dL/dt, and True where the zone extends beyond ``FARTHEST``, (states, 2, angles) each.
         """
         t, j, end = _grid(), np.arange(len(_ANGLES)), L.shape[-1] - 1
         passed = L >= 0.0
@@ -142,8 +152,8 @@ class _Rays:
         """Logarithms t of the distances at which rays leave the zone, (states, 4, n); -inf for none.
 
         Args:
-            φ: angles.
-            t, slope: guesses of the place, and of dL/dt there, (states, 4).
+            φ: angles of the rays, (states, 4, n).
+            t, slope: guesses of t and of dL/dt at these places, (states, 4).
         """
         t, slope = t[..., None] + 0.0 * φ, slope[..., None] + 0.0 * φ
         L = self._logarithm(φ, t)
@@ -157,9 +167,9 @@ class _Rays:
         return np.where(np.abs(L) <= _OFF, np.minimum(t - L / slope, _end(φ)), -np.inf)
 
     def _logarithm(self, φ: NDArray, t: NDArray) -> NDArray[np.float64]:
-        """Logarithm of the stress at angles φ and t, (states, 4, n); beyond a ray's end it falls on.
+        """Logarithm of the stress at angles φ and t, (states, 4, n); it falls further beyond a ray's end.
 
-        Nearer than ``NEAREST`` it is a power of the distance r, times 1 + B r.
+        Nearer than ``NEAREST`` the stress is a power of the distance r, times 1 + B r.
         """
         first, end = np.log(NEAREST), _end(φ)
         r = np.exp(np.clip(t, first, end))
@@ -174,11 +184,11 @@ class _Rays:
 
 
 def _largest(rays: _Rays, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
-    """Largest distance at which a ray leaves the zone, or depth, (states, 4).
+    """Largest distance over a at which a ray leaves the zone, then largest depth, (states, 4).
 
     Args:
-        rays: the rays.
-        t, slope: on the grid, (states, 4, angles).
+        rays: rays from both edges.
+        t, slope: approximate t and dL/dt of rays of the grid, (states, 4, angles).
     """
     unit = t.max(axis=-1)  # distances themselves may be too small for squares
     best = np.argmax(np.exp(t - unit[..., None]) * _height(_ANGLES), axis=-1)[..., None]
@@ -212,28 +222,29 @@ def vertex(values: NDArray) -> NDArray[np.float64]:
 #: Depth over a to which the solid is sampled.
 _DEEPEST = 10.0
 
-#: Places along X: their distance over the depth; how far from a knot, in these; and how much wider than
-#: the depth a piece has to be for that depth to be left out: the surface stands for it.
+#: Places along X: their distance over the depth; number of them on either side of a knot; and width of a
+#: piece over the depth above which this depth is left out, since the surface represents it.
 _APART, _AROUND, _SHALLOW = 0.5, 4, 4.0
 
 #: Places on the surface between two knots.
 _BETWEEN = 4
 
-#: Radii of circles around a place where stresses have a power of the distance, over that of the next
-#: smaller one, and directions from there, along the surface and down.
+#: Circles around a place where stresses vary like a power of the distance: radius over that of the next
+#: smaller circle, and directions from there, along the surface and down.
 _WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
 
-#: Places from which the largest is sought, and most rounds of it; by how much the step falls where it is
-#: near, and below which share of the first a round that finds nothing better is the last.
+#: Places from which the search for the largest value starts, and most rounds of it; factor by which the
+#: step falls near the largest; and least step over the first one, at which a round without a better value
+#: is the last.
 _STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
-#: Rounds after which the best starts alone go on, and how many these are.
+#: Number of rounds after which only the best starts go on, and number of these.
 _ALL_OF_THEM, _BEST = 3, 3
-#: How far around a place none may be better, over its step; and the least stress of a start, over the
-#: largest.
+#: Distance from a start, over its step, within which no place may have a larger value; and least stress
+#: of a start over the largest.
 _OWN, _LEAST = 1.5, 0.7
 
-#: Halvings towards a depth, and the factor of the distance of places along X in each: it has to follow a
-#: largest stress that moves as the depth changes.
+#: Halvings towards a depth, and factor of the distance between places along X in each: places have to
+#: follow a largest stress that moves as the depth changes.
 _HALVINGS, _NEARER = 30, 0.7
 
 _STENCIL = np.array([(u, w) for u in (-1.0, 0.0, 1.0) for w in (-1.0, 0.0, 1.0)])
@@ -260,14 +271,14 @@ class Levels:
     """Levels of depth below a pressure at which the solid is sampled.
 
     Attributes:
-        knots: of the pressure over a, in their order.
+        knots: rising positions over a of the pressure's knots, (k,).
     """
 
     knots: NDArray[np.float64]
 
     @cached_property
     def _by_level(self) -> list[tuple[NDArray, NDArray, NDArray]]:
-        """X and Y of the places of every level over a, and steps between them, (n,) each."""
+        """X and Y over a of the places of every level, and steps over a between them, (n,) each."""
         width = np.diff(self.knots)
         narrow = np.minimum(np.append(width, np.inf), np.append(np.inf, width))
         levels = [_on_surface(self.knots, width)]
@@ -291,7 +302,7 @@ class Levels:
         return np.concatenate([step for *_, step in self._by_level])
 
     def best(self, values: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Number of the best place of each level, and the value at it, (states, levels) each.
+        """Number of the place with the largest value on each level, and the value, (states, levels) each.
 
         Args:
             values: stress at :attr:`places`, (states, n).
@@ -302,13 +313,15 @@ class Levels:
         return best, np.take_along_axis(values, best, 1)
 
     def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
-        """Depth over a of the deepest place at which a stress is 1 or more, 0 where it is so nowhere.
+        """Depth over a of the deepest place at which a stress is 1 or more, (states,); 0 without any.
 
         Args:
-            stress, there, peak: as in :func:`peak`.
+            stress: function that gives the stress at points.
+            there: stress at :attr:`places`, (states, n).
+            peak: largest stress, see :func:`peak`.
 
         Returns:
-            (states,); NaN where the zone goes on beyond all places.
+            Depths, NaN where the zone extends below all places.
         """
         best, values = self.best(there)
         passed, rows = values >= 1.0, np.arange(len(there))
@@ -326,14 +339,14 @@ class Levels:
 
 
 def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places around others on the surface, and distances from each to its neighbours.
+    """Places on circles around centres on the surface, and distances between neighbours.
 
     Args:
-        centres: X over a of those of every state, (states, k); NaN for none.
+        centres: X over a of every state's centres, (states, k); NaN for none.
         nearest: radius over a of the smallest circle.
 
     Returns:
-        Arrays (states, n, 2) and (n,).
+        Places X, Y over a, (states, n, 2), and distances over a from each to its neighbours, (n,).
     """
     radii = 1.0 / _WIDER ** np.arange(np.ceil(-np.log(nearest) / np.log(_WIDER)) + 1.0)
     r, φ = (grid.ravel() for grid in np.meshgrid(radii, _DIRECTIONS, indexing="ij"))
@@ -344,13 +357,13 @@ def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDAr
 
 
 def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Peak:
-    """Largest stress of all places, and where it is.
+    """Largest stress in the solid, and its place, from samples and a search around the largest of them.
 
     Args:
-        stress: the stress.
-        places: places over a sampled for all states (1, n, 2) or for each (states, n, 2).
-        steps: distances from each to its neighbours, (n,).
-        there: stress at these, (states, n).
+        stress: function that gives the stress at points.
+        places: sampled places X, Y over a, for all states (1, n, 2) or for each (states, n, 2).
+        steps: distances over a from each place to its neighbours, (n,).
+        there: stress at the places, (states, n).
     """
     starts = _starts(places, steps, there)
     climb = _Climb(np.take_along_axis(places, starts[..., None], 1), steps[starts])
@@ -365,7 +378,7 @@ def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Pea
 
 
 def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64]:
-    """Numbers of the best places without a better one around, (states, ``_STARTS``)."""
+    """Numbers of the places with the largest values among neighbours, (states, ``_STARTS``)."""
     numbers = np.empty((len(there), _STARTS), dtype=np.int64)
     for i, values in enumerate(there):
         if i < len(places):
@@ -378,7 +391,7 @@ def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64
 
 
 def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """Places on the surface: the knots, between them, and beside both ends; X, Y and steps, (n,) each."""
+    """Places on the surface at, between and beside the knots: X, Y and steps over a, (n,) each."""
     share = np.arange(_BETWEEN) / _BETWEEN
     between = (knots[:-1, None] + width[:, None] * share).ravel()
     r_left, r_right = (np.geomspace(w / _BETWEEN, _DEEPEST, 40) for w in width[[0, -1]])
@@ -390,18 +403,18 @@ def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArr
 
 
 class _Climb:
-    """Climb from some places up to the largest value near each.
+    """Search for the largest value near each of several places.
 
-    A quadratic function is fitted to the values at nine places. Where these turn out to be no better
-    than the best before, as at a kink, the next nine lie closer around that.
+    A quadratic function is fitted to the values at nine places. Where none of these exceeds the largest
+    value so far, as at a kink, the next nine lie closer around its place.
 
     Args:
-        places: to begin with, (states, starts, 2).
-        steps: from each to its neighbours, (states, starts).
+        places: places over a at which the search starts, (states, starts, 2).
+        steps: distances over a from each to its neighbours, (states, starts).
 
     Attributes:
-        top, value: the best place, and the value there.
-        done: more rounds would find nothing better.
+        top, value: place of the largest value, (states, starts, 2), and the value, (states, starts).
+        done: True where further rounds would give no larger value.
     """
 
     def __init__(self, places: NDArray, steps: NDArray) -> None:
@@ -410,7 +423,7 @@ class _Climb:
         self.done = False
 
     def keep(self, count: int) -> None:
-        """Go on from so many starts, those with the largest values."""
+        """Restrict the search to the ``count`` starts with the largest values."""
         starts = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
         self.value, self._h, self._least = (
             np.take_along_axis(x, starts, 1) for x in (self.value, self._h, self._least)
@@ -420,10 +433,10 @@ class _Climb:
         )
 
     def take(self, stress: Stress) -> None:
-        """Evaluate the stress at nine places around each, and step."""
+        """Evaluate the stress at nine places around each middle, and move the middles."""
         h = self._h[..., None]
         middle = self._middle
-        middle[..., 1] = np.minimum(middle[..., 1], -self._h)  # none lies above the surface
+        middle[..., 1] = np.minimum(middle[..., 1], -self._h)  # no place lies above the surface
         nine = middle[..., None, :] + h[..., None] * _STENCIL
         nine[..., 1] = np.minimum(nine[..., 1], 0.0)
         shape = nine.shape[:-1]
@@ -444,7 +457,7 @@ class _Climb:
 
 
 def _summit(values: NDArray) -> NDArray[np.float64]:
-    """Place of the fitted quadratic function's largest value, in steps; without one the best of nine."""
+    """Place of the fitted quadratic's largest value, in steps, (..., 2); without any the best of nine."""
     with np.errstate(invalid="ignore", divide="ignore"):
         _, u, w, uu, uw, ww = np.moveaxis(values @ _FIT.T, -1, 0)
         determinant = 4.0 * uu * ww - uw**2
@@ -456,7 +469,13 @@ def _summit(values: NDArray) -> NDArray[np.float64]:
 
 
 def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDArray[np.float64]:
-    """Depth between two, the inner of which passes 1 near X, of the last place that does, (states,)."""
+    """Largest depth at which the stress reaches 1, by bisection, (states,).
+
+    Args:
+        stress: function that gives the stress at points.
+        X: positions over a near which the stress is largest, (states,).
+        inner, outer: depths over a at which it reaches 1, and at which it does not, (states,).
+    """
     apart = (outer - inner) * _APART
     for _ in range(_HALVINGS):
         y = (inner + outer) / 2.0
@@ -472,43 +491,44 @@ def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDAr
     return inner
 
 
-#: σ_XX, σ_YY, σ_XY at points (states or 1, n, 2) over a with Y <= 0: (3, states, n).
+#: Function that gives σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points over a with Y <= 0,
+#: (states or 1, n, 2).
 Field = Callable[[NDArray], NDArray]
 
 
-#: Knots of a pressure without a jump, off its very ends, at which finite elements have no gradients.
+#: Knots over a that stand for a smooth pressure; at the ends finite elements have no gradients.
 _SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
 
 
-#: Factor that covers the rounding of a distance.
+#: Factor that covers rounding of a distance.
 _HARDLY = 1.0 - 1e-9
 
 
 def places(body: Body) -> NDArray[np.float64]:
-    """Places over a at which the stresses of every state are sampled, (n, 2)."""
+    """Places X, Y over a at which the stresses of every state are sampled, (n, 2)."""
     knots = _knots(body)
     return edge_places() if knots is None else Levels(knots).places
 
 
 def _knots(body: Body) -> NDArray[np.float64] | None:
-    """Places over a where a finite pressure may change its course; None of a punch with edges."""
+    """Knots over a of a finite pressure, (k,); None under a punch with infinite stresses."""
     if body.pressure:
         return body.pressure.knots
     return _SMOOTH if body.finite else None
 
 
 class Strength:
-    """Yield of some states at one speed.
+    """Yield of states at one speed.
 
     Args:
-        field: their stresses, of one method.
-        body: punch or pressure, and solid with a yield strength.
-        response: of the half-plane at that speed.
+        field: function that gives the stresses of the states by any method.
+        body: punch or prescribed pressure, and solid with a yield strength.
+        response: response of the half-plane at this speed.
         g: σ_XY/σ_YY under the punch, (states,).
-        local: exponents α at X = a and β at X = -a, (states,); of a punch.
-        half_width: of each state's contact [m], (states,), with free ends.
-        turns: limits of stresses at places where they have a power of the distance.
-        nearest: distance over a from such places from which on the field is good.
+        local: exponents α at X = a and β at X = -a of a punch, (states,) each.
+        half_width: half-width of each state's contact [m], (states,); None without free ends.
+        turns: limits of stresses at places where they vary like a power of the distance.
+        nearest: least distance over a from such places at which the field is accurate.
     """
 
     def __init__(
@@ -525,29 +545,29 @@ class Strength:
         self._field, self._body, self._local = field, body, local
         self._turns, self._nearest = turns, nearest
         ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
-        #: Which states have an infinite stress where the pressure ends in a jump, (states,).
+        #: True for states whose stress is infinite where the pressure ends in a jump, (states,).
         self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
         assert body.yield_strength
         unit = body.stress if half_width is None else body.load / (2.0 * half_width)
-        #: Yield strength in the unit of stresses, (states,).
+        #: Yield strength over N/(2a), (states,).
         self.strength = np.broadcast_to(body.yield_strength / unit, np.shape(g))
 
     @cached_property
     def von_mises(self) -> Peak:
-        """Largest von Mises stress of a pressure."""
+        """Largest von Mises stress over N/(2a) below a finite pressure, NaN where it is infinite."""
         return self._peak(self._von_mises, 0)
 
     @cached_property
     def shear(self) -> Peak:
-        """Largest shear stress in the plane of a pressure."""
+        """Largest shear stress in the plane over N/(2a) below a finite pressure, NaN where infinite."""
         return self._peak(lambda points: maximum_shear(*self._field(points)), 1)
 
     @property
     def first_load(self) -> NDArray[np.float64]:
-        """Load N per depth at which a pressure makes the solid yield somewhere [N/m], (states,).
+        """Load N per depth at which the solid begins to yield under a finite pressure [N/m], (states,).
 
-        Stresses grow like the load; under a punch of the height c|X|^k like its power 1 - 1/k, because
-        the contact grows, too.
+        Stresses are proportional to the load; under a punch of the height c|X|^k to its power 1 - 1/k,
+        because the contact grows, too.
         """
         k = exponent(self._body.profile) if self._body.found else None
         power = k / (k - 1.0) if k else 1.0
@@ -561,12 +581,12 @@ class Strength:
 
     @property
     def reach(self) -> NDArray[np.float64]:
-        """Distance over a from X = -a and from X = a within which yield is passed, (states, 2)."""
+        """Reach over a of the yielded zones from X = -a and from X = a, (states, 2)."""
         return self._zones.reach
 
     @property
     def depth(self) -> NDArray[np.float64]:
-        """Depth over a to which the solid yields at the load, (states,)."""
+        """Largest depth over a at which the solid yields under the load, (states,)."""
         if _knots(self._body) is None:
             return self._zones.depth
         there, peak = self._invariants[0] / self.strength[:, None], self.von_mises
@@ -581,13 +601,13 @@ class Strength:
 
     @cached_property
     def _invariants(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Von Mises and largest shear stress at :func:`places`, (states, n)."""
+        """Von Mises and largest shear stress over N/(2a) at :func:`places`, (states, n) each."""
         return self._both(self._field(places(self._body)[None]))
 
     def _both(self, σ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Von Mises and largest shear stress, (states, n), of stresses (3, states, n)."""
+        """Von Mises and largest shear stress, (states, n) each, from stresses (3, states, n)."""
         invariants = self._von_mises_of(σ), maximum_shear(*σ)
-        # At a jump, where they are NaN, there is nothing to climb to.
+        # At a jump of the pressure they are NaN; 0 keeps the search away.
         of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in invariants)
         return of_mises, of_shear
 
@@ -603,7 +623,7 @@ class Strength:
 
     @cached_property
     def _near_turns(self) -> tuple[NDArray, NDArray, tuple[NDArray, NDArray]] | None:
-        """Places around where stresses turn, steps there, and both stresses; None without any."""
+        """Places around turns of the stresses, steps between them, both stresses; None without turns."""
         if self._turns is None:
             return None
         centres = np.where(np.isnan(self._turns.X), self._turns.X[:, :1], self._turns.X)
@@ -613,7 +633,7 @@ class Strength:
         return around, steps, self._both(self._field(around))
 
     def _off_turns(self, stress: Callable[[NDArray], NDArray]) -> Callable[[NDArray], NDArray]:
-        """The stress, NaN nearer to where stresses turn than the field is good."""
+        """Function of points that is NaN nearer to turns than the field is accurate, else the stress."""
         if self._turns is None:
             return stress
         X = self._turns.X

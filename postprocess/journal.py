@@ -110,7 +110,7 @@ class Journal:
             self._lock.close()
 
     def leave(self) -> None:
-        """Clean up at the end of a process, regular or not: finished parts stay until all are archived."""
+        """Clean up at the end of a process, regular or not: finished parts of an unfinished run stay."""
         if self._complete or not any(self._files()):
             for path in self._files():  # before the mark, which says that parts are not needed
                 path.unlink(missing_ok=True)

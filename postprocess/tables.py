@@ -1,7 +1,7 @@
 """Tables as text: states, limits of the answers, friction loops, sliders, motions in time.
 
-Quantities are written as archived, or scaled to other units. The states of an archive are told apart by
-their parameters: speed, load, the law's constants, motion and position.
+Quantities are written as archived, or scaled to other units. States of an archive are identified by their
+parameters: speed, load, the law's constants, motion and position.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -29,10 +29,10 @@ from .quantities.states import LOAD, MOTION, POSITION, SPEED
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
-    """Parameters that tell an archive's states apart, by their datasets' paths, slowest first.
+    """Parameters that identify an archive's states, by the paths of their datasets, slowest first.
 
     Args:
-        data: datasets by path.
+        data: datasets of the archive by path.
     """
     rows = {path: row for path, row in table().items() if row.symbol and path in data}
     first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
@@ -43,8 +43,8 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
 class Scaled(NamedTuple):
     """Name, unit and scale with which a quantity is written.
 
-    Numbers are multiplied by the factor, then the offset is added: one number, or one of each state,
-    (states,), where contacts of states differ.
+    Numbers are multiplied by the factor, then the offset is added. Both are numbers, or arrays (states,)
+    where contacts of states differ in size.
     """
 
     name: str
@@ -58,11 +58,11 @@ class Scaled(NamedTuple):
         return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
 
     def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
-        """Numbers in this scale.
+        """Values in this scale, (states, …).
 
         Args:
-            values: as archived, (states, …).
-            states: numbers of their states, where these are not all.
+            values: values as archived, (states, …).
+            states: numbers of the states that have values; all by default.
         """
         if np.ndim(self.factor):
             factor, offset = (
@@ -73,7 +73,8 @@ class Scaled(NamedTuple):
         return values if self.factor == 1.0 else self.factor * values
 
 
-#: Scale of a quantity of some name; None where it is left out, since another becomes the same.
+#: Function that gives the scale of a quantity from its name; None for a quantity that is omitted, since
+#: another has equal values in the same unit.
 Scaling = Callable[[Quantity, str], Scaled | None]
 
 
@@ -82,7 +83,7 @@ def as_archived(row: Quantity, name: str) -> Scaled:
     return Scaled(name, row.unit, 1.0)
 
 
-#: Quantities of states that are lengths over the half-width.
+#: Quantities of states that are lengths over the half-width a.
 LENGTHS = (
     *validity.STRAINED,
     *states.LARGEST_X.values(),
@@ -91,7 +92,7 @@ LENGTHS = (
 )
 
 
-#: States that a table shows at most, and inner variables of a law.
+#: Most states in a table, and most inner variables of a law.
 LIMIT, _VARIABLES = 24, 6
 
 
@@ -100,11 +101,11 @@ class Sheet:
     """Table as text: the first column is a label, the others are numbers.
 
     Attributes:
-        title: of the table.
-        columns: their heads, with units.
-        rows: cells as text.
-        notes: lines below.
-        words: all cells are words, which may take several lines.
+        title: title of the table.
+        columns: heads of the columns, with units.
+        rows: cells of each row as text.
+        notes: lines below the table.
+        words: True where cells are words, which may take several lines.
     """
 
     title: str
@@ -114,7 +115,7 @@ class Sheet:
     words: bool = False
 
 
-#: Columns of the states' table after what tells states apart: (head, quantity, form).
+#: Columns of the table of states after the parameters: (head, quantity, format).
 _EITHER = [("K_I", of.K_I_BOTH, "{:.6f}"), ("error", of.TRUE_ERROR, "{:.1e}")]
 _ALONE = [
     (head, row, "{:.6f}")
@@ -136,7 +137,13 @@ _BOTH = [
 
 
 def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archived) -> Sheet:
-    """Table of the first states of an archive: their parameters, and the main results."""
+    """Table of the first states of an archive: their parameters, and the main results.
+
+    Args:
+        data: datasets of the archive by path.
+        title: title of the table; "" for "States".
+        scaling: scales of the quantities.
+    """
     apart = {path: row for path, row in parameters(data).items() if path != of.MOTION.path}
     varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
     shown = {_head(row, scaling): (row, _form(row)) for row in varied.values()}
@@ -183,7 +190,7 @@ def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archive
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
-    """Number of speeds that finite elements solved, in words; "" where they solved each."""
+    """Number of speeds that finite elements solved, in words; "" where they solved every speed."""
     if of.FITTED.path not in data:
         return ""
     c, fitted = data[of.SPEED.path], data[of.FITTED.path]
@@ -205,7 +212,7 @@ def _head(row: Quantity, scaling: Scaling) -> str:
     return scaled.name + ("" if scaled.unit in ("1", "none") else f" ({scaled.unit})")
 
 
-#: By method.
+#: Largest tension and its place, by method.
 _TENSION = validity.TENSION | layers.TENSION
 
 #: Quantities of yield and of where answers do not hold, by their labels in a table.
@@ -235,7 +242,7 @@ _CALLED = {"exact": "closed form", "SIE": "singular integral equation", "FE": "f
 
 
 def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
-    """Table of yield, and of where answers do not hold: least and most of all states."""
+    """Table of yield, and of limits of the answers: smallest and largest values of all states."""
     rows = []
     for label, by_method in _LIMITS:
         for method, row in by_method.items():
@@ -280,7 +287,7 @@ def loops_sheet(data: dict[str, Any]) -> Sheet:
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
-    """Table of the law's inner state at the first states; no rows where there is none, or it is f."""
+    """Table of the law's inner variables at the first states; no rows without any, or for f alone."""
     z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
     rows: list[list[str]] = []
     count = min(0 if z is None else z.shape[1], _VARIABLES)
@@ -289,14 +296,14 @@ def inner_sheet(data: dict[str, Any]) -> Sheet:
         for n, (motion, X, of_state, inner) in enumerate(zip(*(values[:LIMIT] for values in columns))):
             components = (f"{value:.6g}" for value in inner[:count].tolist())
             rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *components])
-    notes = ["z: dimensionless, as the law's file says"]
+    notes = ["z: inner variables, dimensionless, as defined in the law's file"]
     if z is not None and z.shape[1] > count:
         notes.append(f"and {z.shape[1] - count} more; show --json lists all")
     heads = ["state", "X/L", "f", *(f"z{n + 1}" for n in range(count))]
     return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
-#: Quantities of loops by their labels in a table, and how it sums up the strokes.
+#: Labels and quantities of loops in their table, and functions that combine values of all strokes.
 _OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
     ("work (J/m)", runs.LOOP_WORK, np.sum),
     ("closed loop (J/m)", runs.LOOP_CYCLE, float),
@@ -310,7 +317,7 @@ _OF_SLIDERS = (
 
 
 def sliders_sheet(data: dict[str, Any]) -> Sheet:
-    """Table of the stick-slip of the first sliders, one for each law."""
+    """Table of the motion of the slider for the first laws, with its stick-slip."""
     columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
     outcomes = map(str, data[runs.OUTCOME.path]) if columns else []
     rows = [
@@ -322,10 +329,10 @@ def sliders_sheet(data: dict[str, Any]) -> Sheet:
 
 
 def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
-    """Table of the first starts at the end of the motion, by the better method that there is.
+    """Table of the first starts at the end of the motion, by finite elements if the archive has them.
 
     Args:
-        data: datasets by path.
+        data: datasets of the archive by path.
         unit: a/c_s [s].
     """
     title = "In time, at the end"
@@ -356,7 +363,7 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
     notes = [
         f"at t = {end:g} a/c_s = {_seconds(end * unit)}; centre: of the pressure, towards +X",
         "steady: centre in steady motion",
-        "off: K_I and centre, the largest difference from steady motion",
+        "off: largest relative difference of K_I, or of centre/a, from steady motion",
         "within 1 %: of both, over a/c_s; ~ by 1/t after the end",
         "by formula: for late times, of uniform solids, over a/c_s",
     ]
@@ -368,18 +375,19 @@ def _number(value: float, digits: int) -> str:
 
 
 def _when(time: float, end: float, unit: float) -> str:
-    """Time over a/c_s in words: as it was met by the end, or about."""
+    """Time over a/c_s in words; with ~ where it is extrapolated beyond the end."""
     if isnan(time):
         return "too short to tell"
     return f"{time:.3g} ({_seconds(time * unit)})" if time <= end else f"~ {_rounded(time, unit)}"
 
 
 def _rounded(time: float, unit: float) -> str:
-    """Time over a/c_s that has two digits, in words."""
+    """Time over a/c_s in words, with two digits."""
     return "" if isnan(time) else f"{float(f'{time:.1e}'):g} ({_seconds(time * unit, 2)})"
 
 
 def _seconds(seconds: float, digits: int = 3) -> str:
+    """Time in words, with a unit from s to ns."""
     for size, name in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
         if seconds >= size:
             return f"{float(f'{seconds / size:.{digits - 1}e}'):g} {name}"

@@ -73,7 +73,7 @@ class Scaled(NamedTuple):
         return values if self.factor == 1.0 else self.factor * values
 
 
-#: Function that gives the scale of a quantity from its name; None for a quantity that is omitted, since
+#: Function of a quantity and its name that gives its scale; None where the quantity is omitted, since
 #: another has equal values in the same unit.
 Scaling = Callable[[Quantity, str], Scaled | None]
 

@@ -243,18 +243,18 @@ ON_LAYERS: dict[str, Rule] = {
         _intensities_of_layers, tolerances=1.0,
     ),
     "sigma_YY of layers": Rule(
-        "σ_YY against the integral equation, over itself or a tenth of the mean",
+        "σ_YY against the integral equation, relative to itself or a tenth of the mean",
         (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
         tolerances=1.0,
     ),
     # As on uniform solids under contacts with free ends.
     "sigma_YY of found ends over layers": Rule(
-        "σ_YY of contacts whose ends are found against the integral equation, over the largest",
+        "σ_YY of contacts with free ends against the integral equation, over the largest",
         (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X, of.LARGEST[SIE]),
         _pressure_between_free_ends_on_layers, tolerances=10.0,
     ),
     "sigma_XX of layers": Rule(
-        "σ_XX against the integral equation, over itself or the largest",
+        "σ_XX against the integral equation, relative to itself or the largest",
         (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
         tolerances=1.0, own_pressure=True,
     ),
@@ -273,7 +273,7 @@ ON_LAYERS: dict[str, Rule] = {
         own_pressure=True,
     ),
     "stresses inside layers": Rule(
-        "stresses inside against the integral equation, over themselves or the largest",
+        "stresses inside against the integral equation, relative to themselves or the largest",
         (*at.STRESSES_INSIDE[FEM], *on_layers.STRESSES_INSIDE[SIE], at.INSIDE_X, at.INSIDE_Y),
         _inside_layers,
         tolerances=1.0, own_pressure=True,
@@ -469,12 +469,12 @@ RULES: Registry[Rule] = Registry(
         ),
         # For free ends, where no exponent is assumed; at a sharp edge sigma_YY is the stricter rule.
         "sigma_YY of found ends": Rule(
-            "σ_YY of contacts whose ends are found, over the largest further than 0.02 a from a tip",
+            "σ_YY of contacts with free ends, over the largest further than 0.02 a from a tip",
             (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _pressure_between_free_ends,
             tolerances=10.0,
         ),
         "sigma_XX": Rule(
-            "σ_XX pointwise, over itself or the largest",
+            "σ_XX pointwise, relative to itself or the largest",
             (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
         ),
         "extremes of sigma_XX": Rule(
@@ -487,7 +487,7 @@ RULES: Registry[Rule] = Registry(
             largest_of(at.ESTIMATE_IN_PLANE), tolerances=1.0, own_pressure=True,
         ),
         "stresses inside": Rule(
-            "stresses inside, over themselves or the largest",
+            "stresses inside, relative to themselves or the largest",
             (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM], at.INSIDE_X, at.INSIDE_Y),
             _inside, tolerances=1.0, own_pressure=True,
         ),
@@ -510,7 +510,7 @@ RULES: Registry[Rule] = Registry(
             (*to.DEPTH.values(),), _depth, own_pressure=True,
         ),
         "estimate of yield": Rule(
-            "estimated error of stresses in which yield is looked for, relative", (to.ESTIMATE_YIELD,),
+            "estimated error of stresses from which yield is computed, relative", (to.ESTIMATE_YIELD,),
             largest_of(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
         ),
         # In the traction mode v,X under the punch has to vanish. It is a derivative of the displacement,

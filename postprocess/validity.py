@@ -122,7 +122,7 @@ class Validity:
             yield (
                 "in a stroke a shear wave crosses the contact "
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
-                f"{states['crossings']}: the results are for steady motion, a limit that such a stroke "
+                f"{states['crossings']}: the reported steady state is a limit that such a stroke "
                 "does not reach" + f"; {text}" * bool(text)
             )
         if (
@@ -130,7 +130,7 @@ class Validity:
             and self._fastest
             and (text := self._steady.words(*self._fastest, too_short=True))
         ):
-            yield f"the results are for steady motion, but {text}"
+            yield f"the steady state is reported, but {text}"
         if "ratio" in worst:
             least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
             yield (

@@ -95,10 +95,35 @@ def _of_warnings(data: Mapping[str, Any], warnings: str, scene: Scene, plan: Pla
         return
     judge = Judge(scene, ())
     judge.validity.see(data)
-    archived = [_without_numbers(text) for text in json.loads(warnings)]
+    archived = [_without_numbers(_present(text)) for text in json.loads(warnings)]
     for text in judge.validity.words():
         if _without_numbers(text) not in archived:
             yield f'warnings does not have "{text}"'
+
+
+#: Words of earlier archives, and those that stand for them now.
+_FORMER = {
+    "of contacts whose ends are found": "of contacts with free ends",
+    "over itself or": "relative to itself or",
+    "over themselves or": "relative to themselves or",
+    "in which yield is looked for": "from which yield is computed",
+    "the steady state that is told is a limit which": "the reported steady state is a limit that",
+    "the steady state is told, but": "the steady state is reported, but",
+}
+
+
+def _present(text: str) -> str:
+    """Text of an archive of any age in the words of now."""
+    for former, today in _FORMER.items():
+        if today not in text:
+            text = text.replace(former, today)
+    return text
+
+
+def _archived_comparisons(archive: reader.Archive) -> dict[str, float]:
+    """Archived value of each comparison by its text in the words of now."""
+    values = json.loads(archive.attributes["comparisons"])
+    return {_present(text): value for text, value in values.items()}
 
 
 def _without_numbers(text: str) -> str:
@@ -399,7 +424,7 @@ def _of_numbers(archive: reader.Archive) -> Iterator[str]:
             yield from _out_of_balance(comparison, start)
     for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
         worst[comparison.text] = comparison.value
-    archived = json.loads(archive.attributes["comparisons"])
+    archived = _archived_comparisons(archive)
     if archived.keys() != worst.keys() or any(
         not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
         for text in archived
@@ -454,7 +479,7 @@ def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
         if name in compare.RULES
     }
     judge = Judge(scene, rules.values())
-    archived = json.loads(attributes["comparisons"])
+    archived = _archived_comparisons(archive)
     judge.see(
         [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
     )
@@ -462,5 +487,5 @@ def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:
         yield f"verdict says {attributes['verdict']}, its comparisons give {verdict}"
-    if json.loads(attributes["verdict_reasons"]) != reasons:
+    if [_present(text) for text in json.loads(attributes["verdict_reasons"])] != reasons:
         yield f"verdict_reasons says {attributes['verdict_reasons']}, its comparisons give {reasons}"

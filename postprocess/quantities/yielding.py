@@ -99,7 +99,7 @@ DEPTH = _both(
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
-    "estimated error of the stresses in which yield is looked for, over the larger of the largest there "
+    "estimated error of the stresses from which yield is computed, over the larger of the largest there "
     "and further than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
     range=_NOT_NEGATIVE, accuracy=True,

@@ -45,6 +45,12 @@ def in_attribute(name, old, new):
     return apply
 
 
+def test_archives_with_former_words_are_accepted(whole):
+    with opened(whole) as file:
+        in_attribute("comparisons", "relative to themselves or", "over themselves or")(file)
+    assert check.faults(whole) == []
+
+
 def other_scene(file):
     text = file["scene/text"].asstr()[()].replace("mu_c", "delta = 0.9\nmu_c")
     file["scene/text"][()] = text

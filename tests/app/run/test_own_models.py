@@ -47,7 +47,7 @@ def test_finite_elements_and_collocation_agree_on_a_profile(c, monkeypatch):
     assert (left - right).max() > 4e-3, "the higher edge carries less"
     assert "states/closed_form/K_I" not in data and "states/fem/slope_under_punch" not in data
     assert result.comparisons["σ_YY pointwise, relative"] <= 1e-5
-    assert result.comparisons["σ_XX pointwise, over itself or the largest"] <= 1e-6
+    assert result.comparisons["σ_XX pointwise, relative to itself or the largest"] <= 1e-6
 
 
 def test_a_profile_without_height_is_the_flat_punch(monkeypatch, tables_run):

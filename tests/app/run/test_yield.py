@@ -36,7 +36,7 @@ def test_finite_elements_find_the_zone_at_the_edges_from_their_own_fields(of_pun
         assert (fem != exact).all() and (exact > 1e-3).all()
     assert (data["states/fem/estimate_yield"] > 0.0).all()
     reasons = " ".join(json.loads(of_punch.attributes["verdict_reasons"]))
-    assert "estimated error of stresses in which yield is looked for" in reasons
+    assert "estimated error of stresses from which yield is computed" in reasons
     assert "distance from the edges within which yield is passed" in reasons
 
 

@@ -19,7 +19,7 @@ def test_ranks_share_out_starts(monkeypatch):
     compute(scene, found)
     told = {path: values for path, values in found.items() if path.startswith("time/")}
     assert bool(told) == (MPI.COMM_WORLD.rank == 0)
-    monkeypatch.setattr(ranks, "_known", lambda: (0, 1))
+    monkeypatch.setattr(ranks, "_rank_and_size", lambda: (0, 1))
     plan = make_plan(scene)
     alone = solve_motions(plan.starts, plan.body.solid, Clock())
     assert {"time/sie/v0", "time/fem/v0"} < alone.keys()

@@ -69,6 +69,8 @@ def test_no_folder_for_temporary_files_is_told(monkeypatch, capsys, tmp_path):
         raise PermissionError
 
     monkeypatch.setattr(os, "mkdir", refuse)
+    # What ends ignores signals from then on, and so would the processes of later tests.
+    monkeypatch.setattr(job.process, "fail", lambda status, message: print(message, file=sys.stderr))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     with pytest.raises(SystemExit) as ended:
         job._find_temporary_folder()

@@ -18,7 +18,6 @@ from .quantities import (
     layers,
     over_time,
     runs,
-    states,
     table,
     validity,
     yielding,
@@ -86,7 +85,7 @@ def as_archived(row: Quantity, name: str) -> Scaled:
 #: Quantities of states that are lengths over the half-width a.
 LENGTHS = (
     *validity.STRAINED,
-    *states.LARGEST_X.values(),
+    *of.LARGEST_X.values(),
     *(where for _, where in validity.TENSION.values()),
     *(row for rows in yielding.OVER_HALF_WIDTH for row in rows.values()),
 )

@@ -8,7 +8,7 @@ The ends of a contact with two free ends and any convex profile P meet two condi
 
     ∫ P'(m + h s)/w ds = 0,        N/μ = h (sin πa/N̂) ∫ s P'(m + h s)/w ds.
 
-Newton's method solves them for m/h and log h; a step that increases the residual is halved.
+:mod:`galinx.solvers.contact.ends` solves them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,160 +19,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SolveError
-from ..profiles import check_reach, cusp, jumps, kinks
+from ..profiles import check_reach, cusp, jumps
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from ..solids.solid import Response
 from .closed_form import FlatPunch, Weighted
 from .edges import Exponents
+from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
 
-#: Steps at most, halvings of a step at most, and rounding in a residual.
-_STEPS, _HALVINGS, _ROUNDING = 60, 40, 1e-14
-#: Step for the derivatives; largest change of m/h and of log h in a step.
-_ε, _LARGEST = 1e-6, (0.5, 1.5)
-#: Doublings at most of the half-width in the search for the load, and of the centre over it.
-_DOUBLINGS, _FARTHER = 60, 12
-#: Logarithm of the load carried over the given load below which Newton's method starts.
-_ROUGHLY = 3.0
+#: First half-width in the search for the ends [m].
+_FIRST = 1e-3
 
 
-@dataclass(frozen=True)
-class Balance:
-    """Both conditions of a contact with two free ends.
-
-    Attributes:
-        profile: profile of the punch.
-        a: exponent of the pressure at the right end.
-        size: N N̂/(μ sin πa) [m].
-    """
-
-    profile: Any
-    a: float
-    size: float
-
-    def panels(self, centre: float, half_width: float) -> Panels:
-        """Quadrature over a contact, lengths in m."""
-        at = (np.array(kinks(self.profile), dtype=float) - centre) / half_width
-        # Beside its kink a power is not smooth; wedges and parabolas are.
-        k = getattr(self.profile, "exponent", 1.0)
-        return Panels(self.a, ends_of_panels(at, rough=not jumps(self.profile) and k != round(k)))
-
-    def slope(self, panels: Panels, centre: float, half_width: float) -> NDArray[np.float64]:
-        """Slope P' of the profile at the panels' points, (points,)."""
-        return np.asarray(self.profile.slope(centre + half_width * panels.t), dtype=float)
-
-    def residual(self, lean: float, size: float) -> NDArray[np.float64]:
-        """Residuals of both conditions, (2,), infinite if the contact carries no load.
-
-        Args:
-            lean: centre over half-width, m/h.
-            size: log h, h in m.
-        """
-        h = float(np.exp(size))
-        panels = self.panels(lean * h, h)
-        slope = self.slope(panels, lean * h, h)
-        whole = panels.weights @ np.abs(slope)
-        lifted, carried = panels.weights @ slope, h * (panels.weights @ (panels.t * slope))
-        if not (whole > 0.0 and carried > 0.0):
-            return np.array([np.inf, np.inf])
-        return np.array([lifted / whole, np.log(carried / self.size)])
-
-
-def free_ends(balance: Balance, start: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Centre and half-width [m] of a contact with two free ends.
+def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
+    """Quadrature over a contact of a punch.
 
     Args:
-        balance: conditions of the ends.
-        start: centre and half-width [m] of a contact near by.
-
-    Raises:
-        SolveError: the ends were not found; the message says what was tried.
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        kinks: places over the half-width at which the slope or its derivative jumps.
     """
-    point = np.array([start[0] / start[1], np.log(start[1])]) if start else _first(balance)
-    value, residuals = balance.residual(*point), []
-    for _ in range(_STEPS):
-        size = float(np.abs(value).max())
-        residuals.append(size)
-        if size <= _ROUNDING:
-            break
-        step = _newton(balance.residual, point, value)
-        for halving in range(_HALVINGS):
-            moved = point + 0.5**halving * step
-            trial = balance.residual(*moved)
-            if np.abs(trial).max() < size:
-                break
-        else:
-            break  # nothing better is near: rounding, or no contact
-        point, value = moved, trial
-    if not residuals[-1] <= 1e3 * _ROUNDING:
-        raise SolveError(
-            f"the ends of the contact of a {balance.profile.words()} were not found: after "
-            f"{len(residuals)} steps the conditions are off by {residuals[-1]:.3g}, wanted "
-            f"{_ROUNDING:g}; centre over half-width {point[0]:.6g}, half-width "
-            f"{np.exp(point[1]):.6g} m; the residuals were "
-            + ", ".join(f"{size:.2g}" for size in residuals[-6:])
-        )
-    h = float(np.exp(point[1]))
-    return float(point[0]) * h, h
-
-
-def _newton(residual: Callable[..., NDArray], point: NDArray, value: NDArray) -> NDArray[np.float64]:
-    """Newton's step for m/h and log h, (2,), within limits; derivatives by differences."""
-    steps = np.diag([_ε, _ε])
-    J = np.column_stack([(residual(*(point + d)) - residual(*(point - d))) / (2.0 * _ε) for d in steps])
-    if not np.all(np.isfinite(J)) or np.linalg.matrix_rank(J) < 2:
-        return np.array([-np.sign(value[0]) * 0.1, 0.1])
-    step = np.linalg.solve(J, -value)
-    return step / max(1.0, *(np.abs(step) / _LARGEST))
-
-
-def _first(balance: Balance) -> NDArray[np.float64]:
-    """Start of Newton's method: m/h and log h, (2,), of a contact that carries about the load."""
-    size = float(np.log(1e-3))
-    narrow, wide = -np.inf, np.inf
-    for _ in range(_DOUBLINGS):
-        lean = _lean(balance, size)
-        carried = balance.residual(lean, size)[1]
-        # Infinite: in a flat part, which carries nothing unless the contact is wider.
-        if not np.isfinite(carried) or carried < 0.0:
-            narrow = size
-        else:
-            wide = size
-        bracketed = np.isfinite(narrow) and np.isfinite(wide)
-        if bracketed and np.isfinite(carried) and abs(carried) < _ROUGHLY:
-            return np.array([lean, size])
-        if bracketed:
-            size = (narrow + wide) / 2.0
-        else:
-            size += np.log(2.0) if np.isfinite(narrow) else -np.log(2.0)
-    raise SolveError(
-        f"no contact of a {balance.profile.words()} carries the load: half-widths up to "
-        f"{np.exp(size):.3g} m were tried; the profile has to be convex"
-    )
-
-
-def _lean(balance: Balance, size: float) -> float:
-    """Approximate m/h at which ∫ P'/w vanishes at a given log h; by halving."""
-    h, far = float(np.exp(size)), 1.0
-
-    def pulled(lean: float) -> float:
-        panels = balance.panels(lean * h, h)
-        return float(panels.weights @ balance.slope(panels, lean * h, h))
-
-    for _ in range(_FARTHER):
-        if pulled(-far) <= 0.0 <= pulled(far):
-            break
-        far *= 2.0
-    # If a flat part holds all of the contact, the integral vanishes on an interval: its middle is taken.
-    edges = []
-    for beyond in (np.less, np.less_equal):
-        low, high = -far, far
-        for _ in range(12 + int(np.log2(far))):
-            middle = (low + high) / 2.0
-            low, high = (middle, high) if beyond(pulled(middle), 0.0) else (low, middle)
-        edges.append((low + high) / 2.0)
-    return float(np.mean(edges))
+    # Beside its kink a power is not smooth; wedges and parabolas are.
+    k = getattr(profile, "exponent", 1.0)
+    rough = not jumps(profile) and k != round(k)
+    return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
 
 
 #: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
@@ -471,47 +342,57 @@ def _by_quadrature(
     response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
 ) -> Sequence[Group]:
     """Contacts of any convex profile, state after state; equal states are solved once."""
-    flat, groups, start = FlatPunch(response, g), [], None
+    a, groups = 1.0 + FlatPunch(response, g).α, []
+    m, h = None, _FIRST
     _, first, inverse = np.unique(
         np.column_stack([load, g]), axis=0, return_index=True, return_inverse=True
     )
     inverse = inverse.ravel()  # some versions of NumPy keep an axis
     for k, i in enumerate(first.tolist()):
-        a, N = float(1.0 + flat.α[i]), float(load[i])
-        balance = Balance(profile, a, N * float(n[i]) / np.sin(np.pi * a))
-        m, h = start = free_ends(balance, start)
+        punch = Punch(profile, 1.0, float(load[i]))
+        rule = rule_of_ends(profile, float(a[i]), float(n[i]))
+        m, h = free_ends(punch, lambda _: rule, h, m)  # noqa: B023
         check_reach(profile, m - h, m + h)
-        pressure, tips = pressure_of(balance, response, float(g[i]), m, h, N)
+        pressure, tips = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
         for row in np.flatnonzero(inverse == k).tolist():
             group = Group(
-                np.array([row]), pressure, np.array([a]), np.array([1.0 - a]), np.array([h]),
-                np.array([m]), np.zeros((1, 2)), tips, pressure.cusps,
+                np.array([row]), pressure, a[[i]], 1.0 - a[[i]], np.array([h]), np.array([m]),
+                np.zeros((1, 2)), tips, pressure.cusps,
             )  # fmt: skip
             groups.append(group)
     return groups
 
 
+def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
+    """Quadrature of the conditions on both ends of a contact on a uniform half-plane.
+
+    Args:
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        n: n + g n₁₂ of the half-plane.
+    """
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = panels_of(profile, a, kinks)
+        return panels.t, panels.weights, np.sin(np.pi * a) / n * panels.weights * panels.t
+
+    return rule
+
+
 def pressure_of(
-    balance: Balance, response: Response, g: float, m: float, h: float, load: float
+    punch: Punch, a: float, response: Response, g: float, m: float, h: float
 ) -> tuple[FreeEnds, tuple[float, ...]]:
     """Pressure of a contact with given ends, and the places over h of infinite pressure inside.
 
     Args:
-        balance: conditions of the ends.
+        punch: the punch and its load.
+        a: exponent of the pressure at the right end.
         response: of the half-plane.
         g: σ_XY/σ_YY under the punch.
-        m, h: middle and half-width of the contact [m].
-        load: N/μ [m].
+        m, h: middle and half-width of the contact.
     """
-    panels, profile = balance.panels(m, h), balance.profile
-    unit = 2.0 * h / load
-
-    def slope(r: NDArray) -> NDArray[np.float64]:
-        return unit * np.asarray(profile.slope(m + h * r), dtype=float)
-
-    cusps = [(x - m) / h for x in kinks(profile) if abs(x - m) < h], cusp(profile)
-    pressure = FreeEnds(
-        panels, slope(panels.t), slope, response.n + g * response.n12, g * response.q, cusps
-    )
-    tips = tuple((x - m) / h for x in kinks(profile)) if jumps(profile) else ()
-    return pressure, tips
+    places, slope = punch.kinks(m, h), punch.slope(m, h)
+    panels, n = panels_of(punch.profile, a, places), response.n + g * response.n12
+    cusps = places, cusp(punch.profile)
+    tips = places if jumps(punch.profile) else ()
+    return FreeEnds(panels, slope(panels.t), slope, n, g * response.q, cusps), tips

@@ -8,11 +8,9 @@ that under the slope 1 without a resultant. A pressure σ that vanishes at both 
 
     ∫ ρ₁ P'(m + h s) ds = 0,        N/μ = h ∫ ρ₂ P'(m + h s) ds.
 
-These two conditions on the slope alone give the middle m, and the load that makes a contact of the
-half-width h (:class:`Conditions`). Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
-profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors, and these are the conditions of
-:mod:`galinx.solvers.contact.free_contact`. The load grows with h, which is iterated until the contact
-carries the load of the punch.
+These conditions on the slope alone (:func:`rule_of_ends`) give both ends, by
+:mod:`galinx.solvers.contact.ends`. Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
+profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors.
 
 **A tilted punch one edge of which lifts off.** The contact starts at the other edge, and the intensity at
 its free end vanishes for one sum of two pressures, that of a flat punch and that under the slope 1.
@@ -30,7 +28,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..layers.kernel import REACH, Kernel, Scaled
@@ -39,11 +36,13 @@ from ..profiles import check_reach, cusp, jumps, kinks
 from ..profiles.flat import Flat
 from .closed_form import FlatPunch
 from .edges import Exponents
+from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
     FIRST,
     ContactsAtSpeed,
     ConvergedPressure,
     Equation,
+    Parts,
     Pressure,
     PressuresByFriction,
     Resolution,
@@ -53,48 +52,13 @@ from .equation import (
     not_converged,
     resolutions,
 )
-from .free_contact import NEXT_TO_TIP, Balance, contacts
+from .free_contact import NEXT_TO_TIP, contacts, panels_of
 from .free_contact import local_exponents as of_the_surface
 from .panelled import PanelledPressure, Panels
 from .panels import FreeEnds
 
-#: Most steps to a half-width, the largest step of its logarithm, and rounding of that.
-_STEPS, _LARGEST, _ROUNDING = 80, 1.5, 1e-13
-#: Growth of the load's logarithm with that of the half-width: at first, and its bounds in a secant.
-_GROWTH, _GROWTHS = 2.0, (0.3, 40.0)
-#: Doublings of the middle over the half-width within which it is sought, and its rounding.
-_FARTHER, _OF_MIDDLE = 12, 1e-15
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
-
-
-@dataclass(frozen=True)
-class Punch:
-    """A punch with both ends of its contact free, and its load; lengths over a unit shared by states.
-
-    Attributes:
-        profile: of the punch, in m.
-        unit: the unit of length [m].
-        compression: N/μ [m].
-    """
-
-    profile: Any
-    unit: float
-    compression: float
-
-    def slope(self, m: float, h: float) -> Callable[[NDArray], NDArray]:
-        """μ v,X over N/(2h) at places over the half-width h from the middle m."""
-
-        def slope(r: NDArray) -> NDArray[np.float64]:
-            slopes = np.asarray(self.profile.slope(self.unit * (m + h * r)), dtype=float)
-            return 2.0 * h * self.unit / self.compression * slopes
-
-        return slope
-
-    def kinks(self, m: float, h: float) -> tuple[float, ...]:
-        """Places inside the contact at which the slope or its derivative jumps."""
-        at = (np.array(kinks(self.profile), dtype=float) / self.unit - m) / h
-        return tuple(at[np.abs(at) < 1.0].tolist())
 
 
 @dataclass(frozen=True)
@@ -123,73 +87,23 @@ class _Adjoint:
         return -np.asarray(self.of(-np.asarray(x, dtype=float)))
 
 
-@dataclass(frozen=True)
-class Conditions:
-    """Both conditions on contacts with free ends and one half-width.
-
-    Attributes:
-        punch: the punch.
-        h: half-width.
-        lifting, carrying: ρ₁ and ρ₂.
-        finest: longest panel that resolves these.
-    """
-
-    punch: Punch
-    h: float
-    lifting: Pressure
-    carrying: Pressure
-    finest: float
-
-    def _over(self, ρ: Pressure, m: float) -> float:
-        """∫ ρ f ds with f the slope over N/(2h), dimensionless."""
-        panels = Panels(ρ.α, ρ.β, self.finest, self.punch.kinks(m, self.h))
-        f = self.punch.slope(m, self.h)(panels.t)
-        return float(panels.weights @ (ρ.series(panels.t) * f))
-
-    def middle(self) -> float:
-        """Middle m of the contact for which the pressure vanishes at both ends.
-
-        Raises:
-            SolveError: there is no such middle.
-        """
-
-        def pulled(lean: float) -> float:
-            return -self._over(self.lifting, lean * self.h)
-
-        far = 1.0
-        for _ in range(_FARTHER):
-            if pulled(-far) <= 0.0 <= pulled(far):
-                return self.h * float(brentq(pulled, -far, far, xtol=_OF_MIDDLE, rtol=1e-15))
-            far *= 2.0
-        raise SolveError(
-            f"no middle of a contact of the half-width {self.h * self.punch.unit:g} m of a "
-            f"{self.punch.profile.words()} was found over the layers; take a speed farther from the limit"
-        )
-
-    def off(self, m: float) -> float:
-        """Logarithm of the load that a contact of this half-width carries, over the punch's load.
-
-        Minus infinity where a flat part carries none, infinity where it would carry tension.
-        """
-        share = self._over(self.carrying, m) / 2.0
-        if share == 0.0:
-            return -np.inf
-        return float(np.log(share)) if share > 0.0 else np.inf
-
-
-def conditions(equation: Equation, resolution: Resolution, punch: Punch, h: float) -> Conditions:
-    """Conditions on contacts of the half-width h.
+def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
+    """Quadrature of the conditions on both ends of contacts of one half-width.
 
     Args:
         equation: of such a contact; its slope is not used.
         resolution: number of polynomials, or longest panel.
-        punch: the punch.
-        h: half-width.
     """
     adjoint = Equation(_Adjoint(equation.response), _Adjoint(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
     parts = adjoint.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
-    lifting, carrying = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
-    return Conditions(punch, h, lifting, carrying, finest(resolution))
+    ρ1, ρ2 = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = Panels(ρ1.α, ρ1.β, finest(resolution), kinks)
+        lifting, carrying = (panels.weights * ρ.series(panels.t) for ρ in (ρ1, ρ2))
+        return panels.t, -lifting, carrying
+
+    return rule
 
 
 def vanishing(
@@ -219,44 +133,6 @@ def vanishing(
 def finest(resolution: Resolution) -> float:
     """Longest panel that resolves a pressure of this resolution."""
     return min(resolution if isinstance(resolution, float) else _PANEL / resolution, _LONGEST)
-
-
-def balanced(at: Callable[[float], tuple[float, Any]], x: float) -> tuple[float, Any]:
-    """Root of a growing function, by secants inside a bracket.
-
-    Args:
-        at: of the logarithm of a half-width, gives that of the load over the punch's, and more.
-        x: first logarithm.
-
-    Returns:
-        The logarithm of the half-width at the root, and what else ``at`` gave there.
-
-    Raises:
-        SolveError: there is no root.
-    """
-    growth, before, low, high = _GROWTH, None, -np.inf, np.inf
-    for _ in range(_STEPS):
-        off, more = at(x)
-        low, high = (max(low, x), high) if off < 0.0 else (low, min(high, x))
-        if before is not None and np.isfinite(off) and x != before[0]:
-            secant = (off - before[1]) / (x - before[0])
-            growth = secant if _GROWTHS[0] < secant < _GROWTHS[1] else growth
-        step = -off / growth if np.isfinite(off) else -np.sign(off) * _LARGEST
-        step = float(np.clip(step, -_LARGEST, _LARGEST))
-        if abs(step) <= _ROUNDING or (
-            before is not None and abs(off) <= 1e-12 and abs(off) >= abs(before[1])
-        ):
-            return x, more
-        if not low < x + step < high and np.isfinite(high - low):
-            step = (low + high) / 2.0 - x
-        if np.isfinite(off):
-            before = x, off
-        x += step
-    raise SolveError(
-        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
-        f"came to {np.exp(x):.6g} of that at rest, and still changes; take a speed farther from the "
-        "limit"
-    )
 
 
 #: Positions on which kernels are held at once, over those of a rule.
@@ -364,7 +240,7 @@ def kinked(
         m, h: middle and half-width.
     """
     a, profile, places = 1.0 + equation.α, punch.profile, punch.kinks(m, h)
-    panels = Balance(profile, a, np.nan).panels(punch.unit * m, punch.unit * h)
+    panels = panels_of(profile, a, places)
     whole = equation.slope(panels.t)
     mean = float(panels.weights @ whole / panels.weights.sum())
 
@@ -584,23 +460,15 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
 
-        h, m = self._lengths(g, h, resolution)
+        m, h = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
             return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
         return ContactAtResolution(h, m, *vanishing(equation, resolution))
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
-        """Half-width and middle of a contact with two free ends."""
-
-        def at(x: float) -> tuple[float, float]:
-            h = float(np.exp(x))
-            both = conditions(self._equation(g, h), resolution, self.punch, h)
-            m = both.middle()
-            return both.off(m), m
-
-        x, m = balanced(at, float(np.log(h)))
-        return float(np.exp(x)), m
+        """Middle and half-width of a contact with two free ends, from a half-width on."""
+        return free_ends(self.punch, lambda h: rule_of_ends(self._equation(g, h), resolution), h)
 
     def half_width(self) -> float:
         """Half-width of the contact without friction; its pressure is not computed.
@@ -614,7 +482,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             if isinstance(self.punch.profile, Flat):
                 h = self._tilted(0.0, h, resolution).h
             else:
-                h, _ = self._lengths(0.0, h, resolution)
+                _, h = self._lengths(0.0, h, resolution)
             error = abs(h / before - 1.0)
             if is_converged(error, self.tolerance):
                 return h
@@ -625,25 +493,26 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
         side = 1 if rise > 0.0 else 0
+        each: dict[float, tuple[Parts, float]] = {}
 
-        def at(x: float) -> tuple[float, Any]:
-            h = float(np.exp(x))
+        def load(h: float) -> float:
+            """Logarithm of the load under which the higher end of the contact has no intensity."""
             parts = self._equation(g, h).parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
             flat, bent = parts.ends[side]
             # The slope over N/(2h) that leaves no intensity is (2h/(N/μ)) θ.
-            share = -flat / bent / rise
-            taken = 2.0 * h * punch.unit / (share * punch.compression)
-            return float(np.log(taken)) if share > 0.0 else np.inf, (parts, -flat / bent)
+            slope = float(-flat / bent)
+            each[h] = parts, slope
+            carried = 2.0 * h * punch.unit * rise / punch.compression
+            return logarithm_of_load(carried / slope) if slope else np.inf
 
-        off, (parts, _) = at(float(np.log(whole)))
-        if off <= 0.0:
+        if load(whole) <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
-            return ContactAtResolution(
-                whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False)
-            )
-        x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
-        h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
+            pressure = each[whole][0].pressure(np.array([1.0, slope]))
+            return ContactAtResolution(whole, 0.0, pressure, free=(False, False))
+        h = half_width_of_load(load, min(h, whole), punch)
+        parts, slope = each[h]
         m = float(np.sign(rise)) * (h - whole)
+        pressure = parts.pressure(np.array([1.0, slope]))
         return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
 
 

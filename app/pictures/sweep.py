@@ -30,9 +30,9 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.postprocess.tables import as_archived
 from galinx.solvers.contact import layered as on_layers
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.solution import Body, Places, Task
 from galinx.solvers.contact.stresses import NEAR
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layered
 

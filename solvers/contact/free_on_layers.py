@@ -43,7 +43,6 @@ from .equation import (
     ConvergedPressure,
     Equation,
     Parts,
-    Pressure,
     PressuresByFriction,
     Resolution,
     change,
@@ -52,10 +51,11 @@ from .equation import (
     not_converged,
     resolutions,
 )
-from .free_contact import NEXT_TO_TIP, contacts, panels_of
-from .free_contact import local_exponents as of_the_surface
 from .panelled import PanelledPressure, Panels
 from .panels import FreeEnds
+from .pressure import SolvedPressure
+from .uniform import contacts, off_tips, panels_of
+from .uniform import local_exponents as of_the_surface
 
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
@@ -108,8 +108,8 @@ def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
 
 def vanishing(
     equation: Equation, resolution: Resolution, resultant: float = -2.0
-) -> tuple[Pressure, float]:
-    """Pressure of a contact between two free ends, at which it vanishes.
+) -> tuple[SolvedPressure, float]:
+    """SolvedPressure of a contact between two free ends, at which it vanishes.
 
     An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
 
@@ -140,8 +140,8 @@ _TOGETHER = 200
 
 
 @dataclass(frozen=True)
-class Kinked:
-    """Pressure between free ends under a slope with kinks, see :class:`.contact.Pressure`.
+class Kinked(SolvedPressure):
+    """SolvedPressure between free ends under a slope with kinks.
 
     Attributes:
         alone: σ₀, the pressure on the surface's solid alone.
@@ -153,30 +153,33 @@ class Kinked:
     """
 
     alone: FreeEnds
-    more: Pressure
+    more: SolvedPressure
     places: tuple[float, ...]
     finest: float
     rough: bool
     tips: tuple[float, ...]
 
     @property
-    def near(self) -> float:
+    def near(self) -> float:  # type: ignore[override]
+        """|r| up to which p can be evaluated."""
         return self.more.near
 
     @property
-    def α(self) -> float:
-        return self.more.α
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end, that of an edge."""
+        return float(self.more.α)
 
     @property
-    def β(self) -> float:
-        return self.more.β
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end, that of an edge."""
+        return float(self.more.β)
 
     @cached_property
     def _alone(self) -> PanelledPressure:
         return on_panels(self.alone, self.α, self.β, self.finest, self.places)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return without_weight(self.alone, self.α, self.β, self._off(r)) + self.more.series(r)
+        return without_weight(self.alone, self.α, self.β, off_tips(r, self.tips)) + self.more.series(r)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         values, under = self.more.rest(r, near), np.abs(r) < 1.0
@@ -192,13 +195,6 @@ class Kinked:
         fine = on_panels(self.alone, self.α, self.β, min(finest, self.finest), self.places)
         t, σ = self.more.points(finest)
         return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
-
-    def _off(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions, moved off tips where the pressure is infinite, (len(r),)."""
-        for tip in self.tips:
-            side = np.where(r < tip, -1.0, 1.0)
-            r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
-        return r
 
 
 def without_weight(alone: FreeEnds, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
@@ -231,7 +227,7 @@ def integral(
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
 ) -> tuple[Kinked, float]:
-    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
+    """SolvedPressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
         equation: of the contact, with its slope.
@@ -249,7 +245,7 @@ def kinked(
 
     alone = FreeEnds(
         panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q),
-        (places, cusp(profile)),
+        places, cusp=cusp(profile),
     )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
@@ -298,7 +294,7 @@ class ContactAtResolution:
 
     h: float
     m: float
-    pressure: Pressure
+    pressure: SolvedPressure
     correction: float = 0.0
     free: tuple[bool, bool] = (True, True)
 
@@ -317,7 +313,7 @@ class ContactAtResolution:
         return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
 
     @cached_property
-    def settled(self) -> Pressure:
+    def settled(self) -> SolvedPressure:
         """The pressure, continued to zero at free ends where panels resolve it less well."""
         pressure, free = self.pressure, self.free
         if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
@@ -355,7 +351,7 @@ class Contacts(PressuresByFriction):
             row[: len(tips)] = tips
         return places
 
-    def of_each(self, what: Callable[[Pressure, float, float], NDArray]) -> NDArray[np.float64]:
+    def of_each(self, what: Callable[[SolvedPressure, float, float], NDArray]) -> NDArray[np.float64]:
         """Values of a function of pressure, friction and half-width, (2, nodes, ...).
 
         Those of every contact come first, then those of the pressures with fewer unknowns.

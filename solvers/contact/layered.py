@@ -23,8 +23,7 @@ from ..layers.stiffness import Medium
 from ..profiles import cusp, jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .collocation import weights_hilbert
-from .edges import Exponents
+from .edges import Exponents, weights_hilbert
 from .equation import (
     COARSE,
     FINE,
@@ -33,11 +32,11 @@ from .equation import (
     PrescribedPressure,
     PressuresByFriction,
 )
-from .free_contact import largest as largest_next_to_kinks
 from .free_ends import turns_at_ends, turns_at_knots
 from .free_on_layers import Contacts, FreeContactsAtSpeed, Punch
 from .method import Solver
 from .prescribed_pressure import LinearPressure
+from .pressure import largest as largest_next_to_kinks
 from .recovery import largest
 from .solution import Places, Surface, Task, Turns, together
 
@@ -481,8 +480,8 @@ class FreePunches(Punches):
             return self._largest
         each = []
         for i in range(len(self.g)):
-            at = self._kinks(i).tolist(), cusp(profile)
-            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at))  # noqa: B023
+            at = self._kinks(i).tolist()
+            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at, cusp(profile)))  # noqa: B023
         value, place = np.array(each).T
         return value, place
 

@@ -5,7 +5,7 @@ import pytest
 from random_solids import random_solid
 
 from galinx.solvers.contact import residual
-from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.profiles.power import Parabolic, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -21,7 +21,8 @@ def contact(request):
     found = contacts(response, g[:1] if seed == 3 else g, profile, 0.5)
     slope = 2.0 * found.of("half_width")[:, None] / 0.5
     lengths = found.of("centre")[:, None], found.of("half_width")[:, None]
-    return found, lambda s: slope * profile.slope(lengths[0] + lengths[1] * s), found.groups[0].cusps[0]
+    kinks = found.groups[0].pressure.kinks
+    return found, lambda s: slope * profile.slope(lengths[0] + lengths[1] * s), kinks
 
 
 def left(contact, pressure=None, inside=None):

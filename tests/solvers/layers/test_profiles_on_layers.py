@@ -10,8 +10,8 @@ from layers_reference import admittance
 from support import THOROUGH
 
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, local_exponents
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 

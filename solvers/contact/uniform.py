@@ -1,7 +1,9 @@
-"""Contacts with free ends: the ends, and the pressure under the punch.
+"""Contacts on uniform half-planes: states with a pressure, a half-width and a middle, and their stresses.
 
-Both are exact for parabolas and tilted flat punches, and by quadrature for every other convex profile.
-Lengths are over the half-width of each contact, from its middle, stresses over N/(2a) of that half-width.
+What differs between contacts is the pressure. It is exact under flat punches, tilted ones among them, and
+parabolas, and where it is prescribed; by quadrature under every other convex profile with free ends; and
+by the integral equation under a profile between two sharp edges. Lengths are over the half-width of each
+contact, from its middle, stresses over N/(2a) of that half-width.
 
 The ends of a contact with two free ends and any convex profile P meet two conditions. With w of
 :mod:`galinx.solvers.contact.panels`, s over the half-width h from the middle m of the contact:
@@ -11,8 +13,8 @@ The ends of a contact with two free ends and any convex profile P meet two condi
 :mod:`galinx.solvers.contact.ends` solves them.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -27,9 +29,179 @@ from .closed_form import FlatPunch, Weighted
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
+from .prescribed_pressure import LinearPressure
+from .pressure import Pressure, in_plane
 
+#: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
+NEXT_TO_TIP = 1e-6
+#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
+_TERMS = 40
 #: First half-width in the search for the ends [m].
 _FIRST = 1e-3
+
+
+@dataclass(frozen=True)
+class Group:
+    """States whose pressure is of one kind.
+
+    Attributes:
+        rows: numbers of these states, (rows,).
+        pressure: pressure of all these states or of the only one.
+        half_width, centre: half-width and centre of the contact [m], (rows,).
+        K_I: intensities at the left and the right end, (rows, 2).
+    """
+
+    rows: NDArray[np.int64]
+    pressure: Any
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    K_I: NDArray[np.float64]
+
+    @property
+    def α(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the right end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.α), self.rows.shape)
+
+    @property
+    def β(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the left end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.β), self.rows.shape)
+
+    def contact_stress(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at r in (-1, 1), also next to infinite values, (rows, points)."""
+        stress = self.pressure.σ_YY(r)
+        return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
+
+    def off_tips(self, r: NDArray) -> NDArray[np.float64]:
+        """Positions r over the half-width, moved off the places of infinite pressure."""
+        return off_tips(r, self.pressure.tips)
+
+
+def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
+    """Positions r over the half-width, moved off tips, where the pressure is infinite."""
+    for tip in tips:
+        side = np.where(r < tip, -1.0, 1.0)
+        r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
+    return r
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts at one speed with several frictions.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY, (states,).
+        groups: all states by the kind of their pressure.
+    """
+
+    response: Response
+    g: NDArray[np.float64]
+    groups: tuple[Group, ...]
+
+    def of(self, name: str) -> NDArray[np.float64]:
+        """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
+        return self.joined(lambda group: getattr(group, name))
+
+    def joined(self, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+        """Values of all states, (states, ...), from those of every group, (rows, ...)."""
+        if len(self.groups) == 1:
+            return values(self.groups[0])
+        each = [values(group) for group in self.groups]
+        of_states = np.empty((len(self.g), *each[0].shape[1:]))
+        for group, of_group in zip(self.groups, each):
+            of_states[group.rows] = of_group
+        return of_states
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
+        return self.joined(lambda group: group.contact_stress(group.off_tips(r)))
+
+    def pressure(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress σ_YY over N/(2a) at r, also next to infinite values, (states, points)."""
+        return self.joined(lambda group: group.contact_stress(r))
+
+    def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
+        """In-plane stress on the whole surface, off the ends, (states, points)."""
+        return self.on_surface(r)[0]
+
+    def on_surface(self, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_XX and σ_YY, 0 beside the contact, on the whole surface, off the ends, (states, points)."""
+        each = {id(group): self._on_surface(group, r) for group in self.groups}
+        σ_XX, σ_YY = (self.joined(lambda group: each[id(group)][i]) for i in (0, 1))  # noqa: B023
+        return σ_XX, σ_YY
+
+    def _on_surface(self, group: Group, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (rows, points) each."""
+        r, g = group.off_tips(r), self.g[group.rows, None]
+        σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
+        σ_XX = in_plane(self.response, g, σ_YY, group.pressure.hilbert(r))
+        return σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        stresses = np.empty((3, len(self.g), X.shape[1]))
+        for group in self.groups:
+            of_each = group.rows if len(X) > 1 else [0]
+            stresses[:, group.rows] = self.inside_group(group, X[of_each], Y[of_each])
+        return stresses
+
+    def inside_group(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of a group below the surface, at points (1, n) or (rows, n): (3, rows, n)."""
+        return self.response.inside(group.pressure, self.g[group.rows, None], X, Y)
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points with Y <= 0, on the surface, too, (3, states, n)."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        on, stresses = Y == 0.0, self.inside(X, np.where(Y == 0.0, -1.0, Y))
+        columns = np.flatnonzero(on.any(axis=0))
+        for group in self.groups if len(columns) else ():
+            of_each = group.rows if len(X) > 1 else np.zeros(1, dtype=int)
+            places = np.ix_(group.rows, columns)
+            σ_XX, σ_YY = self._on_surface(group, X[np.ix_(of_each, columns)])
+            surface = np.array([σ_XX, σ_YY, self.g[group.rows, None] * σ_YY])
+            below = stresses[:, places[0], places[1]]
+            stresses[:, places[0], places[1]] = np.where(on[np.ix_(of_each, columns)], surface, below)
+        return stresses
+
+    @property
+    def turns(self) -> NDArray[np.float64]:
+        """Free ends and kinks over the half-width, (states, k); NaN for none.
+
+        Stresses are finite there, and go with a power of the distance.
+        """
+        each: list[list[float]] = [[] for _ in self.g]
+        for group in self.groups:
+            kinks = [] if len(group.pressure.tips) else list(group.pressure.kinks)
+            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
+                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
+        positions = np.full((len(each), max(map(len, each))), np.nan)
+        for row, places in zip(positions, each):
+            row[: len(places)] = places
+        return positions
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
+        value, place = np.full((2, len(self.g)), np.nan)
+        for group in self.groups:
+            if np.all(group.α > 0.0) and np.all(group.β > 0.0) and not group.pressure.tips:
+                value[group.rows], place[group.rows] = group.pressure.largest()
+        return value, place
+
+
+def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
+    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
+    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
+    if all(sharp):
+        return flat
+    try:
+        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
+    except SolveError:
+        exact = None  # the method that solves reports it
+    if exact:
+        return Exponents(exact.of("α"), exact.of("β"))
+    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
 
 
 def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
@@ -46,233 +218,34 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
 
 
-#: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
-NEXT_TO_TIP = 1e-6
-#: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
-_CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
-#: Places at which the pressure is sampled for its largest value, and places about kinks; number of tops
-#: that are refined, places between their neighbours, and rounds of refinement.
-_SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
-_BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
-_TOPS, _BETWEEN, _ROUNDS = 5, 21, 8
+def prescribed(response: Response, g: NDArray, pressure: LinearPressure, half_width: float) -> Contacts:
+    """Contacts under a prescribed pressure, of a half-width [m]."""
+    ends = np.tile(-0.5 * pressure.values[[0, -1]], (len(g), 1))
+    return _fixed(response, g, pressure, half_width, ends)
 
 
-@dataclass(frozen=True)
-class Group:
-    """States whose pressure is of one kind.
+def sharp(response: Response, g: NDArray, body: Any) -> Contacts:
+    """Contacts of a punch with two sharp edges, see :class:`galinx.solvers.contact.solution.Body`."""
+    if body.flat:
+        K_I = np.column_stack([FlatPunch(response, g).K_I] * 2)
+        return _fixed(response, g, FlatPunch(response, g[:, None]), body.half_width, K_I)
+    from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
-    Attributes:
-        rows: numbers of these states, (rows,).
-        pressure: a potential with ``σ_YY`` and ``hilbert``, of all these states or of the only one.
-        α, β: exponents at the right and the left end, (rows,).
-        half_width, centre: half-width and centre of the contact [m], (rows,).
-        K_I: intensities at the left and the right end, (rows, 2).
-        infinite: places over the half-width at which the pressure is infinite inside the contact.
-        cusps: places over the half-width at which the pressure has a cusp, and the exponent there.
-    """
-
-    rows: NDArray[np.int64]
-    pressure: Any
-    α: NDArray[np.float64]
-    β: NDArray[np.float64]
-    half_width: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    K_I: NDArray[np.float64]
-    infinite: Sequence[float] = ()
-    cusps: tuple[Sequence[float], float] = ((), 0.0)
-
-    def off(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions r over the half-width, moved off the places of infinite pressure."""
-        for at in self.infinite:
-            side = np.where(r < at, -1.0, 1.0)
-            r = np.where(np.abs(r - at) < NEXT_TO_TIP, at + side * NEXT_TO_TIP, r)
-        return r
+    loads = np.broadcast_to(body.load, g.shape).tolist()
+    groups = []
+    for i, (value, load) in enumerate(zip(g.tolist(), loads)):
+        pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
+        own = (np.array([i]), pressure, np.full(1, body.half_width), np.zeros(1), pressure.K_I[None])
+        groups.append(Group(*own))
+    return Contacts(response, g, tuple(groups))
 
 
-@dataclass(frozen=True)
-class Contacts:
-    """Contacts with free ends at one speed with several frictions.
-
-    Attributes:
-        response: of the half-plane at that speed.
-        g: σ_XY/σ_YY, (states,).
-        groups: all states by the kind of their pressure.
-    """
-
-    response: Response
-    g: NDArray[np.float64]
-    groups: tuple[Group, ...]
-
-    def of(self, name: str) -> NDArray[np.float64]:
-        """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
-        parts = [getattr(group, name) for group in self.groups]
-        values = np.empty((len(self.g), *parts[0].shape[1:]))
-        for group, part in zip(self.groups, parts):
-            values[group.rows] = part
-        return values
-
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
-        stress = np.empty((len(self.g), len(r)))
-        for group in self.groups:
-            stress[group.rows] = group.pressure.σ_YY(group.off(r))
-        return stress
-
-    def alike(self) -> Iterator[tuple[NDArray[np.int64], "Contacts", Sequence[float]]]:
-        """Groups of states with one kind of pressure: their numbers, contacts and cusps, one by one."""
-        for group in self.groups:
-            own = replace(group, rows=np.arange(len(group.rows)))
-            yield group.rows, Contacts(self.response, self.g[group.rows], (own,)), group.cusps[0]
-
-    def pressure(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress σ_YY over N/(2a) at r, also next to infinite values, (states, points)."""
-        stress = np.empty((len(self.g), len(r)))
-        for group in self.groups:
-            stress[group.rows] = group.pressure.σ_YY(r)
-        return stress
-
-    def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
-        """In-plane stress on the whole surface, off the ends, (states, points)."""
-        stress, answer = np.empty((len(self.g), len(r))), self.response
-        for group in self.groups:
-            at, σ_YY = group.off(r), np.zeros((len(group.rows), len(r)))
-            under, g = np.abs(r) < 1.0, self.g[group.rows, None]
-            σ_YY[:, under] = group.pressure.σ_YY(at[under])
-            u_X = answer.q * σ_YY + (answer.n12 + answer.m * g) * group.pressure.hilbert(at)
-            stress[group.rows] = answer.σ_XX(u_X, σ_YY, g * σ_YY)
-        return stress
-
-    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
-        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-        stresses = np.empty((3, len(self.g), X.shape[1]))
-        for group in self.groups:
-            of_each = group.rows if len(X) > 1 else [0]
-            g = self.g[group.rows, None]
-            stresses[:, group.rows] = self.response.inside(group.pressure, g, X[of_each], Y[of_each])
-        return stresses
-
-    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points with Y <= 0, on the surface, too, (3, states, n)."""
-        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-        on = np.broadcast_to(Y == 0.0, (len(self.g), X.shape[1]))
-        stresses = self.inside(X, np.where(Y == 0.0, -1.0, Y))
-        for group in self.groups:
-            for row in group.rows[on[group.rows].any(axis=1)].tolist():
-                r = X[row if len(X) > 1 else 0, on[row]]
-                alone = self._alone(row, group)
-                σ_YY = np.zeros((1, len(r)))
-                σ_YY[:, np.abs(r) < 1.0] = alone.σ_YY(r[np.abs(r) < 1.0])
-                stresses[:, row, on[row]] = np.concatenate([alone.σ_XX(r), σ_YY, self.g[row] * σ_YY])
-        return stresses
-
-    @property
-    def turns(self) -> NDArray[np.float64]:
-        """Free ends and kinks over the half-width, (states, k); NaN for none.
-
-        Stresses are finite there, and go with a power of the distance.
-        """
-        each: list[list[float]] = [[] for _ in self.g]
-        for group in self.groups:
-            kinks = [] if len(group.infinite) else list(group.cusps[0])
-            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
-                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
-        positions = np.full((len(each), max(map(len, each))), np.nan)
-        for row, places in zip(positions, each):
-            row[: len(places)] = places
-        return positions
-
-    def _alone(self, row: int, group: Group) -> "Contacts":
-        """Contact of one state, whose number is ``row``, of a group."""
-        i = int(np.flatnonzero(group.rows == row)[0])
-        pressure = group.pressure
-        if isinstance(pressure, Weighted):
-            α, β, A, B = (
-                np.asarray(part)[i : i + 1] for part in (pressure.α, pressure.β, pressure.A, pressure.B)
-            )
-            pressure = Weighted(α, β, A, B, pressure.order)
-        rows = slice(i, i + 1)
-        alone = Group(
-            np.array([0]), pressure, group.α[rows], group.β[rows], group.half_width[rows],
-            group.centre[rows], group.K_I[rows], group.infinite, group.cusps,
-        )  # fmt: skip
-        return Contacts(self.response, self.g[row : row + 1], (alone,))
-
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
-        value, place = np.full((2, len(self.g)), np.nan)
-        for group in self.groups:
-            finite = (group.α > 0.0) & (group.β > 0.0) & (not group.infinite)
-            if finite.all():
-                value[group.rows], place[group.rows] = _largest(group)
-        return value, place
-
-
-def _largest(group: Group) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest pressure of each state of a group and its place over the half-width, (rows,) each."""
-    if isinstance(group.pressure, Weighted):
-        place = (group.β - group.α) / (group.β + group.α)
-        return -group.pressure.σ_YY(place[:, None])[:, 0], place
-    top, at = largest(lambda r: -group.pressure.σ_YY(group.off(r)), group.cusps)
-    return np.array([top]), np.array([at])
-
-
-def largest(
-    pressure: Callable[[NDArray], NDArray], cusps: tuple[Sequence[float], float] = ((), 0.0)
-) -> tuple[float, float]:
-    """Largest pressure under a punch and its place, by ever finer samples about several tops.
-
-    Args:
-        pressure: at r in (-1, 1), (points,).
-        cusps: places of its cusps, and the exponent there; 0 where the cusp is d log d.
-    """
-    places, exponent = cusps
-    beside = np.ravel(np.add.outer(np.array(places, dtype=float), _BESIDE_KINKS))
-    r = np.unique(np.concatenate([_SAMPLES, beside[np.abs(beside) < 1.0]]))
-    p = pressure(r)
-    tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
-    tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    maxima = [_nearer(pressure, r[i - 1], r[i + 1], places) for i in tops.tolist()]
-    if exponent:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
-        for at in places:
-            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
-            maxima.append((near + (near - far) / (2.0**exponent - 1.0), float(at)))
-    return max(maxima)
-
-
-def _nearer(
-    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float]
-) -> tuple[float, float]:
-    """Largest pressure between two places, and its place; by a parabola at last, if there is no kink."""
-    for _ in range(_ROUNDS):
-        r = np.linspace(low, high, _BETWEEN)
-        p = pressure(r)
-        i = int(np.clip(np.argmax(p), 1, len(r) - 2))
-        step = r[1] - r[0]
-        low, high = r[i] - step, r[i] + step
-        if step < 1e-6:  # next to a kink the largest pressure may have a cusp
-            break
-    if any(low <= at <= high for at in kinks):
-        return float(p.max()), float(r[p.argmax()])
-    p_left, p_middle, p_right = p[i - 1 : i + 2]
-    bend = p_left - 2.0 * p_middle + p_right
-    u = float(np.clip((p_left - p_right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
-    top = p_middle + (p_right - p_left) * u / 2.0 + bend * u**2 / 2.0
-    return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
-
-
-def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
-    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
-    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
-    if all(sharp):
-        return flat
-    try:
-        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
-    except SolveError:
-        exact = None  # the method that solves reports it
-    if exact:
-        return Exponents(exact.of("α"), exact.of("β"))
-    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
+def _fixed(
+    response: Response, g: NDArray, pressure: Pressure, half_width: float, K_I: NDArray
+) -> Contacts:
+    """Contacts of one kind with given ends, of a half-width [m]."""
+    of_each = np.full(len(g), half_width), np.zeros(len(g))
+    return Contacts(response, g, (Group(np.arange(len(g)), pressure, *of_each, K_I),))
 
 
 def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
@@ -307,7 +280,7 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
     A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
     pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
-    return Group(np.arange(len(g)), pressure, a, b, h, h * (b - a), np.zeros((len(g), 2)))
+    return Group(np.arange(len(g)), pressure, h, h * (b - a), np.zeros((len(g), 2)))
 
 
 def _tilted(
@@ -333,8 +306,7 @@ def _tilted(
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
-            K = pressure.K_I[:, 0]
-            groups.append(Group(rows, pressure, α[rows], β[rows], h[rows], centre[rows], K))
+            groups.append(Group(rows, pressure, h[rows], centre[rows], pressure.K_I[:, 0]))
     return tuple(groups)
 
 
@@ -353,13 +325,10 @@ def _by_quadrature(
         rule = rule_of_ends(profile, float(a[i]), float(n[i]))
         m, h = free_ends(punch, lambda _: rule, h, m)  # noqa: B023
         check_reach(profile, m - h, m + h)
-        pressure, tips = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
-        for row in np.flatnonzero(inverse == k).tolist():
-            group = Group(
-                np.array([row]), pressure, a[[i]], 1.0 - a[[i]], np.array([h]), np.array([m]),
-                np.zeros((1, 2)), tips, pressure.cusps,
-            )  # fmt: skip
-            groups.append(group)
+        pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
+        rows = np.flatnonzero(inverse == k)
+        of_each = np.full(len(rows), h), np.full(len(rows), m), np.zeros((len(rows), 2))
+        groups.append(Group(rows, pressure, *of_each))
     return groups
 
 
@@ -379,10 +348,8 @@ def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
     return rule
 
 
-def pressure_of(
-    punch: Punch, a: float, response: Response, g: float, m: float, h: float
-) -> tuple[FreeEnds, tuple[float, ...]]:
-    """Pressure of a contact with given ends, and the places over h of infinite pressure inside.
+def pressure_of(punch: Punch, a: float, response: Response, g: float, m: float, h: float) -> FreeEnds:
+    """Pressure of a contact with given ends.
 
     Args:
         punch: the punch and its load.
@@ -393,6 +360,5 @@ def pressure_of(
     """
     places, slope = punch.kinks(m, h), punch.slope(m, h)
     panels, n = panels_of(punch.profile, a, places), response.n + g * response.n12
-    cusps = places, cusp(punch.profile)
     tips = places if jumps(punch.profile) else ()
-    return FreeEnds(panels, slope(panels.t), slope, n, g * response.q, cusps), tips
+    return FreeEnds(panels, slope(panels.t), slope, n, g * response.q, places, tips, cusp(punch.profile))

@@ -55,9 +55,8 @@ class FlatPunch(EdgeExponents, Pressure, Loaded):
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface over N/(2a); NaN at |r| = 1."""
         r = np.asarray(r, dtype=float)
         with np.errstate(invalid="ignore", divide="ignore"):
-            outside = np.abs(r - 1.0) ** self.α * np.abs(r + 1.0) ** self.β / self._sin
-            weight = (1.0 - r) ** self.α * (1.0 + r) ** self.β
-            F = np.where(under_punch(r), self._cot * weight, np.sign(r) * outside)
+            size = np.abs(1.0 - r) ** self.α * np.abs(1.0 + r) ** self.β
+        F = size * np.where(under_punch(r), self._cot, np.sign(r) / self._sin)
         return np.where(from_edge(r) == 0.0, np.nan, 2.0 * self._sin / np.pi * F)
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
 from ..errors import SolveError
-from ..layers.kernel import Kernel
+from ..layers.kernel import Kernel, Scaled
 from ..layers.layered import LayersAtSpeed
 from .panelled import PanelledPressure, Panels
 from .panelled import parts as panelled
@@ -133,6 +133,14 @@ class PrescribedPressure(SolvedPressure):
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return self.pressure.series(r)
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Knots of the pressure, both ends among them."""
+        return self.pressure.knots
+
+    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return np.zeros_like(edges.α), np.zeros_like(edges.β)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return self.pressure.hilbert(r)
@@ -290,21 +298,27 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class ConvergedPressure:
-    """A pressure and its change with the number of unknowns.
+class Contact:
+    """A contact with its pressure; lengths are over a unit that all states share.
 
     Attributes:
         pressure: the pressure.
         before: the pressure with fewer unknowns.
-        change: relative change of the pressure and its intensities.
+        change: relative change of the pressure and its intensities with the number of unknowns.
+        half_width: of the contact.
+        centre: its middle, from the punch's axis.
+        free: True where the left and the right end are free, and were solved for.
     """
 
     pressure: SolvedPressure
     before: SolvedPressure
     change: float
+    half_width: float = 1.0
+    centre: float = 0.0
+    free: tuple[bool, bool] = (False, False)
 
 
-def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> ConvergedPressure:
+def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> Contact:
     """SolvedPressure of an equation to a relative tolerance, with ``first`` polynomials at first.
 
     Raises:
@@ -318,7 +332,7 @@ def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST)
         if before is not None:
             moved = change(before, now)
             if is_converged(moved, tolerance):
-                return ConvergedPressure(now, before, moved)
+                return Contact(now, before, moved)
         before = now
     raise not_converged(moved, tolerance)
 
@@ -396,34 +410,35 @@ class ContactsAtSpeed:
     def kernel(self) -> Kernel:
         return Kernel(self.stack, self.tolerance / 1e3)
 
-    def solved(self, g: NDArray) -> tuple["PressuresByFriction", NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple["Contacts", NDArray[np.float64]]:
         """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
 
         Args:
             g: σ_XY/σ_YY, sorted, (states,).
         """
         if len(g) <= _FEW:
-            return self._together(g, self._each(g)), np.zeros(1)
+            return Contacts(g, self._each(g)), np.zeros(1)
         count = _FEW
         middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
         while True:
             nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
-            frictions = self._together(nodes, self._each(nodes))
+            frictions = Contacts(nodes, self._each(nodes))
             error = frictions.unresolved
             if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
                 return frictions, np.array([error])
             count = 2 * count - 1
 
-    def _together(self, g: NDArray, each: list[Any]) -> "PressuresByFriction":
-        return PressuresByFriction(g, each)
-
-    def _each(self, g: NDArray) -> list[ConvergedPressure]:
-        answers: list[ConvergedPressure] = []
+    def _each(self, g: NDArray) -> list[Contact]:
+        answers: list[Contact] = []
         first = FIRST
         for value in g.tolist():
             equation = Equation(self.response, self.kernel, value, self.slope)
             answers.append(converged_pressure(equation, self.tolerance, first))
         return answers
+
+    def scaled(self, h: float) -> Scaled:
+        """The kernel of a contact of the half-width h."""
+        return Scaled(self.kernel, h)
 
     @property
     def rounding(self) -> float:
@@ -432,29 +447,66 @@ class ContactsAtSpeed:
 
 
 @dataclass(frozen=True)
-class PressuresByFriction:
-    """Pressures at several frictions, from which those at others are interpolated.
+class Contacts:
+    """Contacts with several frictions, from which those with others are interpolated.
 
     Attributes:
         g: σ_XY/σ_YY, (nodes,).
-        each: pressures with their changes, one for each g.
+        each: contacts, one for each g.
     """
 
     g: NDArray[np.float64]
-    each: list[ConvergedPressure]
+    each: list[Contact]
 
     @property
     def near(self) -> float:
         """|r| up to which p of all pressures can be evaluated."""
-        return min(p.near for solution in self.each for p in (solution.pressure, solution.before))
+        return min(p.near for contact in self.each for p in (contact.pressure, contact.before))
+
+    @cached_property
+    def half_width(self) -> NDArray[np.float64]:
+        """Half-width of every contact, (nodes,)."""
+        return np.array([contact.half_width for contact in self.each])
+
+    @cached_property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of every contact, (nodes,)."""
+        return np.array([contact.centre for contact in self.each])
+
+    @cached_property
+    def free(self) -> NDArray[np.float64]:
+        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
+        return np.array([contact.free for contact in self.each], dtype=float)
+
+    @cached_property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
+        each = [contact.pressure.tips for contact in self.each]
+        places = np.full((len(each), max(map(len, each))), np.inf)
+        for row, tips in zip(places, each):
+            row[: len(tips)] = tips
+        return places
 
     def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
         """Values of a function of every pressure, (nodes, ...)."""
-        return np.array([what(solution.pressure) for solution in self.each])
+        return np.array([what(contact.pressure) for contact in self.each])
 
     def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
         """Values of a function of every pressure, and of that with fewer unknowns, (2, nodes, ...)."""
-        return np.array([self.read(what), [what(solution.before) for solution in self.each]])
+        return self.of_each(lambda pressure, g, h: what(pressure))
+
+    def of_each(self, what: Callable[[Any, float, float], NDArray]) -> NDArray[np.float64]:
+        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
+
+        Those of every contact come first, then those of the pressures with fewer unknowns.
+        """
+        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
+        return np.array(
+            [
+                [what(contact.pressure, g, h) for contact, g, h in nodes],
+                [what(contact.before, g, h) for contact, g, h in nodes],
+            ]
+        )
 
     @cached_property
     def unresolved(self) -> float:
@@ -466,9 +518,11 @@ class PressuresByFriction:
 
     @property
     def smooth(self) -> NDArray[np.float64]:
-        """Samples of every pressure that are smooth in g, (nodes, n)."""
+        """Samples of every contact that are smooth in g, (nodes, n)."""
         r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
-        return self.read(lambda pressure: pressure.series(r))
+        pressures = self.read(lambda pressure: pressure.series(r))
+        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
+        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
     def at(self, g: NDArray) -> NDArray[np.float64]:
         """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
@@ -485,4 +539,4 @@ class PressuresByFriction:
     @property
     def change(self) -> float:
         """Largest relative change of a pressure with the number of unknowns."""
-        return max(solution.change for solution in self.each)
+        return max(contact.change for contact in self.each)

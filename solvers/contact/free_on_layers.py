@@ -39,11 +39,11 @@ from .edges import Exponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
     FIRST,
+    Contact,
+    Contacts,
     ContactsAtSpeed,
-    ConvergedPressure,
     Equation,
     Parts,
-    PressuresByFriction,
     Resolution,
     change,
     check_exponents,
@@ -267,21 +267,6 @@ _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(
 
 
 @dataclass(frozen=True)
-class Contact(ConvergedPressure):
-    """A pressure with its contact; lengths are over a unit that all states share.
-
-    Attributes:
-        half_width: of the contact.
-        centre: its middle, from the punch's axis.
-        free: True where the left and the right end are free, and were solved for.
-    """
-
-    half_width: float = 1.0
-    centre: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-
-@dataclass(frozen=True)
 class ContactAtResolution:
     """A contact at one resolution.
 
@@ -321,56 +306,6 @@ class ContactAtResolution:
         return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
 
 
-@dataclass(frozen=True)
-class Contacts(PressuresByFriction):
-    """Contacts with several frictions, from which those with others are interpolated."""
-
-    each: list[Any]
-
-    @cached_property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of every contact, (nodes,)."""
-        return np.array([contact.half_width for contact in self.each])
-
-    @cached_property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of every contact, (nodes,)."""
-        return np.array([contact.centre for contact in self.each])
-
-    @cached_property
-    def free(self) -> NDArray[np.float64]:
-        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
-        return np.array([contact.free for contact in self.each], dtype=float)
-
-    @cached_property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
-        each = [contact.pressure.tips for contact in self.each]
-        places = np.full((len(each), max(map(len, each))), np.inf)
-        for row, tips in zip(places, each):
-            row[: len(tips)] = tips
-        return places
-
-    def of_each(self, what: Callable[[SolvedPressure, float, float], NDArray]) -> NDArray[np.float64]:
-        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
-
-        Those of every contact come first, then those of the pressures with fewer unknowns.
-        """
-        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
-        return np.array(
-            [
-                [what(contact.pressure, g, h) for contact, g, h in nodes],
-                [what(contact.before, g, h) for contact, g, h in nodes],
-            ]
-        )
-
-    @property
-    def smooth(self) -> NDArray[np.float64]:
-        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
-        pressures = super().smooth
-        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
-
-
 #: Accuracy of a half-width at rest, over which others are given.
 _AT_REST = 1e-5
 #: Accuracy with which an edge counts as lifted off.
@@ -406,17 +341,14 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 
-    def solved(self, g: NDArray) -> tuple[PressuresByFriction, NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple[Contacts, NDArray[np.float64]]:
         # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
         if self.every or len(kinks(self.punch.profile)) or isinstance(self.punch.profile, Flat):
             return Contacts(g, self._each(g)), np.zeros(1)
         return super().solved(g)
 
-    def _together(self, g: NDArray, each: list[Any]) -> PressuresByFriction:
-        return Contacts(g, each)
-
-    def _each(self, g: NDArray) -> list[ConvergedPressure]:
-        answers: list[ConvergedPressure] = []
+    def _each(self, g: NDArray) -> list[Contact]:
+        answers: list[Contact] = []
         h = 1.0
         for value in g.tolist():
             contact = self.contact(value, h)

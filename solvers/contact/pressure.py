@@ -85,6 +85,10 @@ class SolvedPressure(Pressure):
         """Intensities at the left and the right end as in Eqs 56-57, dimensionless, (2,)."""
         return -0.5 * self.series(ENDS)
 
+    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Exponents α and β at other frictions, (states,), by the local analysis of sharp edges there."""
+        return edges.α, edges.β
+
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
         raise NotImplementedError
@@ -186,7 +190,17 @@ class LoadedHalfPlane(Loaded):
     pressure: Any
 
 
-def in_plane(response: Response, g: Any, σ_YY: NDArray, H: NDArray) -> NDArray[np.float64]:
-    """In-plane stress over N/(2a) on the surface, from the contact stress and its Hilbert transform."""
-    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H
+def in_plane(
+    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
+) -> NDArray[np.float64]:
+    """In-plane stress over N/(2a) on the surface.
+
+    Args:
+        response: of the surface's solid.
+        g: σ_XY/σ_YY under the punch.
+        σ_YY: contact stress over N/(2a).
+        H: its Hilbert transform.
+        strain: strain μ u,X over N/(2a) that layers add.
+    """
+    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + strain
     return response.σ_XX(u_X, σ_YY, g * σ_YY)

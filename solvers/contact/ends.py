@@ -30,7 +30,7 @@ _LEAN, _NEXT = 1.0, 1e-3
 #: where the former is infinite; how much farther than to the expected root it goes.
 _GROWTH, _STEP, _BEYOND = 2.0, 1.0, 1.1
 #: Farthest middle over the half-width, and change of the half-width's logarithm.
-_FARTHEST, _WIDEST = 1e4, 100.0
+_FARTHEST, _WIDEST = 1e12, 100.0
 #: Largest size of a function that is infinite; rounding of a root, and of a sum over its terms' sizes.
 _SIZE, _ROUNDING, _OF_SUMS = 200.0, 1e-16, 4e-16
 

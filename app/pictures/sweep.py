@@ -482,6 +482,6 @@ def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:
     response = body.response(c)
     task = Task(0, body, response, places, (), ())
     stack = response.stack(body.half_width)  # type: ignore[attr-defined]
-    punch = on_layers.sharp_at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
+    punch = on_layers.at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
     σ_YY, σ_XY, above, below = punch.interfaces[:, 0, 0]
     return np.array([*punch.K_I[0], -σ_YY.min(), np.abs(σ_XY).max(), above.max(), below.max()])

@@ -18,7 +18,7 @@ a few frictions the equation is solved at Chebyshev's points in g, and interpola
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,37 +116,40 @@ class PrescribedPressure(SolvedPressure):
     """Prescribed pressure with its integrals.
 
     Attributes:
-        pressure: σ_YY over N/(2a).
+        prescribed: σ_YY over N/(2a).
         nodes: number of points of a panel.
         length: length over a over which the kernel on the surface varies.
         rough: True where the kernel has a logarithm at 0.
     """
 
-    α: ClassVar[float] = 0.0
-    β: ClassVar[float] = 0.0
-    near: ClassVar[float] = -1.0  # its Hilbert transform is exact everywhere
+    α, β, near = 0.0, 0.0, -1.0  # its Hilbert transform is exact everywhere
 
-    pressure: LinearPressure
+    prescribed: LinearPressure
     nodes: int
     length: float
     rough: bool
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.pressure.series(r)
+        return self.prescribed.series(r)
+
+    @property
+    def resultant(self) -> float:  # type: ignore[override]
+        """∫ σ_YY d(X/a) over N/(2a)."""
+        return self.prescribed.resultant
 
     @property
     def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
         """Knots of the pressure, both ends among them."""
-        return self.pressure.knots
+        return self.prescribed.knots
 
     def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return np.zeros_like(edges.α), np.zeros_like(edges.β)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        return self.pressure.hilbert(r)
+        return self.prescribed.hilbert(r)
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return self._weighted(self._cut(self.pressure.knots, finest))
+        return self._weighted(self._cut(self.prescribed.knots, finest))
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         whole = self.points(self.length)
@@ -168,7 +171,7 @@ class PrescribedPressure(SolvedPressure):
     def _towards(self, place: float) -> NDArray[np.float64]:
         """Ends of panels that get shorter towards a place."""
         near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
-        knots = self.pressure.knots
+        knots = self.prescribed.knots
         more = np.concatenate([place - near, place + near])
         inside = more[(more > knots[0]) & (more < knots[-1])]
         return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
@@ -177,7 +180,7 @@ class PrescribedPressure(SolvedPressure):
         x, w = np.polynomial.legendre.leggauss(self.nodes)
         half = np.diff(ends) / 2.0
         t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
-        return t, (half[:, None] * w).ravel() * self.pressure(t)
+        return t, (half[:, None] * w).ravel() * self.prescribed(t)
 
 
 #: Number of polynomials at first, its growth from step to step, and its maximum.

@@ -176,10 +176,10 @@ class Kinked(SolvedPressure):
 
     @cached_property
     def _alone(self) -> PanelledPressure:
-        return on_panels(self.alone, self.α, self.β, self.finest, self.places)
+        return on_panels(self.alone, self.finest, self.places)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return without_weight(self.alone, self.α, self.β, off_tips(r, self.tips)) + self.more.series(r)
+        return without_weight(self.alone, off_tips(r, self.tips)) + self.more.series(r)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         values, under = self.more.rest(r, near), np.abs(r) < 1.0
@@ -192,25 +192,20 @@ class Kinked(SolvedPressure):
         return self.more.integral(kernel, r) + integral(self._alone, kernel, r, self.rough)
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = on_panels(self.alone, self.α, self.β, min(finest, self.finest), self.places)
+        fine = on_panels(self.alone, min(finest, self.finest), self.places)
         t, σ = self.more.points(finest)
         return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
 
 
-def without_weight(alone: FreeEnds, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
-    """σ₀ over the weight (1 - r)^α (1 + r)^β, which is 0 from both ends on."""
-    r, inside = np.asarray(r, dtype=float), np.abs(r) < 1.0
-    values, at = np.zeros_like(r), r[inside]
-    values[inside] = alone.σ_YY(at) * (1.0 - at) ** -α * (1.0 + at) ** -β
-    return values
+def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
+    """σ₀ over the weight of edges, whose exponents are 1 less, which is 0 from both ends on."""
+    return (1.0 - r) * (1.0 + r) * alone.series(r)
 
 
-def on_panels(
-    alone: FreeEnds, α: float, β: float, finest: float, places: tuple[float, ...]
-) -> PanelledPressure:
+def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> PanelledPressure:
     """σ₀ by its values on panels that get shorter towards its kinks."""
-    panels = Panels(α, β, finest, places)
-    return PanelledPressure(panels, without_weight(alone, α, β, panels.t))
+    panels = Panels(alone.α - 1.0, alone.β - 1.0, finest, places)
+    return PanelledPressure(panels, without_weight(alone, panels.t))
 
 
 def integral(
@@ -249,7 +244,7 @@ def kinked(
     )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
-    on_surface = on_panels(alone, equation.α, equation.β, longest, places)
+    on_surface = on_panels(alone, longest, places)
 
     def of_layers(r: NDArray) -> NDArray[np.float64]:
         by_kernel = integral(on_surface, equation.kernel, r, rough)

@@ -130,7 +130,7 @@ class AtSpeed:
         """
         X, σ_of_depths, errors = self.task.places.along, [], []
         widest = float(self.nodes.half_width.max())
-        for depth in self.speed.stack.depths.tolist():
+        for depth in self.speed.stack.depths[: len(self.task.places.interfaces)].tolist():
             level = self._level(depth, widest * (1.0 + float(np.abs(X).max())))
 
             def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
@@ -158,8 +158,8 @@ class AtSpeed:
             def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
                 if h not in levels:  # noqa: B023
                     levels[h] = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))  # noqa: B023
-                level = levels[h]  # noqa: B023
-                u_X, σ_YY, σ_XY = level.read(*pressure.points(-Y), g, X, h)  # noqa: B023
+                level, (t, σ) = levels[h], pressure.points(-Y)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
                 return np.array([_in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
             σ_inside[..., at_depth] = np.moveaxis(self.nodes.of_each(read), 2, 0)
@@ -259,7 +259,7 @@ class LayeredSolution:
     @property
     def normal_force(self) -> NDArray[np.float64]:
         """Normal force of a prescribed pressure over N/2, (states,)."""
-        return np.full(len(self.g), self.at.task.body.pressure.resultant)
+        return np.full(len(self.g), self.at.nodes.each[0].pressure.resultant)
 
     @cached_property
     def estimates(self) -> "Estimates":
@@ -330,10 +330,11 @@ class LayeredSolution:
 
     def _turns(self, surface: Surface) -> Turns | None:
         """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
-        body = self.at.task.body
-        if len(self.at.nodes.each[0].pressure.breaks):
-            return turns_at_knots(body.pressure, self.g, self._σ_XX)
-        if jumps(body.profile) or not len(kinks(body.profile)) or not self.free.any():
+        profile = self.at.task.body.profile
+        pressure: Any = self.at.nodes.each[0].pressure
+        if len(pressure.breaks):
+            return turns_at_knots(pressure.prescribed, self.g, self._σ_XX)
+        if jumps(profile) or not len(kinks(profile)) or not self.free.any():
             return None
         ends = turns_at_ends(surface, self.local)
         each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]

@@ -12,7 +12,7 @@ for what p(r) alone contributes is what the exponents make vanish.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -204,7 +204,7 @@ class PanelledPressure(SolvedPressure):
         p: pressure over N/(2a) without its weight at their points, (n,).
     """
 
-    near: ClassVar[float] = 1.0
+    near = 1.0
 
     panels: Panels
     p: NDArray[np.float64]

@@ -8,7 +8,7 @@ logarithms cancel; far away L and σ(w) L + ... are sums of powers of 1/w, in wh
 import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,8 +37,7 @@ class LinearPressure(Pressure):
         values: σ_YY there, not all of them 0, (n,).
     """
 
-    α: ClassVar[float] = 0.0
-    β: ClassVar[float] = 0.0
+    α, β = 0.0, 0.0
 
     knots: NDArray[np.float64]
     values: NDArray[np.float64]
@@ -49,7 +48,7 @@ class LinearPressure(Pressure):
         return self.knots
 
     @property
-    def resultant(self) -> float:
+    def resultant(self) -> float:  # type: ignore[override]
         """∫ σ_YY d(X/a) over N/(2a)."""
         return float(np.diff(self.knots) @ (self.values[1:] + self.values[:-1]) / 2.0)
 

@@ -35,6 +35,7 @@ class Pressure:
         tips: places inside at which it is infinite.
         cusp: exponent below 1 of its change by the distance from a kink; 0 for none.
         breaks: ends of pieces in which it is linear; none for other pressures.
+        resultant: ∫ σ_YY d(X/a) over N/(2a); -2 under a punch.
     """
 
     α: Any
@@ -43,6 +44,7 @@ class Pressure:
     tips: Sequence[float] = ()
     cusp: float = 0.0
     breaks: Sequence[float] | NDArray = ()
+    resultant: float = -2.0
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         """Smooth factor p over N/(2a) at |r| <= 1."""

@@ -117,10 +117,6 @@ class Contacts:
         """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
         return self.joined(lambda group: group.contact_stress(group.off_tips(r)))
 
-    def pressure(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress σ_YY over N/(2a) at r, also next to infinite values, (states, points)."""
-        return self.joined(lambda group: group.contact_stress(r))
-
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
         """In-plane stress on the whole surface, off the ends, (states, points)."""
         return self.on_surface(r)[0]

@@ -102,6 +102,18 @@ def test_a_load_that_is_infinite_on_one_side():
     assert h == pytest.approx(3.0, rel=1e-13)
 
 
+def test_an_expensive_load_is_called_as_often_as_its_rounding_asks_for():
+    punch, called = Punch(Shape(np.sign), 1.0, LOAD), {}
+    for rounding in (1e-3, 1e-13):
+
+        def load(h, rounding=rounding):
+            called.setdefault(rounding, []).append(h)
+            return 1.7 * np.log(h / 3.0) + 0.1 * np.log(h / 3.0) ** 3
+
+        assert half_width_of_load(load, 1.0, punch, rounding) == pytest.approx(3.0, rel=rounding)
+    assert len(called[1e-3]) < len(called[1e-13]) <= 12
+
+
 def test_roots_are_places_where_the_function_was_called():
     called = []
 

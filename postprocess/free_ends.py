@@ -781,8 +781,8 @@ class KinkedPressure:
 
     def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
         """Continuation of the pressure to a kink from one side."""
-        ends = np.concatenate([[-1.0], self.kinks, [1.0]])
-        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
+        # Either side's series are smooth as far as the nearer neighbour, whichever side that is on.
+        gap = np.diff(np.concatenate([[-1.0], self.kinks, [1.0]]))[number : number + 2].min()
         return towards_kink(float(gap), self._exponent, self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:

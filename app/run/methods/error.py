@@ -30,6 +30,7 @@ from galinx.postprocess.pressure import JacobiPressure, StretchedPressure
 from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.quantity import INTENSITIES
 from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE, YIELD
+from galinx.solvers.contact import from_edge
 from galinx.solvers.fem.space import Space
 
 from ...plan.fem import FemPlan, levels
@@ -111,6 +112,10 @@ def of_interfaces(σ: NDArray) -> Gauge:
     return Gauge(AT_INTERFACES, values, of)
 
 
+#: Words of output.quantities that request stresses, in the order of their gauges.
+_STRESSES = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
+
+
 class StressGauges:
     """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
@@ -123,7 +128,8 @@ class StressGauges:
     def __init__(
         self, work: Discretisation, task: Task, displaced: Callable[[Task], Displacement]
     ) -> None:
-        self._words, self._task = work.stresses, gauged(task)
+        self._words = [word for word in _STRESSES if word in work.stresses]
+        self._task = gauged(task)
         self._displacement = displaced(self._task)
         self._displacement.prepare(self._words)
 
@@ -151,24 +157,55 @@ class StressGauges:
             gauges.append(of_interfaces(self._displacement.interfaces(weights)))
         return gauges
 
-    def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
+    def mirrored(
+        self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray, size: NDArray | None
+    ) -> list[Gauge]:
         """Gauges of states, of their mirror images where the sign is negative.
 
-        Points inside have no mirror image, those on the surface have: σ_XX there stands for both.
+        Points inside have no mirror image, those on the surface have: σ_XX there stands for both, no
+        nearer to an edge than the points are.
+
+        Args:
+            sign: 1, or -1 for the mirror images.
+            g, weights, σ_YY: as of :meth:`of`.
+            size: sizes to which changes are relative, (states, n), of :meth:`size`.
         """
-        if not self._words:
+        if size is None:
             return []  # no derivative is taken that is not requested
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
-        return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
+        kept = [(word, self._as_near(word)) for word in self._words]
+        return [Gauge(word, surface[:, near], size[:, near]) for word, near in kept]
+
+    def size(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64] | None:
+        """Sizes of σ_XX on the surface, (states, n), None where no stress is requested."""
+        if not self._words:
+            return None
+        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+        return stresses.of_in_plane(σ_XX, self._task.places.X)
 
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
-        """Effect of rounding of the fields on stresses, relative: that on the surface for every word."""
-        if not self._words:
+        """Effect of rounding of the fields on stresses, relative, by word.
+
+        It is that on the surface, no nearer to an edge than the word's points are.
+        """
+        size = self.size(g, weights, σ_YY)
+        if size is None:
             return []
-        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
-        noise = self._displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self._task.places.X)
+        noise = self._displacement.rounding(weights) / size
         solved = _SOLVED / self._task.response.margin**0.5
-        return [solved * float(noise.max())] * len(self._words)
+        return [solved * float(noise[:, self._as_near(word)].max()) for word in self._words]
+
+    def _as_near(self, word: str) -> NDArray[np.bool_]:
+        """Mask of the places on the surface no nearer to an edge than the places of a word, (n,)."""
+        places = self._task.places
+        X, Y = places.X, np.zeros(1)
+        if word in (BELOW, YIELD):
+            X, Y = (places.points if word == BELOW else places.around).T
+        elif word == AT_INTERFACES:
+            X, Y = places.along, places.interfaces[:, None]
+        on_surface = from_edge(places.X)
+        nearest = np.hypot(from_edge(X), Y).min(initial=np.inf)
+        return np.asarray(on_surface >= min(nearest, on_surface.max()))
 
 
 def gauged(task: Task) -> Task:
@@ -329,6 +366,9 @@ PROBES = 9
 #: to the highest degree exceeds the tolerance by this factor.
 _DECAY, _DOUBT = 2, 3.0
 
+#: Share of a part of the error at the degree before from which on it is the same at all degrees.
+_LASTS = 0.7
+
 
 @contextmanager
 def climbed(
@@ -387,7 +427,7 @@ def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
         loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
     error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
-    while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
+    while not plan.fixed and ladder.degree < DEGREES[1] and error.of_degree:
         if _stalls(changes, ladder.degree, share * plan.tolerance):
             break
         ladder.add(g, ladder.degree + 1)
@@ -418,8 +458,9 @@ class MeasuredError:
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
-        excessive: True where an error exceeds the tolerance, and a higher degree would make it smaller.
-        of_cells: True where, besides, most of it is neither rounding nor the effect of the outer radius.
+        excessive: True where an error exceeds the tolerance, and most of it is not of the outer radius.
+        of_cells: True where, besides, most of it does not last on finer cells, see :meth:`_lasting`.
+        of_degree: True where that, or the part that lasts is itself within tolerance.
         worst: largest relative error of the probes.
     """
 
@@ -430,6 +471,7 @@ class MeasuredError:
         gauges = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(gauges)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
+        self._bounds = dict(self._rounding)
         if not ladder.levels[-1].mirrored:
             # Only what rounding might do is known there; what it does is in the last change, once.
             for word, changes in self._sample.items():
@@ -448,9 +490,11 @@ class MeasuredError:
             name: error > np.maximum(tolerance, 1.1 * unseen[name]) for name, error in errors.items()
         }
         self.excessive = any(bool(states.any()) for states in wrong.values())
-        self.of_cells = not ladder.work.plan.fixed and any(
-            bool((states & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
-            for name, states in wrong.items()
+        lasting = self._lasting(gauges, unseen, errors)
+        mended = {name: states & (2.0 * lasting[name] < errors[name]) for name, states in wrong.items()}
+        self.of_cells = not ladder.work.plan.fixed and any(bool(states.any()) for states in mended.values())
+        self.of_degree = self.of_cells or any(
+            bool((states & (lasting[name] <= tolerance)).any()) for name, states in wrong.items()
         )
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
         self._tolerance = tolerance
@@ -497,6 +541,25 @@ class MeasuredError:
             + ROUNDING * self._rounding[word]
             for word, changes in _changes(gauges).items()
         }
+
+    def _lasting(
+        self, gauges: list[list[Gauge]], unseen: dict[str, NDArray], errors: dict[str, NDArray]
+    ) -> dict[str, NDArray[np.float64]]:
+        """Parts of errors that remain at any degree and on finer cells, (states,), by word.
+
+        These are the effect of the outer radius, rounding, and what a level shows by itself where the
+        degree before showed hardly more. Changes that a bound on rounding explains, and that are no
+        smaller than those of the degree before, are rounding, and all of the error is.
+        """
+        lasting = {}
+        for before_last, last in zip(*gauges[-2:]):
+            word = last.word
+            own = np.where(last.unresolved > _LASTS * before_last.unresolved, last.unresolved, 0.0)
+            lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own
+            earlier, change = (float(changes.max()) for changes in self._sample[word][-2:])
+            if _LASTS * earlier <= change <= ROUNDING * self._bounds[word]:
+                lasting[word] = np.maximum(lasting[word], errors[word])
+        return lasting
 
     def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors by changes from level to level, (states,)."""

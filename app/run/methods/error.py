@@ -369,6 +369,9 @@ _DECAY, _DOUBT = 2, 3.0
 #: Share of a part of the error at the degree before from which on it is the same at all degrees.
 _LASTS = 0.7
 
+#: Share of a bound on rounding that rounding takes at least, see ``_SOLVED``.
+_CERTAIN = 0.2
+
 
 @contextmanager
 def climbed(
@@ -459,8 +462,11 @@ class MeasuredError:
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
         excessive: True where an error exceeds the tolerance, and most of it is not of the outer radius.
-        of_cells: True where, besides, most of it does not last on finer cells, see :meth:`_lasting`.
-        of_degree: True where that, or the part that lasts is itself within tolerance.
+        of_degree: True where, besides, most of it, or enough for the tolerance, is not of what lasts at
+            any degree, see :meth:`_lasting`.
+        floor: least error that finer cells would leave, of the probes.
+        of_cells: True where, besides, most of it does not last on finer cells either, and the floor is
+            within tolerance.
         worst: largest relative error of the probes.
     """
 
@@ -491,9 +497,12 @@ class MeasuredError:
         }
         self.excessive = any(bool(states.any()) for states in wrong.values())
         lasting = self._lasting(gauges, unseen, errors)
-        mended = {name: states & (2.0 * lasting[name] < errors[name]) for name, states in wrong.items()}
-        self.of_cells = not ladder.work.plan.fixed and any(bool(states.any()) for states in mended.values())
-        self.of_degree = self.of_cells or any(
+        mended = any(
+            bool((states & (2.0 * lasting[name] < errors[name])).any()) for name, states in wrong.items()
+        )
+        self.floor = self._floor(gauges)
+        self.of_cells = not ladder.work.plan.fixed and mended and self.floor <= tolerance
+        self.of_degree = mended or any(
             bool((states & (lasting[name] <= tolerance)).any()) for name, states in wrong.items()
         )
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
@@ -503,10 +512,13 @@ class MeasuredError:
         """This error, after a warning where the tolerance is not reached."""
         ladder = self._ladder
         if self.excessive and not ladder.work.plan.fixed:
+            rest = "and falls too slowly"
+            if self.floor > self._tolerance:
+                rest = f"of which {self.floor:.1e} would remain on any cells"
             ladder.work.warn(
                 f"finite elements at c = {ladder.task.response.c:g} do not reach the tolerance "
                 f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
-                f"{ladder.degree}, and falls too slowly"
+                f"{ladder.degree}, {rest}"
             )
         return self
 
@@ -551,15 +563,21 @@ class MeasuredError:
         degree before showed hardly more. Changes that a bound on rounding explains, and that are no
         smaller than those of the degree before, are rounding, and all of the error is.
         """
-        lasting = {}
-        for before_last, last in zip(*gauges[-2:]):
-            word = last.word
-            own = np.where(last.unresolved > _LASTS * before_last.unresolved, last.unresolved, 0.0)
-            lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own
+        lasting, own = {}, _own(gauges)
+        for word in errors:
+            lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own[word]
             earlier, change = (float(changes.max()) for changes in self._sample[word][-2:])
             if _LASTS * earlier <= change <= ROUNDING * self._bounds[word]:
                 lasting[word] = np.maximum(lasting[word], errors[word])
         return lasting
+
+    def _floor(self, gauges: list[list[Gauge]]) -> float:
+        """Rounding that is certain, and what levels show by themselves; largest of all words."""
+        certain = 1.0 if self._ladder.levels[-1].mirrored else _CERTAIN
+        return max(
+            float(np.max(ROUNDING * certain * self._bounds[word] + own))
+            for word, own in _own(gauges).items()
+        )
 
     def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors by changes from level to level, (states,)."""
@@ -613,6 +631,14 @@ class MeasuredError:
                 beside *= gauge.word != AT_INTERFACES
                 errors[gauge.word] = innermost + beside + far * (of_edges + of_places)
         return errors
+
+
+def _own(levels: list[list[Gauge]]) -> dict[str, Any]:
+    """Errors that a level shows by itself where the level before showed hardly more, by word."""
+    return {
+        last.word: np.where(last.unresolved > _LASTS * before_last.unresolved, last.unresolved, 0.0)
+        for before_last, last in zip(*levels[-2:])
+    }
 
 
 def _changes(levels: list[list[Gauge]]) -> dict[str, list[NDArray[np.float64]]]:

@@ -148,6 +148,20 @@ def test_a_ladder_ends_where_only_what_every_level_shows_is_left():
     assert max(work.solved) <= FIRST + 1 and work.said
 
 
+@pytest.mark.parametrize("mirrored", [True, False])
+def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored):
+    """Also where errors are larger still, and would fall."""
+
+    def slow(space, g):
+        return level(1e-3 * 0.8 ** space[1] * (-1.0) ** space[1], rounding=1e-6, mirrored=mirrored)
+
+    finer = Work(1e-9, None)
+    with solved_to_tolerance(Work(1e-7, None, finer), TASK, G, slow) as (ladder, error):
+        assert error.excessive and ladder.work is not finer and error.floor > 1e-7
+    (text,) = ladder.work.said
+    assert text.endswith(f"of which {error.floor:.1e} would remain on any cells")
+
+
 def test_a_level_that_shows_less_at_every_degree_is_not_given_up():
     def resolved(space, g):
         return level(10.0 ** (2.0 - 1.2 * space[1]), left=10.0 ** (2.0 - space[1]))

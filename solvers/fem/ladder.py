@@ -551,7 +551,7 @@ class MeasuredError:
         degree before showed hardly more. Changes that a bound on rounding explains, and that are no
         smaller than those of the degree before, are rounding, and all of the error is.
         """
-        lasting, own = {}, _own(gauges)
+        lasting, own = {}, self._own(gauges)
         for word in errors:
             lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own[word]
             earlier, change = (float(changes.max()) for changes in self._sample[word][-2:])
@@ -559,12 +559,24 @@ class MeasuredError:
                 lasting[word] = np.maximum(lasting[word], errors[word])
         return lasting
 
+    def _own(self, gauges: list[list[Gauge]]) -> dict[str, Any]:
+        """Errors that a level shows by itself where the level before showed hardly more, by word.
+
+        Over layers these may fall later: with the degree more functions recover the pressure.
+        """
+        if self._ladder.task.body.layered:
+            return {last.word: 0.0 for last in gauges[-1]}
+        return {
+            last.word: np.where(last.unresolved > _LASTS * earlier.unresolved, last.unresolved, 0.0)
+            for earlier, last in zip(*gauges[-2:])
+        }
+
     def _floor(self, gauges: list[list[Gauge]]) -> float:
         """Rounding that is certain, and what levels show by themselves; largest of all words."""
         certain = 1.0 if self._ladder.levels[-1].mirrored else _CERTAIN
         return max(
             float(np.max(ROUNDING * certain * self._bounds[word] + own))
-            for word, own in _own(gauges).items()
+            for word, own in self._own(gauges).items()
         )
 
     def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
@@ -619,14 +631,6 @@ class MeasuredError:
                 beside *= gauge.word != AT_INTERFACES
                 errors[gauge.word] = innermost + beside + far * (of_edges + of_places)
         return errors
-
-
-def _own(levels: list[list[Gauge]]) -> dict[str, Any]:
-    """Errors that a level shows by itself where the level before showed hardly more, by word."""
-    return {
-        last.word: np.where(last.unresolved > _LASTS * before_last.unresolved, last.unresolved, 0.0)
-        for before_last, last in zip(*levels[-2:])
-    }
 
 
 def _changes(levels: list[list[Gauge]]) -> dict[str, list[NDArray[np.float64]]]:

@@ -252,8 +252,8 @@ def congruent_cells(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Cells that stand for all cells congruent to them but for size, and the model of each cell.
 
-    The largest cell of each kind is its model, on whichever rank it lies: next to a punch edge small cells
-    have few digits of their shape, so a matrix of one of them would depend on how the mesh is shared out.
+    The largest cell of each kind is its model, on whichever rank it lies: next to a punch edge small
+    cells have few digits of their shape, so matrices by one of them would depend on which rank has it.
 
     Args:
         corners: vertices of this rank's cells, (n, 4, 2 or 3).

@@ -335,9 +335,7 @@ class Space:
             for batch in self.pieces(len(cells)):
                 yield from zip(self.condensed(response, batch), cells[batch])
             return
-        models, members = model_cells(
-            self.vertices, response, self.form.constants, self.comm.allgather
-        )
+        models, members = model_cells(self.vertices, response, self.form.constants, self.comm.allgather)
         for batch in self.pieces(len(models)):
             yield from zip(self._cells(self.kernel.condense, response, models[batch]), members[batch])
 

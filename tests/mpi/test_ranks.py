@@ -91,13 +91,15 @@ def test_dolfinx_assembles_the_same_on_all_ranks_together(form):
 
 @pytest.mark.parametrize("mesh", ["box", "graded"])
 def test_a_cell_has_the_matrix_that_it_has_on_one_rank(mesh):
-    """At 1e-11 a from an edge vertices have five digits of a cell's shape: it matters which cell is taken."""
+    """At 1e-11 a from an edge vertices have five digits of a cell's shape: the model matters."""
     refinement, models = MESHES[mesh].refinement(Requirements(1e-6, 1e-7, 1e5)), []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         space = space_on(mesh, refinement, 2, comm)
         corners, members = model_cells(space.vertices, MovingFrame(2.0, 0.6), (), comm.allgather)
         of_rank = [
-            (space.vertices[i].tobytes(), of.tobytes()) for of, cells in zip(corners, members) for i in cells
+            (space.vertices[i].tobytes(), of.tobytes())
+            for of, cells in zip(corners, members)
+            for i in cells
         ]
         models.append(dict(pair for part in comm.allgather(of_rank) for pair in part))
     assert len(set(models[0].values())) < len(models[0])

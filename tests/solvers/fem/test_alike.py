@@ -53,14 +53,15 @@ def test_models_are_the_same_however_cells_are_shared_out():
     corners, kinds = np.concatenate([corners, other]), np.zeros(5, dtype=int)
     alone, like = congruent_cells(corners, kinds)
     for parts in ([0, 1], [2, 3, 4]), ([3, 1, 4], [0, 2]), ([2], [4, 3, 1, 0]), ([], [4, 2, 0, 1, 3]):
-        # What ranks collect first are their largest cells, then the kinds of these.
-        gathered: list[list] = [[], []]
+        # Ranks collect their largest cells, then the kinds of these.
+        rounds: list[list] = [[], []]
         for part in parts:
-            rounds = iter(gathered)
-            congruent_cells(corners[part], kinds[part], lambda of: [next(rounds).append(of) or of])
+            to = iter(rounds)
+            congruent_cells(corners[part], kinds[part], lambda own, to=to: [next(to).append(own) or own])
         for part in parts:
-            rounds = iter(gathered)
-            models, which = congruent_cells(corners[part], kinds[part], lambda _: next(rounds))
+            models, which = congruent_cells(
+                corners[part], kinds[part], lambda _, rounds=iter(rounds): next(rounds)
+            )
             np.testing.assert_array_equal(models[which], alone[like[part]])
 
 

@@ -59,9 +59,8 @@ def test_models_are_the_same_however_cells_are_shared_out():
             to = iter(rounds)
             congruent_cells(corners[part], kinds[part], lambda own, to=to: [next(to).append(own) or own])
         for part in parts:
-            models, which = congruent_cells(
-                corners[part], kinds[part], lambda _, rounds=iter(rounds): next(rounds)
-            )
+            each = iter(rounds)
+            models, which = congruent_cells(corners[part], kinds[part], lambda _, each=each: next(each))
             np.testing.assert_array_equal(models[which], alone[like[part]])
 
 

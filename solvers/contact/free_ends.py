@@ -797,11 +797,12 @@ class KinkedPressure:
 
     def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
         """Continuation of the pressure to a kink from one side."""
-        gaps, right = np.diff(np.concatenate([[-1.0], self.kinks, [1.0]]))[number : number + 2], side > 0.0
+        gaps = np.diff(np.concatenate([[-1.0], self.kinks, [1.0]]))[number : number + 2]
+        right = int(side > 0.0)
         # Either side's series are smooth as far as the nearer neighbour, whichever side that is on; but
         # samples that all lie in the innermost cell would show nothing of its error.
-        cell = float(self._facets_beside(self.kinks[[number]])[int(right), 0])
-        gap = min(float(gaps[int(right)]), max(float(gaps.min()), _CELLS_SAMPLED * cell / self._farthest))
+        cell = float(self._facets_beside(self.kinks[[number]])[right, 0])
+        gap = min(float(gaps[right]), max(float(gaps.min()), _CELLS_SAMPLED * cell / self._farthest))
         return towards_kink(gap, self._exponent, self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:

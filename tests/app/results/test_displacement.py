@@ -7,7 +7,8 @@ from support import THOROUGH, computed
 from galinx import template
 from galinx.app.errors import BadInput
 
-ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0}
+#: One state, of which no stresses are asked: these need degrees of their own.
+ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0, "output.quantities": ["sif"]}
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,7 @@ from support import THOROUGH, computed
 from galinx import template
 from galinx.app.errors import BadInput
 
-#: One state, of which no stresses are asked: these need degrees of their own.
-ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0, "output.quantities": ["sif"]}
+ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0}
 
 
 @pytest.mark.parametrize(
@@ -22,7 +21,8 @@ def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
     from dolfinx.mesh import locate_entities_boundary, meshtags
 
     changes = {"motion.c": c, "solve.mesh": mesh, "solve.tolerance": tolerance}
-    result = computed("tables4_5", ALONE | changes)
+    # Stresses along the surface would ask for higher degrees.
+    result = computed("tables4_5", ALONE | changes | {"output.quantities": ["sif"]})
     assert result.data["states/f"][0] == 0.0
     u, solid = result.displacement(), result.scene.solid
     domain = u.function_space.mesh

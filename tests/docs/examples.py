@@ -22,10 +22,9 @@ _NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: No windows.
 SILENT = {"MPLBACKEND": "Agg"}
-#: Pages whose commands are started as a user does; those of the others run in this process, which saves
-#: the start of each.
-STARTED = ("README.md", "tutorial.md")
-#: First words with which a command is no other process's: ranks, and models that would stay registered.
+#: The page whose commands are all started as a user does; of the others those that ask for ranks, bring
+#: models, which would stay registered, or need a shell. The rest runs in this process, which saves a start.
+STARTED = "README.md"
 _ON_ITS_OWN = ("-n", "-x")
 
 
@@ -115,7 +114,7 @@ def _run(command, cwd):
     """Status and output of a command line."""
     words = words_of(command)
     of_shell = not command.startswith("./run.sh") or {">", "|"} & set(words)
-    if not of_shell and cwd.name not in STARTED and words and words[0] not in _ON_ITS_OWN:
+    if not of_shell and cwd.name != STARTED and words and words[0] not in _ON_ITS_OWN:
         done = here(*words, cwd=cwd, **SILENT)
         return done.returncode, done.stdout + done.stderr
     done = subprocess.run(

@@ -22,7 +22,7 @@ _NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: No windows.
 SILENT = {"MPLBACKEND": "Agg"}
-#: The page whose commands are all started as a user does. Of the others those are that ask for ranks, that
+#: The page whose commands are all started as a user does. Of the others those are that ask for ranks,
 #: bring models, which would stay registered, or need a shell; what is left runs in this process.
 STARTED = "README.md"
 _ON_ITS_OWN = ("-n", "-x")

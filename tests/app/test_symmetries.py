@@ -36,7 +36,7 @@ def _quick(case, method):
 #: By integral equations alone, which takes a moment, and by finite elements.
 EXACT = [
     case.but(methods=METHODS[case.layered][:1], words=_quick(case, "exact"))
-    for case in cases(1 if THOROUGH else 8, 1)
+    for case in cases(1 if THOROUGH else 5, 1)
 ]
 FEM = [
     case.but(methods=("fem",), tolerance=1e-2, words=_quick(case, "fem"))

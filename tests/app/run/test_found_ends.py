@@ -104,6 +104,22 @@ def test_hertz_and_where_the_solid_yields_below():
         assert of["first_yield_load"] == pytest.approx(at_yield, rel=1e-6)
 
 
+def test_a_tolerance_below_the_rounding_at_free_ends_is_given_up_at_once():
+    """Stresses a millionth of the half-width from an end are rounded; those inside keep their digits."""
+    points = "[[1.0009, -0.0024], [0.0446, -0.0018], [2.1, -0.2]]"
+    output = f'["sif", "surface", "interior"]\npoints = {points}'
+    punch = 'profile = "parabolic"\nradius = 0.1'
+    result = galinx.compute(scene(punch, solve="tolerance = 1.3e-9", output=output))
+    data = result.data
+    σ_XX, exact = (data[f"surface/{method}/sigma_XX"] for method in ("fem", "closed_form"))
+    error = np.abs(σ_XX - exact).max() / np.abs(exact).max()
+    assert result.verdict == "FAIL"
+    assert 1.3e-9 < error <= data["states/fem/estimate_sigma_XX"].max() <= 100.0 * error
+    assert data["states/fem/estimate_inside"].max() <= 0.1 * data["states/fem/estimate_sigma_XX"].max()
+    # No finer cells, of which there would be four times as many.
+    assert data["run/fem/cells"].max() < 400
+
+
 def test_a_tilted_punch_through_lift_off():
     """Both edges, then one: finite elements know of neither until they see the intensity."""
     found = []

@@ -27,12 +27,14 @@ FIBRES = (
 
 
 def scene(
-    punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6
-):
+    punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6,
+    X_over_L=(0.1, 0.7),
+):  # fmt: skip
     return parse(
         f"[solid]\n{solid}\n[punch]\nload = 5e4\n{punch}\n"
         f"[friction]\nmu_c = {mu}\nsigma0_over_load = 6e4\n"
-        f"[motion]\nc = {c}\nX_over_L = [0.1, 0.7]\n[solve]\n{solve}\n[output]\nquantities = {output}\n"
+        f"[motion]\nc = {c}\nX_over_L = {list(X_over_L)}\n[solve]\n{solve}\n"
+        f"[output]\nquantities = {output}\n"
     )
 
 
@@ -310,7 +312,7 @@ def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
 def test_degrees_converge_under_a_wedge_at_any_tolerance(tolerance, solid, c, mu, output):
     """Cells at its tip are smaller than the nearest distance looked at, and rings not too steep."""
     wedge = 'profile = "wedge"\nslope = 0.0065'
-    result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu))
+    result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu, [0.7]))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert result.data["run/fem/degree"].max() <= 9
 

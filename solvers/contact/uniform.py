@@ -137,6 +137,8 @@ class Contacts:
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
         X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        if len(self.groups) == 1:
+            return self.inside_group(self.groups[0], X, Y)
         stresses = np.empty((3, len(self.g), X.shape[1]))
         for group in self.groups:
             of_each = group.rows if len(X) > 1 else [0]

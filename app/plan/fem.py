@@ -19,13 +19,12 @@ from galinx.postprocess.free_ends import SHAPES, slopes_of_shapes
 from galinx.postprocess.pressure import Stretch
 from galinx.postprocess.quantities.quantity import FEM, FREE_ENDS
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.layered import Layered, LayeredResponse
 from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.sie.free_contact import contacts
 from galinx.solvers.solids import Solid
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solution import Places
 
 from .. import ranks
@@ -69,7 +68,7 @@ class PressureMoments:
 
 def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments | None:
     """Moments that recover the pressure over layers; None on a solid without layers."""
-    if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
+    if not isinstance(kind, OnLayers):
         return None
     graded = graded_from_the_surface(solid)
     return PressureMoments(Stretch(kind.length, graded), kind.moments(required) + _MORE_GRADED * graded)
@@ -85,12 +84,12 @@ def required_of_free_ends_on_layers(required: Requirements) -> Requirements:
     return replace(required, nearest=max(required.nearest, _NEAR_FREE_END))
 
 
-def graded_from_the_surface(solid: Layered) -> bool:
+def graded_from_the_surface(solid: Solid) -> bool:
     """True where constants change within the uppermost layer."""
-    return solid.layers[0].bottom not in (None, solid.layers[0].solid)
+    return any(layer.bottom not in (None, layer.solid) for layer in solid.layers[:1])
 
 
-def required_over_layers(required: Requirements, solid: Layered) -> Requirements:
+def required_over_layers(required: Requirements, solid: Solid) -> Requirements:
     """Requirements on a mesh for sharp edges over layers; tighter where the uppermost is graded."""
     if not graded_from_the_surface(solid):
         return required
@@ -122,7 +121,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
         depths.tolist(),
         drawn_together=float(np.min(roots)),
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
-        far_length=max(response.far_field.length for response in responses),
+        far_length=max(response.far_length for response in responses),
         left=max(min(response.left_below for response in responses), _LEAST_LEFT),
         roots=_roots(responses),
         changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
@@ -133,7 +132,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
 def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
     """p of every solid at the lowest and at the highest speed, where they are farthest apart."""
     by_speed = sorted(responses, key=lambda response: response.c)
-    each = [response.roots for response in (by_speed[0], by_speed[-1])]
+    each = [response.roots_of_solids for response in (by_speed[0], by_speed[-1])]
     return tuple(slow + fast for slow, fast in zip(*each))
 
 
@@ -167,7 +166,7 @@ class Sweep:
     few: bool
 
 
-def swept(choice: str, responses: Sequence[Response], g: NDArray) -> Sweep | None:
+def swept(choice: str, responses: Sequence[HalfPlane], g: NDArray) -> Sweep | None:
     """The sweep over the speeds of a scene, None where each speed is to be solved.
 
     Args:
@@ -182,7 +181,7 @@ def swept(choice: str, responses: Sequence[Response], g: NDArray) -> Sweep | Non
     return Sweep(variable(responses), values if few else values[[0, -1]], few)
 
 
-def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
+def variable(responses: Sequence[HalfPlane]) -> NDArray[np.float64]:
     """Speeds in the variable in which results are smoothest, (speeds,); like them it is analytic in c².
 
     The planes in which fields are analytic, and the mesh where it follows them, contract with a root of
@@ -193,7 +192,7 @@ def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
     Along layers waves of all lengths run, each with a speed of its own from the limit on: the limit is no
     pole but the end of a branch cut, which the logarithm of the distance from it sends to infinity.
     """
-    if isinstance(responses[0], LayeredResponse):
+    if len(responses[0].depths):
         return np.array([-np.log(response.margin) for response in responses])
     square = np.array([response.c**2 for response in responses])
     inverse = np.array([1.0 / response.contraction.imag for response in responses])
@@ -299,7 +298,7 @@ class FemPlan:
         return systems * cost.bytes_of_levels(self.size, self.solver == "direct")
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDArray) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: NDArray) -> FemPlan:
     """Plan of the finite elements at the speeds of a scene; builds no mesh.
 
     Args:
@@ -313,7 +312,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     mode = _mode(scene)
-    if isinstance(scene.solid, Layered):
+    if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
         kind, name = kind_of(depths, responses, knots), "layered"
@@ -353,7 +352,7 @@ def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements
             return required_of_free_ends_on_layers(required)
         if solve.own_pressure:
             return required_of_prescribed_pressure(required)
-        return required_over_layers(required, scene.solid)  # type: ignore[arg-type]
+        return required_over_layers(required, scene.solid)
     if scene.body.free:
         required = required_of_free_ends(required)
         # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
@@ -363,7 +362,7 @@ def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements
     return required
 
 
-def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
+def _shapes(scene: Scene, responses: Sequence[HalfPlane], g: NDArray) -> int:
     """Number of polynomials whose sum is the profile of the punch under every contact.
 
     It depends on the widths of the contacts. The integral equation gives these at the slowest and the

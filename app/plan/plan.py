@@ -27,7 +27,6 @@ from galinx.postprocess.quantities.quantity import (
     SWEPT,
 )
 from galinx.postprocess.yielding import places as yield_places
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import kinks
 from galinx.solvers.sie.prescribed_pressure import LinearPressure
 from galinx.solvers.solution import Body, Places
@@ -432,13 +431,13 @@ def _in_time(plan: Plan) -> float:
 
 def _equations(plan: Plan) -> float:
     """Seconds of contacts over layers whose integral equations are solved one by one."""
-    body = plan.body
-    if not (body.found and isinstance(body.solid, Layered) and SIE in plan.methods):
+    body, solid = plan.body, plan.body.solid
+    if not (body.found and len(solid.depths) and SIE in plan.methods):
         return 0.0
     kinked = bool(len(kinks(body.profile)))
     if not kinked and body.free:
         return 0.0  # solved for a few frictions, between which others are interpolated
-    graded = body.solid.layers[0].bottom is not None
+    graded = solid.layers[0].bottom is not None
     return cost.seconds_of_equations(plan.states, kinked, graded)
 
 
@@ -649,7 +648,7 @@ def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
     Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
     the punch is among them.
     """
-    if not isinstance(body.solid, Layered):
+    if not len(body.solid.depths):
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()

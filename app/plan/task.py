@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solution import Body, Places
 
 from .fem import FREE_ON_LAYERS, OWN_MESHES, FemPlan
@@ -39,7 +39,7 @@ class Task:
 
     number: int
     body: Body
-    response: Response
+    response: HalfPlane
     places: Places
     runs: tuple[slice, ...]
     loads: tuple[float, ...]

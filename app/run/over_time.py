@@ -18,10 +18,9 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.layers.contact import ContactsAtSpeed, Pressure
-from galinx.solvers.layers.in_cells import LayersInCells
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.solids.solid import Response, Solid
+from galinx.solvers.solids.half_plane import HalfPlane
+from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
 
@@ -52,8 +51,8 @@ class QuasiSteady:
     def centres(self, ratios: NDArray) -> NDArray[np.float64]:
         """Centre of the pressure over a at frictions σ_XY/σ_YY, (n,)."""
         different, which = np.unique(ratios, return_inverse=True)
-        response = self.starts.response(self.solid, self.c)
-        if isinstance(response, LayersInCells):
+        response: Any = self.starts.response(self.solid, self.c)
+        if len(response.depths):
             stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
             nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
             return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
@@ -63,7 +62,7 @@ class QuasiSteady:
     def K_I(self, ratio: float) -> float:
         """K_I of both ends as :attr:`FlatPunch.K_I`, dimensionless; NaN over layers: they differ."""
         response = self.starts.response(self.solid, self.c)
-        return np.nan if isinstance(response, LayersInCells) else FlatPunch(response, ratio).K_I
+        return np.nan if len(response.depths) else FlatPunch(response, ratio).K_I
 
 
 def _centre(pressure: Pressure) -> NDArray[np.float64]:
@@ -156,7 +155,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
 
 def _within(solid: Solid, c: float, g: float) -> float:
     """Time over a/c_s from which on a start is within 1 % of steady motion; NaN over layers."""
-    return np.nan if isinstance(solid, Layered) else approach(solid, c, g).within(0.01)
+    return np.nan if len(solid.depths) else approach(solid, c, g).within(0.01)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
@@ -202,7 +201,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
 
 
 def _along_surface(
-    course: Course, finer: int, response: Response, drive: Drive, starts: Starts
+    course: Course, finer: int, response: HalfPlane, drive: Drive, starts: Starts
 ) -> NDArray[np.float64]:
     """σ_XX, σ_YY and σ_XY along the surface at the outputs, (3, times, places); NaN after a turn."""
     assert course.surface is not None
@@ -222,7 +221,7 @@ def _until_the_end(values: NDArray, starts: Starts) -> NDArray[np.float64]:
 
 
 def _of_constant(
-    g: float, starts: Starts, punch: StartingPunch, response: Response
+    g: float, starts: Starts, punch: StartingPunch, response: HalfPlane
 ) -> tuple[Course, tuple[NDArray, ...]]:
     """Course under a constant friction, and its v₀, centre and K_I at both ends.
 

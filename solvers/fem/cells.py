@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 
 
 def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
@@ -283,11 +283,9 @@ def model_cells(
     each = np.arange(len(corners))
     if not chart.similar or not len(each):
         return each, list(each[:, None])
-    kinds = np.zeros_like(each)
-    if isinstance(response, ByCells):
-        solid = response.solids(corners[..., 1].mean(axis=1))
-        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
-        kinds = np.where(graded[solid], len(graded) + each, solid)
+    solid = response.solids(corners[..., 1].mean(axis=1))
+    graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
+    kinds = np.where(graded[solid], len(graded) + each, solid)
     models, like = congruent_cells(corners, kinds)
     return models, np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])
 

@@ -17,7 +17,6 @@ from galinx.postprocess.quantities.stresses import BELOW, YIELD
 from galinx.solvers.fem.fields import InteriorGradients, KeptValues, SurfaceSlopes
 from galinx.solvers.fem.punch import FittedSlopes
 from galinx.solvers.fem.space import Space
-from galinx.solvers.solids.solid import ByCells
 from galinx.solvers.solution import Surface
 
 from ...plan.task import Task
@@ -89,11 +88,7 @@ class Displacement:
 
     def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""
-        response = self._task.response
-        if not isinstance(response, ByCells):
-            return response.stresses(gradients)
-        Y = points[:, 1]
-        return response.stresses_at(response.solids(Y, side), Y, gradients)
+        return self._task.response.stresses_at(points[:, 1], gradients, side)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """Stresses on the surface, by weights (states, fields) and σ_YY, NaN beside the punch."""

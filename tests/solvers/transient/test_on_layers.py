@@ -13,7 +13,6 @@ from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
@@ -27,7 +26,7 @@ DIGITS = [(7.5, 0.3, 1.2), (1.5, 0.1, 0.7), (2.5, 0.25, 1.0)]
 
 
 def sheets(solid, c):
-    return UniformLayers.of(LayersInCells(solid, c, 1.0))
+    return UniformLayers.of(solid.response(c))
 
 
 def random_points(count):
@@ -67,7 +66,7 @@ def test_echoes_are_the_transform_of_their_symbol():
 
 
 def started(solid, c, end=4.0, steps=8, g=-0.4, terms=8):
-    response = LayersInCells(solid, c, 1.0) if isinstance(solid, Layered) else solid.response(c)
+    response = solid.response(c)
     return StartingPunch(response, solid.limit(), end, steps, terms).course(g, lambda t: smooth(t, 3.0))
 
 
@@ -88,7 +87,7 @@ def test_a_layer_is_all_there_is_until_its_echo_comes_back():
 
 def test_finite_elements_agree_over_layers():
     c, g, end, steps, degree = 0.3, -0.4, 3.0, 18, 6
-    response = LayersInCells(STACK, c, 1.0)
+    response = STACK.response(c)
     fast = sheets(STACK, c).fastest
     mesh = Reached(1.0 + fast * end / 2.0, fast * end / 2.0, 1.0, 0.15, 1e-4, depths=(0.7, 1.1)).drawn()
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, STACK.form)
@@ -115,7 +114,7 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
     runs = []
     for solid, response in (
         (ONE, ONE.response(c)),
-        (stack := Layered((Layer(0.5, ONE), Layer(0.7, ONE)), ONE), LayersInCells(stack, c, 1.0)),
+        (stack := Layered((Layer(0.5, ONE), Layer(0.7, ONE)), ONE), stack.response(c)),
     ):
         space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
         solver = SlidingInTime(Motion(space, response))
@@ -129,4 +128,4 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
 def test_a_graded_layer_is_refused():
     graded = Layered((Layer(1.0, ONE, bottom=COAT),), COAT)
     with pytest.raises(ValueError, match="graded"):
-        UniformLayers.of(LayersInCells(graded, 0.3, 1.0))
+        UniformLayers.of(graded.response(0.3))

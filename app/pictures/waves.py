@@ -60,7 +60,7 @@ def curve(scene: Scene) -> Dispersion:
         BadInput: it has none.
     """
     solid: Any = scene.solid
-    if not len(solid.depths):
+    if not scene.layers:
         raise BadInput(
             "layer: found no layers; along a uniform solid waves of all lengths run alike, at "
             f"{solid.limit() * solid.c_s:.6g} m/s"
@@ -131,7 +131,7 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
         BadInput: there is no answer.
     """
     solid = scene.solid
-    if len(solid.depths) or solid.nearly_incompressible:
+    if scene.layers or solid.nearly_incompressible:
         raise BadInput(
             "response: found layers or a solid with ν near 1/2, expected a uniform solid that waves pass"
         )

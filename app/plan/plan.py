@@ -21,34 +21,34 @@ from galinx.postprocess.quantities.quantity import (
     CLOSED_FORM,
     FEM,
     FRICTION_ALONE,
-    INTENSITIES,
     LOCAL,
     SIE,
     SWEPT,
 )
-from galinx.postprocess.yielding import places as yield_places
-from galinx.solvers.profiles import kinks
-from galinx.solvers.sie.prescribed_pressure import LinearPressure
-from galinx.solvers.solution import Body, Places
-from galinx.texts import counted
-
-from .. import ranks
-from ..errors import BadInput, listed
-from ..methods import DOLFINX, METHODS
-from ..run.slider import check_sliders
-from ..scene.scene import FRICTIONS, Scene, oddities
-from . import cost
-from .fem import (
+from galinx.solvers.contact import INTENSITIES, YIELD
+from galinx.solvers.contact.fem_plan import (
     BESIDES,
+    DOLFINX,
     FREE_ON_LAYERS,
     LADDERS,
     OWN_MESHES,
     FemPlan,
-    check_assembler,
     levels,
-    plan_fem,
     unknowns,
 )
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.solution import Body, Places
+from galinx.solvers.contact.yielding import places as yield_places
+from galinx.solvers.profiles import kinks
+from galinx.texts import counted
+
+from .. import ranks
+from ..errors import BadInput, listed
+from ..methods import METHODS
+from ..run.slider import check_sliders
+from ..scene.scene import FRICTIONS, Scene, oddities
+from . import cost
+from .fem import check_assembler, memory, plan_fem
 from .over_time import starts
 from .states import enumerate_states, laws_followed, order, seconds_to_integrate
 from .task import CHUNK_NUMBERS, Plan, Tasks
@@ -189,7 +189,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     Raises:
         BadInput: they cannot; the message lists all reasons.
     """
-    if not body.layered:
+    if not scene.layers:
         return
     computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
     faults = [
@@ -228,7 +228,7 @@ def check_pressure(scene: Scene, body: Body) -> None:
     """
     if body.pressure is None:
         return
-    if body.layered:
+    if scene.layers:
         _check_knots(body.pressure.knots)
         return
     kind = MESHES[scene.solve.mesh]
@@ -311,7 +311,7 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
             f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
             f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
         )
-    needed, free = fem.memory, cost.free_memory()
+    needed, free = memory(fem), cost.free_memory()
     if needed > free:
         yield (
             f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
@@ -431,13 +431,13 @@ def _in_time(plan: Plan) -> float:
 
 def _equations(plan: Plan) -> float:
     """Seconds of contacts over layers whose integral equations are solved one by one."""
-    body, solid = plan.body, plan.body.solid
-    if not (body.found and len(solid.depths) and SIE in plan.methods):
+    body, layers = plan.body, plan.body.solid.layers
+    if not (body.found and layers and SIE in plan.methods):
         return 0.0
     kinked = bool(len(kinks(body.profile)))
     if not kinked and body.free:
         return 0.0  # solved for a few frictions, between which others are interpolated
-    graded = solid.layers[0].bottom is not None
+    graded = layers[0].bottom is not None
     return cost.seconds_of_equations(plan.states, kinked, graded)
 
 
@@ -487,7 +487,7 @@ def _size(count: float) -> str:
 _PLACES = {
     stresses.ON_SURFACE: "stresses on the surface",
     stresses.BELOW: "stresses inside",
-    stresses.YIELD: "yield",
+    YIELD: "yield",
 }
 
 
@@ -512,7 +512,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     check_layers(scene, body, methods)
     check_free_ends(scene, body, methods)
     check_assembler(scene)
-    around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
+    around = yield_places(body) if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, states.speeds, "fem" in methods)]
@@ -568,7 +568,7 @@ def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[st
     """Warnings about methods that the scene names and that do not solve it."""
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
-        if name not in methods and (body.layered or not kind.of_layers):
+        if name not in methods and (scene.layers or not kind.of_layers):
             yield f"solve.methods: {name} does not solve this: {kind.refusal(scene, body, None)}"
 
 
@@ -613,7 +613,7 @@ def _skipped(
     skipped = [
         f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"
         for name, kind in METHODS.items()
-        if name not in methods and (body.layered or not kind.of_layers)
+        if name not in methods and (scene.layers or not kind.of_layers)
     ]
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")
@@ -621,7 +621,7 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
-    if stresses.YIELD in words and not body.pressure:
+    if YIELD in words and not body.pressure:
         skipped.append(
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"
@@ -648,7 +648,7 @@ def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
     Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
     the punch is among them.
     """
-    if not len(body.solid.depths):
+    if not body.solid.layers:
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()

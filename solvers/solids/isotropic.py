@@ -191,8 +191,8 @@ class MovingFrame(UniformHalfPlane):
     @cached_property
     def C(self) -> NDArray[np.float64]:
         """Stiffness over μ: σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY, (3, 3); infinite at ν = 1/2."""
-        c11 = 1.0 / self.k if self.k else inf
-        return np.array([[c11, c11 - 2.0, 0.0], [c11 - 2.0, c11, 0.0], [0.0, 0.0, 1.0]])
+        λ = (3.0 - self.κ) / (self.κ - 1.0) if self.k else inf
+        return np.array([[2.0 + λ, λ, 0.0], [λ, 2.0 + λ, 0.0], [0.0, 0.0, 1.0]])
 
     @cached_property
     def Y(self) -> NDArray[Any]:

@@ -23,7 +23,7 @@ logarithm, the others fall like 1/X; the remainder falls like its square.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -339,6 +339,11 @@ class Layered(Solid):
     layers: tuple[Layer, ...] = field()  # no default, though uniform solids have one: no layers
     substrate: Solid = field()
 
+    @cached_property
+    def parts(self) -> tuple[Layer, ...]:
+        """The layers, and the substrate as one without end."""
+        return (*self.layers, Layer(np.inf, self.substrate))
+
     @property
     def surface(self) -> Solid:
         """The solid at the surface."""
@@ -350,8 +355,7 @@ class Layered(Solid):
 
     @property
     def solids(self) -> Sequence[Solid]:
-        ends = (end for layer in self.layers for end in (layer.solid, layer.bottom) if end is not None)
-        return (*ends, self.substrate)
+        return tuple(end for part in self.parts for end in (part.solid, part.bottom) if end is not None)
 
     @property
     def plane(self) -> str:  # type: ignore[override]
@@ -385,12 +389,9 @@ class Layered(Solid):
 
     def at(self, depth: float) -> Solid:
         """The solid at a depth [m]; at an interface the one above it."""
-        top = 0.0
-        for layer in self.layers:
-            if depth <= top + layer.thickness:
-                return layer.at(((depth - top) / layer.thickness) ** layer.power)
-            top += layer.thickness
-        return self.substrate
+        i = int(np.searchsorted(self.depths, depth))
+        layer, top = self.parts[i], float(np.append(0.0, self.depths)[i])
+        return layer.at(((depth - top) / layer.thickness) ** layer.power)
 
     @property
     def changes(self) -> tuple[float, ...]:
@@ -405,8 +406,8 @@ class Layered(Solid):
 
     def beside(self, interface: int) -> tuple[Solid, Solid]:
         """The solids above and below an interface; interfaces are numbered from 0."""
-        layer, rest = self.layers[interface], self.layers[interface + 1 :]
-        return layer.bottom or layer.solid, rest[0].solid if rest else self.substrate
+        layer, below = self.parts[interface : interface + 2]
+        return layer.bottom or layer.solid, below.solid
 
     @cached_property
     def _limit(self) -> float:
@@ -529,15 +530,11 @@ class LayeredHalfPlane(HalfPlane):
     @property
     def roots_of_solids(self) -> list[tuple[complex, ...]]:
         """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
-        shares = [np.linspace(0.0, 1.0, _SAMPLES if layer.bottom else 1) for layer in self.solid.layers]
-        solids = [
-            *(
-                [layer.at(share) for share in of_layer.tolist()]
-                for layer, of_layer in zip(self.solid.layers, shares)
-            ),
-            [self.solid.substrate],
+        graded = np.linspace(0.0, 1.0, _SAMPLES).tolist()
+        return [
+            tuple(p for s in graded[: None if part.bottom else 1] for p in self.of(part.at(s)).roots.each)
+            for part in self.solid.parts
         ]
-        return [tuple(p for solid in of_layer for p in self.of(solid).roots.each) for of_layer in solids]
 
     def medium(self, solid: Solid) -> Medium:
         """One of the solids at this speed."""
@@ -566,14 +563,11 @@ class LayeredHalfPlane(HalfPlane):
     @cached_property
     def _tables(self) -> list[NDArray[np.float64]]:
         """Tables of each solid: ``_COLUMNS`` at Chebyshev's points of its share of change, (8, n)."""
-        layers = [*self.solid.layers, Layer(1.0, self.solid.substrate)]
-        return [self._table(layer) for layer in layers]
+        return [_tabulated(partial(self._column, part), part.bottom is None) for part in self.solid.parts]
 
-    def _table(self, layer: Layer) -> NDArray[np.float64]:
-        return _tabulated(lambda share: self._column(layer.at(share)), layer.bottom is None)
-
-    def _column(self, solid: Solid) -> NDArray[np.float64]:
+    def _column(self, part: Layer, share: float) -> NDArray[np.float64]:
         """Stiffness over the surface's μ, the speed over its wave speed by density, and the density."""
+        solid = part.at(share)
         C, ρ = solid.μ * solid.response(0.0).surface.C / self.solid.μ, solid.ρ / self.solid.ρ
         return np.append(C[np.triu_indices(3)], [self.c * ρ**0.5, ρ])
 
@@ -586,9 +580,7 @@ class LayeredHalfPlane(HalfPlane):
         return np.maximum(np.searchsorted(self._faces, -Y * (1.0 - side * _BESIDE)) - 1, 0)
 
     def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
-        if solid == len(self.solid.layers):
-            return np.zeros_like(Y)
-        layer, top = self.solid.layers[solid], self._faces[solid]
+        layer, top = self.solid.parts[solid], self._faces[solid]
         done = np.clip((-Y - top) * self.a / layer.thickness, 0.0, 1.0)
         return np.asarray(done**layer.power)
 

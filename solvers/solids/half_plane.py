@@ -275,10 +275,10 @@ class UniformHalfPlane(HalfPlane):
     def L(self) -> NDArray[Any]:
         """Stiffness of the surface, (σ_XY, σ_YY) = L u,X of decaying fields, (2, 2)."""
 
-    @property
-    @abstractmethod
+    @cached_property
     def T_inverse(self) -> NDArray[np.float64]:
-        """Inverse of the stiffness of tractions against u,Y, (2, 2)."""
+        """Inverse of the stiffness of the tractions σ_XY, σ_YY against u,Y, (2, 2)."""
+        return np.asarray(np.linalg.inv(self.C[[[2], [1]], [2, 1]]), dtype=float)
 
     @property
     @abstractmethod

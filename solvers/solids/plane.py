@@ -86,11 +86,6 @@ class AnisotropicFrame(UniformHalfPlane):
         return R.T + T @ self.G
 
     @cached_property
-    def T_inverse(self) -> NDArray[np.float64]:
-        """Inverse T⁻¹ of the stiffness across, (2, 2)."""
-        return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
-
-    @cached_property
     def least_stiffness(self) -> float:
         """Smallest eigenvalue of the surface's Hermitian stiffness -iL; it falls with speed."""
         Z = -1j * self.L

@@ -347,7 +347,7 @@ class Layered(Solid):
     @property
     def surface(self) -> Solid:
         """The solid at the surface."""
-        return self.layers[0].solid
+        return self.parts[0].solid
 
     @property
     def nearly_incompressible(self) -> bool:
@@ -444,7 +444,7 @@ class Layered(Solid):
         """
         half_plane = LayeredHalfPlane(self, c, a)
         for solid in self.solids:
-            half_plane.of(solid)
+            half_plane.uniform(solid)
         return half_plane
 
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
@@ -490,7 +490,7 @@ class LayeredHalfPlane(HalfPlane):
     #: Meshes along interfaces are drawn in the plane itself.
     contraction = 1j  # type: ignore[assignment]
 
-    def of(self, solid: Solid) -> UniformHalfPlane:
+    def uniform(self, solid: Solid) -> UniformHalfPlane:
         """Half-plane of one of the solids alone at this speed.
 
         Raises:
@@ -500,7 +500,7 @@ class LayeredHalfPlane(HalfPlane):
 
     @cached_property
     def surface(self) -> UniformHalfPlane:
-        return self.of(self.solid.surface)
+        return self.solid.surface.response(self.c).surface
 
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Not available: see :class:`galinx.solvers.layers.kernel.Level`."""
@@ -525,20 +525,21 @@ class LayeredHalfPlane(HalfPlane):
     @property
     def mirrored(self) -> bool:
         """True where all solids are their own mirror images."""
-        return all(self.of(solid).mirrored for solid in self.solid.solids)
+        return all(self.uniform(solid).mirrored for solid in self.solid.solids)
 
     @property
     def roots_of_solids(self) -> list[tuple[complex, ...]]:
         """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
-        graded = np.linspace(0.0, 1.0, _SAMPLES).tolist()
-        return [
-            tuple(p for s in graded[: None if part.bottom else 1] for p in self.of(part.at(s)).roots.each)
-            for part in self.solid.parts
-        ]
+        roots = []
+        for part in self.solid.parts:
+            shares = np.linspace(0.0, 1.0, _SAMPLES if part.bottom else 1).tolist()
+            each = [self.uniform(part.at(share)).roots.each for share in shares]
+            roots.append(tuple(p for pair in each for p in pair))
+        return roots
 
     def medium(self, solid: Solid) -> Medium:
         """One of the solids at this speed."""
-        return Medium(self.of(solid), solid.μ / self.solid.μ)
+        return Medium(self.uniform(solid), solid.μ / self.solid.μ)
 
     def stack(self, a: float, rtol: float = 0.0) -> LayersAtSpeed:
         """The layers with lengths over a.

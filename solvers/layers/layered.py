@@ -606,7 +606,8 @@ class LayeredHalfPlane(HalfPlane):
         )
         G = substrate.response.G.conj()
         heights, which = np.unique(np.maximum(Y, -D), return_inverse=True)
-        more = np.array([self._moved(height) for height in heights.tolist()])[which]
+        moved = [self._moved(height) for height in heights.tolist()]  # none on a rank without far nodes
+        more = np.reshape(moved, (-1, 2, 2))[which]
         w = inverse(X[:, None, None] * np.eye(2) + below[:, None, None] * G)
         w = w @ (self._compliance @ self._loaded + more)
         for load, t in zip(displacement, LOADS):

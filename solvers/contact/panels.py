@@ -166,9 +166,7 @@ def _blocks(points: int, nodes: int) -> list[slice]:
     return [slice(start, start + step) for start in range(0, max(points, 1), step)]
 
 
-def _sums(
-    b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derived: bool
-) -> NDArray[Any]:
+def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derived: bool) -> NDArray[Any]:
     """Sums of :func:`_kernel` at x - y over the panels that are not near, (points,).
 
     Args:

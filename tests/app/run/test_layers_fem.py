@@ -13,7 +13,7 @@ from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.contact import stresses
+from galinx.solvers.contact import residual, stresses
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
@@ -127,6 +127,20 @@ def test_alone_they_say_how_good_they_are():
     assert result.verdict == "PASS"
     error = abs(data["states/fem/K_I_left"][0] / 0.46957498690109 - 1.0)
     assert error <= data["states/fem/estimate"][0] <= 1e-6
+
+
+@pytest.mark.parametrize("wrong, verdict", [(0.0, "PASS"), (0.2, "FAIL")])
+def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypatch):
+    """A pressure that leans leaves a part of the equation."""
+    of_contact = residual.of_contact
+
+    def leaning(response, g, local, body, pressure, *more):
+        return of_contact(response, g, local, body, lambda r: pressure(r) * (1.0 + wrong * r), *more)
+
+    monkeypatch.setattr("galinx.solvers.fem.contact.of_contact", leaning)
+    result = galinx.compute(scene(tolerance=1e-2, methods=("fem",), quantities=("sif",)))
+    assert result.verdict == verdict, result.data["states/fem/residual"]
+
 
 
 def test_a_graded_layer_whose_faces_are_alike_is_uniform():

@@ -60,11 +60,11 @@ class FlatPunch(EdgeExponents, Pressure, Loaded):
         return np.where(from_edge(r) == 0.0, np.nan, 2.0 * self._sin / np.pi * F)
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """Change of Φ, see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Change of Φ, see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return self.at(z) * _growth(self.α, self.β, z, step, share)
 
     def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -151,7 +151,7 @@ class Weighted(Pressure):
         return -self.σ_YY(place[:, None])[:, 0], place
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         far = np.abs(z) > _FAR
         near = (self._X(z) * (self.A + self.B * z) - self._polynomial(z)) / self._sin
         return np.where(far, self._far(np.where(far, z, np.inf)), near)

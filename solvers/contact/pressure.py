@@ -27,7 +27,7 @@ class Pressure:
 
     Of one state or of several, whose exponents and coefficients then are columns that broadcast against
     positions. Pressures over uniform half-planes also give their Hilbert transform, and most of them
-    Cauchy's integral below the surface, see :class:`galinx.solvers.solids.solid.Potential`.
+    Cauchy's integral below the surface, see :class:`galinx.solvers.solids.half_plane.Potential`.
 
     Attributes:
         α, β: exponents at the right and the left end.
@@ -64,7 +64,7 @@ class Pressure:
         raise NotImplementedError
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -21,7 +21,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from ..solids.solid import Far, Response
+from ..solids.solid import Response
 from .space import Space
 
 
@@ -92,7 +92,6 @@ class FarBoundary:
         self.fields: list[PETSc.Vec] = []
         self.loads: list[PETSc.Vec] = []
         if space.terms:
-            assert isinstance(response, Far)
             X, Y = space.contracted(response).to_physical(space.coordinates[space.far_nodes]).T
             moved = response.far(X, Y, space.terms)
             size = np.abs(moved).max(axis=(1, 2, 3), initial=0.0)

@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from ..approximation import interpolation
 from ..contact.edges import EdgeTraction
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import image
 from .element import size_of_cells
@@ -80,14 +80,15 @@ class DolfinxSpace(Space):
 
     def _form(self, response: Response) -> Any:
         """The compiled weak form with the constants of a response."""
-        varies, p = isinstance(response, ByCells), self.contracted(response).p
+        tables, p = response.constants(self.form.constants), self.contracted(response).p
+        varies = len(tables) > 1
         for constant, value in zip(self._plane, (p.real, p.imag)):
             constant.value = value
-        if isinstance(response, ByCells):
-            self._set_varying(response)
+        if varies:
+            self._set_varying(response, tables)
         else:
-            for constant, name in zip(self._constants, self.form.constants):
-                constant.value = float(getattr(response, name))
+            for constant, value in zip(self._constants, tables[0][0]):
+                constant.value = float(value)
         if varies not in self._forms:
             spaces = [self.V, self._pressures] if self.mixed else [self.V]
             forms = weak_form(
@@ -99,12 +100,11 @@ class DolfinxSpace(Space):
             self._forms[varies] = compiled if self.mixed else compiled[0][0]
         return self._forms[varies]
 
-    def _set_varying(self, response: ByCells) -> None:
+    def _set_varying(self, response: Response, tables: list[NDArray]) -> None:
         """Set constants at the points of quadrature of all cells."""
         points, corners = versions.quadrature_points(self._quadrature), self._all_corners
         Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
         solids = response.solids(corners[..., 1].mean(axis=1))
-        tables = response.constants(self.form.constants)
         values = np.empty((*Y.shape, len(self.form.constants)))
         for i in np.unique(solids).tolist():
             cells = solids == i

@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
 from ..errors import MeshError
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import (
     Contracted,
@@ -307,10 +307,9 @@ class _Batch:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
         held = _locate(self._vertices, self._chart.from_physical(points))
-        if isinstance(response, ByCells):
-            of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
-            of_points = response.solids(points[:, 1], side)
-            held = held.select(of_cells[held.cell] == of_points[held.point])
+        of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
+        of_points = response.solids(points[:, 1], side)
+        held = held.select(of_cells[held.cell] == of_points[held.point])
         order = np.argsort(held.cell, kind="stable")
         self._point, self._t = held.point[order].astype(np.int32), held.t[order]
         self.cells, self._first = np.unique(held.cell[order], return_index=True)

@@ -31,6 +31,7 @@ from ..contact.fem_plan import (
     requirements,
 )
 from ..contact.recovery import contact_recovery, largest, stretched_from_moments
+from ..contact.residual import of_contact
 from ..contact.solution import Places, Surface, Task
 from ..errors import SolveError
 from ..profiles import check_reach
@@ -475,6 +476,15 @@ class FollowedPunches(OnOwnMeshes):
         """Largest pressure over N/(2a), and its place over a, (states,)."""
         each = [state.level.pressure.σ_YY for state in self.contacts]
         return largest(lambda x: np.concatenate([-σ_YY(x) for σ_YY in each]), lambda i, x: -each[i](x)[0])
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """Residual of the integral equation of layers under the pressure, relative, (states,)."""
+        each = [state.level.pressure.σ_YY for state in self.contacts]
+        return of_contact(
+            self.task.response, self.g, self.local, self.body,
+            lambda r: np.concatenate([σ_YY(r) for σ_YY in each]), (self.centre, self.half_width),
+        )  # fmt: skip
 
     @cached_property
     def interfaces(self) -> NDArray[np.float64]:

@@ -5,11 +5,11 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
+from isotropic_field import field
 
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.solids.isotropic import MovingFrame
-from galinx.solvers.solids.potentials import field
 
 PRESSURES = {
     "triangle": [[-1, 0], [0.3, -2], [1, 0]],

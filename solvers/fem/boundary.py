@@ -123,16 +123,18 @@ class FarBoundary:
         """Moments of forces (2, n) that the boundary follows, of σ_YY and σ_XY in turn, (moments,)."""
         return np.asarray((self._tests @ forces[::-1].T).ravel())
 
-    def follow(self, field: PETSc.Vec, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Let the far boundary of a field move, in place, not be held; returns the field's forces.
+    def follow(self, forces: NDArray, field: PETSc.Vec | None = None) -> NDArray[np.float64]:
+        """Forces (2, n) at the contact nodes once the far boundary moves that was held.
 
         Args:
-            field, forces: displacement, and forces (2, n) at the contact nodes.
+            forces: those under the held boundary.
+            field: displacement that causes them; it is moved in place.
         """
         if not self.fields:
             return forces
         amplitudes = self._all @ self._moments(forces)
-        field.maxpy(amplitudes.tolist(), self.fields)
+        if field is not None:
+            field.maxpy(amplitudes.tolist(), self.fields)
         return np.asarray(forces + np.tensordot(amplitudes, self._forces, 1))
 
     def destroy(self) -> None:

@@ -17,7 +17,7 @@ from ..rays import NEAR, rays
 from ..solids.solid import Response
 from .boundary import FarBoundary
 from .fields import forces, gradients_at, shapes
-from .linear import Factor
+from .linear import LinearSolver
 from .space import Space, Traction
 
 
@@ -35,7 +35,7 @@ class LoadedHalfPlane:
         A = space.assemble(response)
         self._far = FarBoundary(space, response, A)
         A = space.held(A, response, ("far",))
-        self.factor = Factor(A, space.clock, definite=not space.mixed)
+        self.factor = LinearSolver(A, space.clock, definite=not space.mixed)
         #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
         self.fields: list[PETSc.Vec] = []
         #: ∫ σ_YY d(X/a) over N/(2a) of each load.

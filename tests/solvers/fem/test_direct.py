@@ -9,7 +9,7 @@ from support import small_punch
 from galinx.clock import Clock
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem import linear
-from galinx.solvers.fem.linear import Factor
+from galinx.solvers.fem.linear import LinearSolver
 
 
 @pytest.mark.parametrize("entry", [0.0, float("nan")])
@@ -24,7 +24,7 @@ def test_a_singular_matrix_is_not_taken_for_a_solution(entry):
     b = A.createVecLeft()
     b.set(1.0)
     with pytest.raises(SolveError):
-        Factor(A, Clock()).solve(b)
+        LinearSolver(A, Clock()).solve(b)
 
 
 @pytest.mark.parametrize("entry", [1e-300, 5.0])
@@ -43,7 +43,7 @@ def test_several_solutions_at_once_are_those_of_one_after_the_other(entry):
         b = A.createVecLeft()
         b.setArray(numbers)
         loads.append(b)
-    factor = Factor(A, Clock())
+    factor = LinearSolver(A, Clock())
     if entry < 1.0:  # the second solution has no finite numbers
         loads[0].setValue(0, 0.0), loads[2].setValue(0, 1e300)
         with pytest.raises(SolveError, match=r"\|b - Ax\|/\|b\| = nan"):
@@ -70,7 +70,7 @@ def test_a_solution_that_leaves_a_thousandth_of_its_load_is_refused(share, refus
         b = A.createVecLeft()
         b.setArray(np.arange(8.0) - i)
         loads.append(b)
-    factor = Factor(A, Clock())
+    factor = LinearSolver(A, Clock())
     factor.solve(loads[0])
     factor.A = A.copy()
     factor.A.scale(1.0 + share)

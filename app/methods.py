@@ -1,6 +1,6 @@
 """Methods that solve the contact, by the name that scenes use: titles, and quantities they refuse.
 
-Scenes and plans need nothing else of methods; :mod:`galinx.app.run.methods` makes them.
+Scenes and plans need nothing else of methods; :mod:`galinx.app.run.make` makes them.
 """
 
 from collections.abc import Callable
@@ -10,8 +10,9 @@ from typing import Any
 from galinx.postprocess.quantities import Quantity, layers, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
 from galinx.registry import Registry
+from galinx.solvers.contact import YIELD
+from galinx.solvers.contact.solution import Body
 from galinx.solvers.profiles import exponent, smooth
-from galinx.solvers.solution import Body
 
 
 @dataclass(frozen=True)
@@ -20,8 +21,8 @@ class MethodKind:
 
     Attributes:
         about: title in a plan.
-        made: makes a :class:`galinx.app.run.methods.Method` for a plan, a progress and a clock; None for
-            the methods of galinx itself, which :func:`galinx.app.run.methods.make` makes.
+        made: makes a :class:`galinx.solvers.contact.method.Method` for a plan, a progress and a clock;
+            None for the methods of galinx itself, which :func:`galinx.app.run.make.make` makes.
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.
         loads: True where its solvers take states under several loads; else each load has its own solver.
@@ -55,7 +56,7 @@ def _free_ends_refusal(body: Body, quantity: Quantity | None) -> str:
     """Reason why a contact with free ends has no such quantity, "" where it has."""
     if not body.found or quantity is None:
         return ""
-    if quantity.asked_by == stresses.YIELD and not body.finite:
+    if quantity.asked_by == YIELD and not body.finite:
         return "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
     if quantity in yielding.FIRST_LOAD.values() and not (exponent(body.profile) or 0.0) > 1.0:
         return "known where the height is a power of |X|: the contact grows with the load"
@@ -75,7 +76,7 @@ def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> s
         return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
     if body.pressure:
         return "the pressure is prescribed" if quantity in _INTENSITIES else ""
-    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, stresses.YIELD):
+    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, YIELD):
         return "known below flat punches only"
     if quantity and not body.flat and quantity is states.K_I_BOTH:
         return "the two ends differ"
@@ -146,7 +147,3 @@ METHODS: Registry[MethodKind] = Registry(
 
 #: Modes of the finite elements: a punch, or a prescribed pressure.
 MODES = ("contact", "traction")
-
-#: Assemblers of the finite elements' matrices: element matrices by tensor products, or dolfinx's own.
-TENSOR, DOLFINX = "tensor", "dolfinx"
-ASSEMBLERS = (TENSOR, DOLFINX)

@@ -25,10 +25,10 @@ from galinx.meshes import MESHES
 from galinx.meshes.kind import Requirements
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.postprocess.compare import RULES
-from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 from galinx.solvers.solids.orthotropic import Orthotropic
 

@@ -13,11 +13,11 @@ from petsc4py import PETSc
 
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
-from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 #: The mesh of Tables 4 and 5 at a tolerance of 1e-6, a fast state of them, degrees, and times of each.

@@ -16,10 +16,10 @@ from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
 from galinx.meshes.store import through_gmsh
-from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 #: Elements of the study's model.

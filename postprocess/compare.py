@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.contact import under_punch
+from galinx.solvers.contact import stresses
+from galinx.solvers.contact.edges import under_punch
 
-from . import stresses
 from .quantities import layers as on_layers
 from .quantities import states as of
 from .quantities import stresses as at

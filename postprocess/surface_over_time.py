@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import from_edge
+from galinx.solvers.contact.edges import from_edge
 from galinx.solvers.transient.punch import ON_SURFACE
 
 from .compare import RULES, Rule

@@ -12,11 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from galinx.postprocess.quantities import WORDS, declared
-from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE, TEXT
 from galinx.postprocess.quantities.runs import SLIDER
-from galinx.postprocess.quantities.stresses import BELOW, YIELD
+from galinx.solvers.contact import AT_INTERFACES, BELOW, YIELD
 from galinx.solvers.parameters import parameters
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS

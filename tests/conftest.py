@@ -19,7 +19,7 @@ FAST = (
     "app/plan/", "app/scene/", "app/study/test_misprints.py", "app/study/test_published.py",
     "app/study/test_statements.py", "docs/test_docs.py", "docs/test_quotes.py", "frozen/",
     "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
-    "solvers/sie/", "solvers/solids/", "solvers/test_rational.py", "test_architecture.py",
+    "solvers/contact/", "solvers/solids/", "solvers/test_rational.py", "test_architecture.py",
     "test_files.py", "test_texts.py",
 )  # fmt: skip
 #: Fixtures that compute; what asks for one is not fast wherever it is.

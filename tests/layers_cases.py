@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 
-from galinx.solvers.layers.contact import Equation
+from galinx.solvers.contact.equation import Equation
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.solids.isotropic import Isotropic
 

@@ -45,17 +45,27 @@ FILES = {
 #: What the mechanics outside solvers/fem/ is made of.
 PURE = {
     "solvers", "registry", "numpy", "scipy", "math", "abc", "dataclasses", "functools", "collections",
-    "itertools", "typing", "warnings",
+    "contextlib", "itertools", "typing", "warnings",
 }  # fmt: skip
-#: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics.
-OTHERS = {"postprocess": {"solvers"}}
+#: What finite elements are compared with, and may not use: but the mode that prescribes the closed form's
+#: pressure has that.
+TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
+SOLUTIONS = (
+    FORMULA, "solvers.contact.exact", "solvers.contact.layered", "solvers.contact.collocation",
+    "solvers.contact.equation", "solvers.contact.free_contact", "solvers.contact.free_on_layers",
+    "solvers.contact.panels", "solvers.friction",
+)  # fmt: skip
+#: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics, and
+#: finite elements and their plan know meshes.
+OTHERS = {"postprocess": {"solvers"}, "solvers/fem": {"meshes"}, "solvers/contact/fem_plan": {"meshes"}}
 
 
 def faults_of_imports(name, found):
     """What a file imports against the rules of its room."""
     roots, room = {module.split(".")[0] for module in found}, name.split("/")[0]
     if room != "app":
-        foreign = (roots & set(ROOMS)) - {room} - OTHERS.get(room, set())
+        allowed = set().union(*(of for part, of in OTHERS.items() if name.startswith(part)))
+        foreign = (roots & set(ROOMS)) - {room} - allowed
         yield from (f"{name} imports from {other}/" for other in foreign)
     if room == "postprocess" and any(module.startswith("solvers.fem") for module in found):
         yield f"{name} imports finite elements"
@@ -63,10 +73,10 @@ def faults_of_imports(name, found):
         if library in roots and not name.startswith(tuple(places)):
             yield f"{name} imports {library}, which is met in {', '.join(sorted(places))} only"
     if name.startswith("solvers/fem/"):
-        apart = ("solvers.sie", "solvers.friction")
-        yield from (f"{name} imports {module}" for module in found if module.startswith(apart))
+        apart = [module for module in SOLUTIONS if name != TRACTION or module != FORMULA]
+        yield from (f"{name} imports {module}" for module in found if module.startswith(tuple(apart)))
     elif room == "solvers":
-        yield from (f"{name} imports {root}, and is no finite element" for root in roots - PURE)
+        yield from (f"{name} imports {root}, and is no finite element" for root in roots - PURE - allowed)
 
 
 def test_rooms_import_what_they_may():
@@ -89,14 +99,14 @@ def test_imports_inside_a_room_are_relative():
 
 
 def test_what_is_against_the_rules_is_found():
-    assert list(faults_of_imports("solvers/sie/x.py", {"numpy", "meshes.rings"})) == [
-        "solvers/sie/x.py imports from meshes/",
-        "solvers/sie/x.py imports meshes, and is no finite element",
+    assert list(faults_of_imports("solvers/contact/x.py", {"numpy", "meshes.rings"})) == [
+        "solvers/contact/x.py imports from meshes/",
+        "solvers/contact/x.py imports meshes, and is no finite element",
     ]
     assert list(faults_of_imports("app/x.py", {"solvers.fem", "gmsh"})) == [
         "app/x.py imports gmsh, which is met in meshes/store.py only"
     ]
-    assert list(faults_of_imports("solvers/fem/x.py", {"dolfinx", "solvers.sie.panels"}))
+    assert list(faults_of_imports("solvers/fem/x.py", {"dolfinx", "solvers.contact.closed_form"}))
 
 
 def modules():

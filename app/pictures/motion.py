@@ -25,7 +25,7 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.postprocess.surface_over_time import energy_imbalance
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 
 from ..scene.scene import Scene, Time
 from .choice import Choice, Drawing, has_quantities

@@ -9,8 +9,8 @@ from galinx.meshes.kind import edges, nodes
 from galinx.postprocess.figures.curves import degrees_figure
 from galinx.postprocess.figures.sketches import mesh_figure
 from galinx.postprocess.quantities import Quantity, runs, states
+from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 
-from ..plan.fem import FREE_ON_LAYERS
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, has_quantities

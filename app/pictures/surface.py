@@ -24,7 +24,7 @@ from galinx.postprocess.quantities.layers import ALONG_X, INTERFACE_DEPTH, INTER
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, METHODS, POINT, STATE
 from galinx.postprocess.quantities.states import FRICTION, POSITION
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
-from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.layers.layered import Layered
 
 from ..scene.scene import Scene

@@ -27,19 +27,18 @@ from galinx.postprocess.figures.style import number, plain, unit
 from galinx.postprocess.quantities import Quantity, column, states, validity
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
-from galinx.postprocess.stresses import NEAR
 from galinx.postprocess.tables import as_archived
+from galinx.solvers.contact import layered as on_layers
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.contact.solution import Body, Places, Task
+from galinx.solvers.contact.stresses import NEAR
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.free_contact import contacts
-from galinx.solvers.solution import Body, Places
 
 from ..errors import BadInput
 from ..plan.plan import interface_grid, surface_grid
-from ..plan.task import Task
 from ..results.si import contacts_of_states, in_si
-from ..run.methods import on_layers
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, by_method, require_one_of, short_name
 from .state_labels import PLACE, C, N, StateLabels, not_shown, spread

@@ -21,35 +21,35 @@ from galinx.postprocess.quantities.quantity import (
     CLOSED_FORM,
     FEM,
     FRICTION_ALONE,
-    INTENSITIES,
     LOCAL,
     SIE,
     SWEPT,
 )
-from galinx.postprocess.yielding import places as yield_places
-from galinx.solvers.layers.layered import Layered
-from galinx.solvers.profiles import kinks
-from galinx.solvers.sie.prescribed_pressure import LinearPressure
-from galinx.solvers.solution import Body, Places
-from galinx.texts import counted
-
-from .. import ranks
-from ..errors import BadInput, listed
-from ..methods import DOLFINX, METHODS
-from ..run.slider import check_sliders
-from ..scene.scene import FRICTIONS, Scene, oddities
-from . import cost
-from .fem import (
+from galinx.solvers.contact import INTENSITIES, YIELD
+from galinx.solvers.contact.fem_plan import (
     BESIDES,
+    DOLFINX,
     FREE_ON_LAYERS,
     LADDERS,
     OWN_MESHES,
     FemPlan,
-    check_assembler,
     levels,
-    plan_fem,
     unknowns,
 )
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.solution import Body, Places
+from galinx.solvers.contact.yielding import places as yield_places
+from galinx.solvers.layers.layered import Layered
+from galinx.solvers.profiles import kinks
+from galinx.texts import counted
+
+from .. import ranks
+from ..errors import BadInput, listed
+from ..methods import METHODS
+from ..run.slider import check_sliders
+from ..scene.scene import FRICTIONS, Scene, oddities
+from . import cost
+from .fem import check_assembler, memory, plan_fem
 from .over_time import starts
 from .states import enumerate_states, laws_followed, order, seconds_to_integrate
 from .task import CHUNK_NUMBERS, Plan, Tasks
@@ -312,7 +312,7 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
             f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
             f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
         )
-    needed, free = fem.memory, cost.free_memory()
+    needed, free = memory(fem), cost.free_memory()
     if needed > free:
         yield (
             f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
@@ -488,7 +488,7 @@ def _size(count: float) -> str:
 _PLACES = {
     stresses.ON_SURFACE: "stresses on the surface",
     stresses.BELOW: "stresses inside",
-    stresses.YIELD: "yield",
+    YIELD: "yield",
 }
 
 
@@ -513,7 +513,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     check_layers(scene, body, methods)
     check_free_ends(scene, body, methods)
     check_assembler(scene)
-    around = yield_places(body) if stresses.YIELD in scene.output.quantities else np.empty((0, 2))
+    around = yield_places(body) if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     places = Places(surface_grid(), points, around, *interface_grid(body))
     warnings = [*oddities(scene), *check_speeds(scene, states.speeds, "fem" in methods)]
@@ -622,7 +622,7 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
-    if stresses.YIELD in words and not body.pressure:
+    if YIELD in words and not body.pressure:
         skipped.append(
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"

@@ -10,43 +10,14 @@ from numpy.typing import NDArray
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
-from galinx.solvers.solids.solid import Response
-from galinx.solvers.solution import Body, Places
+from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, OWN_MESHES_KEPT, FemPlan
+from galinx.solvers.contact.solution import Body, Places, Task
 
-from .fem import FREE_ON_LAYERS, OWN_MESHES, FemPlan
 from .over_time import Starts
 from .states import Order, States
 
 #: Most floating-point numbers that the states of a chunk hold at once.
 CHUNK_NUMBERS = 1_200_000
-
-#: Most states whose own meshes are held at once.
-OWN_MESHES_KEPT = 32
-
-
-@dataclass(frozen=True)
-class Task:
-    """States of one speed, for every method to solve.
-
-    Attributes:
-        number: of the speed, from 0.
-        body: contact of punch and solid, under the first of the loads.
-        response: of the half-plane at that speed.
-        places: points where stresses are output.
-        runs: rows of the states at that speed, as runs of consecutive states.
-        loads: of these states [N/m], each once.
-    """
-
-    number: int
-    body: Body
-    response: Response
-    places: Places
-    runs: tuple[slice, ...]
-    loads: tuple[float, ...]
-
-    def of(self, values: NDArray) -> NDArray:
-        """Rows of the task's states, of values of all states, (states, …)."""
-        return np.concatenate([values[run] for run in self.runs])
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,6 @@ from galinx.postprocess.quantities.quantity import (
     ALONE,
     CLOSED_FORM,
     FEM,
-    FREE_ENDS,
     LOCAL,
     NEVER,
     SIE,
@@ -37,20 +36,21 @@ from galinx.postprocess.quantities.quantity import (
 )
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
+from galinx.solvers.contact import FREE_ENDS, YIELD
+from galinx.solvers.contact.fem_plan import unknowns
+from galinx.solvers.contact.residual import indentation, places
+from galinx.solvers.contact.solution import Places, Task
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import smooth
-from galinx.solvers.sie.residual import indentation, places
-from galinx.solvers.solution import Places
 
 from ..console import Progress
 from ..methods import METHODS
-from ..plan.fem import unknowns
 from ..plan.over_time import IN_TIME
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states, order
-from ..plan.task import Plan, Task
+from ..plan.task import Plan
 from ..run.flow import Judge, scene_attributes
-from ..run.methods import make
+from ..run.make import make
 from ..run.solve import Work
 from ..scene import read as scenes
 from ..scene.scene import Scene
@@ -164,7 +164,7 @@ def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64]
         if method == CLOSED_FORM:
             own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
         methods = (method,) if method in plan.methods else ()
-        largest = [quantity for quantity in own if quantity.asked_by == stresses.YIELD]
+        largest = [quantity for quantity in own if quantity.asked_by == YIELD]
         others = [quantity for quantity in own if quantity not in largest]
         numbers = sum(int(np.prod(plan.shape(quantity))) for quantity in others)
         most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
@@ -272,7 +272,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
         if quantity.of and quantity.method == CLOSED_FORM and quantity.mode in scene.modes
         and not _is_place(quantity.path)
         # Next to kinks numbers are infinite, or nearly so; and of yield a few states were looked at.
-        and (smooth(body.profile) or quantity.over == (STATE,)) and quantity.asked_by != stresses.YIELD
+        and (smooth(body.profile) or quantity.over == (STATE,)) and quantity.asked_by != YIELD
         and not METHODS[CLOSED_FORM].refusal(scene, body, quantity)
     }  # fmt: skip
     both = {path: other for path, other in twins.items() if other in archive.names}

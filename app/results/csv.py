@@ -12,8 +12,8 @@ from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import LOAD, SPEED
-from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
 from galinx.postprocess.tables import Scaled, parameters
+from galinx.solvers.contact import BELOW, ON_SURFACE
 
 from ..errors import BadInput
 from ..scene import read as scenes

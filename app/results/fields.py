@@ -18,20 +18,21 @@ from numpy.typing import NDArray
 from galinx import __version__
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.quantities.quantity import INTENSITIES
-from galinx.postprocess.stresses import maximum_shear, von_mises
 from galinx.postprocess.target import Target
-from galinx.solvers.contact import under_punch
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.prescribed_pressure import PrescribedPressureSolution
+from galinx.solvers.contact import INTENSITIES
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.edges import under_punch
+from galinx.solvers.contact.fem_plan import FemPlan
+from galinx.solvers.contact.prescribed_pressure import PrescribedPressureSolution
+from galinx.solvers.contact.solution import Task
+from galinx.solvers.contact.stresses import maximum_shear, von_mises
 
 from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed
-from ..plan.fem import FemPlan
 from ..plan.plan import farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
-from ..plan.task import Plan, Task
+from ..plan.task import Plan
 from ..scene.scene import FRICTIONS, Output, Scene
 
 
@@ -139,7 +140,7 @@ def solve_states(states: Sequence[OneState]) -> Generator[Solved, None, None]:
         SolveError: the equations could not be solved.
     """
     with finite_elements_installed():
-        from ..run.methods.fem import FiniteElements
+        from galinx.solvers.fem.method import FiniteElements
     fem = FiniteElements(states[0].plan, Progress(), Clock())
     for state in states:
         with fem.one_state(state.task, state.g, state.degree) as (space, fields, weights, pressure):

@@ -29,9 +29,9 @@ from galinx.postprocess.quantities import (
     yielding,
 )
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
-from galinx.postprocess.stresses import NEAR
 from galinx.postprocess.tables import Scaling, Sheet, as_archived, parameters, solved_speeds, starts_sheet
-from galinx.solvers.contact import from_edge
+from galinx.solvers.contact.edges import from_edge
+from galinx.solvers.contact.stresses import NEAR
 from galinx.texts import counted
 
 from ..console import program

@@ -38,7 +38,7 @@ from ..plan.plan import lines, make_plan
 from ..plan.states import States, enumerate_states
 from ..plan.task import Plan
 from ..scene.scene import Scene
-from .methods import make
+from .make import make
 from .over_time import solve_motions
 from .slider import slide
 from .solve import Work

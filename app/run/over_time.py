@@ -17,10 +17,10 @@ from galinx.postprocess.over_time import COMPARED, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.solvers.layers.contact import ContactsAtSpeed, Pressure
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.equation import ContactsAtSpeed, Pressure
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layered
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch

@@ -7,8 +7,6 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from galinx.solvers.errors import SolveError
-
 
 class Counter:
     """Counter from 0 whose numbers each go to a single rank; collective to make and to free."""
@@ -81,33 +79,6 @@ def _taken_in(world: MPI.Comm, mine: Iterator[_Part]) -> Iterator[_Part]:
                 working -= 1
             else:
                 yield message
-
-
-def by_turns(items: Sequence[_Task], solve: Callable[[_Task], _Part], together: bool) -> list[_Part]:
-    """Results of all items, on every rank, each solved by one of them; collective over MPI's world.
-
-    Args:
-        items: items, equal on every rank.
-        solve: solves an item.
-        together: True where all ranks solve each item collectively.
-
-    Raises:
-        SolveError: an item could not be solved; on every rank.
-    """
-    world = MPI.COMM_WORLD
-    if together or world.size == 1:
-        return [solve(item) for item in items]
-    mine: list[_Part] = []
-    failure: SolveError | None = None
-    try:
-        mine.extend(solve(item) for item in items[world.rank :: world.size])
-    except SolveError as error:
-        failure = error
-    of_all = world.allgather((mine, failure))
-    for _, failed in of_all:
-        if failed:
-            raise failed
-    return [of_all[i % world.size][0][i // world.size] for i in range(len(items))]
 
 
 def same_on_all(finished: NDArray[np.bool_]) -> NDArray[np.bool_]:

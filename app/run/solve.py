@@ -20,13 +20,14 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
+from galinx.solvers.contact.edges import Exponents
+from galinx.solvers.contact.free_contact import local_exponents
+from galinx.solvers.contact.method import Method, Solver
+from galinx.solvers.contact.solution import Body, Surface, Task
 from galinx.solvers.errors import SolveError
-from galinx.solvers.sie.free_contact import Exponents, local_exponents
-from galinx.solvers.solution import Body, Surface
 
 from ..methods import METHODS
-from ..plan.task import Plan, Task
-from .methods.method import Method, Solver
+from ..plan.task import Plan
 
 
 def under_loads(states: Callable[..., Any], body: Body, g: NDArray, load: NDArray | None) -> Any:
@@ -355,7 +356,9 @@ def _local(task: Task, g: NDArray, body: Body) -> Any:
     """Exponents of the pressure at the ends of states."""
     if not body.layered:
         return local_exponents(task.response, g, body.profile, body.compression)
-    from galinx.solvers.layers import free_contact  # SciPy's special functions, a slow import
+    from galinx.solvers.contact import (
+        free_on_layers as free_contact,  # SciPy's special functions, a slow import
+    )
 
     return free_contact.local_exponents(
         task.response, g, body.profile, task.body.half_width, body.compression

@@ -16,10 +16,10 @@ from galinx.postprocess.over_time import contact_numbers
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.postprocess.surface_over_time import stress_datasets
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Energies, Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, Steps, SurfaceInTime, Watch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.punch import BESIDE, ON_SURFACE
 

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities.layers import AT_INTERFACES
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FINITE, FREE_ENDS, FRICTION_ALONE, OWN_PRESSURE, PUNCH
+from galinx.postprocess.quantities.quantity import FINITE, FRICTION_ALONE, PUNCH
 from galinx.postprocess.quantities.runs import SLIDER
+from galinx.solvers.contact import AT_INTERFACES, FREE_ENDS, OWN_PRESSURE
+from galinx.solvers.contact.solution import Body
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -27,7 +28,6 @@ from galinx.solvers.parameters import build_model, parameters
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile
 from galinx.solvers.solids import Solid
-from galinx.solvers.solution import Body
 
 from ..errors import listed
 from .values import Spread

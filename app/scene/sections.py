@@ -15,6 +15,7 @@ from typing import Any
 from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
 from galinx.registry import Registry
+from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.slider import Slider
@@ -25,7 +26,7 @@ from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
 from ..errors import excerpt, nearest, short
-from ..methods import ASSEMBLERS, METHODS, MODES
+from ..methods import METHODS, MODES
 from .library import LIBRARY
 from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (

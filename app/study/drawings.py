@@ -16,10 +16,10 @@ from galinx.postprocess.figures.style import COLOURS, LINES, Look, looks, number
 from galinx.postprocess.figures.surface import Stress
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.stresses import SURFACE_X
-from galinx.solvers.contact import under_punch
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import fields
-from galinx.solvers.sie.closed_form import FlatPunch
 
 from ..pictures.choice import Choice, Drawing
 from ..pictures.friction import Loops

@@ -16,15 +16,15 @@ from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import ARCHIVE, PAGE, TABLES, Folder, Target
+from galinx.solvers.contact import collocation
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.motion import friction_along
-from galinx.solvers.sie import collocation
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 
 from .. import ranks
 from ..console import Progress, colours, program, say
-from ..methods import ASSEMBLERS
 from ..run.flow import Memory, compute, limits
 from ..scene import read as scenes
 from ..scene.library import SCENES

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities import column, runs, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.tables import Sheet
-from galinx.solvers.contact import under_punch
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.solids import Solid
 
 from .published import FAST, REFERENCE, SLOW, published, state_of

@@ -16,7 +16,7 @@ from galinx.meshes import MESHES
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.meshes.store import through_gmsh
-from galinx.postprocess.pressure import contact_recovery
+from galinx.solvers.contact.recovery import contact_recovery
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame

@@ -13,11 +13,11 @@ from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact import from_edge
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.edges import from_edge
 from galinx.solvers.fem.fields import SurfaceSlopes
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 
 TOLERANCE = 1e-6

@@ -11,14 +11,14 @@ from scipy.stats import binom
 from galinx.app.console import Progress
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
-from galinx.app.run.methods import make
+from galinx.app.run.make import make
 from galinx.app.scene.read import parse
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
-from galinx.postprocess import stresses as scale
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, INTENSITIES
-from galinx.postprocess.quantities.stresses import BELOW, ON_SURFACE
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.solvers.contact import BELOW, INTENSITIES, ON_SURFACE
+from galinx.solvers.contact import stresses as scale
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: Largest ratio of estimate to true error, of the median scene and of any above ``ROUNDING``.

@@ -8,10 +8,10 @@ from row import Row, Verdict
 
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
-from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 _RATIO = 0.35

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import from_edge, under_punch
+from galinx.solvers.contact.edges import from_edge, under_punch
 
 from ..quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE
 from .canvas import Legend, Room, Size, handle, lettered, of_methods, panels

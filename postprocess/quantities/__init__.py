@@ -10,19 +10,11 @@ from . import stresses, validity, yielding  # noqa: F401
 from . import over_time, layers  # noqa: F401
 
 # isort: on
+from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 
-from .quantity import (
-    ALONG,
-    FRICTION_ALONE,
-    INSIDE,
-    INTENSITIES,
-    POINT,
-    QUANTITIES,
-    STATE,
-    Quantity,
-)
+from .quantity import ALONG, FRICTION_ALONE, INSIDE, POINT, QUANTITIES, STATE, Quantity
 
 __all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "table"]
 

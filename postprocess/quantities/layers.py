@@ -5,22 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE
+from galinx.solvers.contact.stresses import extreme
 from galinx.solvers.parameters import Range
 
-from ..stresses import extreme
-from .quantity import (
-    ALONG,
-    BESIDE,
-    FEM,
-    INTENSITIES,
-    INTERFACE,
-    POINT,
-    QUANTITIES,
-    SIE,
-    STATE,
-    Quantity,
-)
-from .stresses import BELOW, ON_SURFACE, components, extremes, invariants
+from .quantity import ALONG, BESIDE, FEM, INTERFACE, POINT, QUANTITIES, SIE, STATE, Quantity
+from .stresses import components, extremes, invariants
 from .validity import tensions
 
 
@@ -59,7 +49,6 @@ IN_PLANE = {
 }  # fmt: skip
 
 #: Word of output.quantities.
-AT_INTERFACES = "interfaces"
 
 INTERFACE_DEPTH = Quantity(
     "interfaces/depth_over_a", "1", "depths of the interfaces over the half-width", (INTERFACE,),

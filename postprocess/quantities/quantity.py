@@ -7,6 +7,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
+from galinx.solvers.contact import CLOSED_FORM, FEM, SIE
 from galinx.solvers.parameters import Range
 from galinx.texts import unseen
 
@@ -22,21 +23,17 @@ INNER, STROKE = "inner variables", "strokes"
 #: Types of datasets.
 TEXT, WHOLE, NUMBER = "text", "int64", "float64"
 
-#: Methods, and the local analysis of the punch's edges, which needs no solution.
-CLOSED_FORM, SIE, FEM, LOCAL = "closed_form", "sie", "fem", "local"
+#: Source of quantities by the local analysis of the punch's edges, which needs no solution.
+LOCAL = "local"
 #: Methods that solve, in words.
 METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite elements"}
 
 #: Places where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"
 
-#: Mode of a prescribed pressure, the traction mode with a pressure of the user's own; and mode of all
-#: that is not that: the pressure of a punch with edges.
-OWN_PRESSURE, PUNCH = "own pressure", "punch"
-
-#: Mode of a punch whose contact has free ends; and of all finite stresses, under such a punch or a
-#: prescribed pressure.
-FREE_ENDS, FINITE = "found ends", "finite stresses"
+#: Mode of the pressure of a punch with edges; and of all finite stresses, under a punch with free ends
+#: or a prescribed pressure.
+PUNCH, FINITE = "punch", "finite stresses"
 
 #: Mode of one method alone, the numbers of which are compared with no other's.
 ALONE = "one method"
@@ -44,8 +41,8 @@ ALONE = "one method"
 #: Mode of so many speeds that some of them may give the others by a fit.
 SWEPT = "fitted speeds"
 
-#: Words of a scene's output.quantities that ask for no dataset of their own.
-FRICTION_ALONE, INTENSITIES = "friction", "sif"
+#: Word of a scene's output.quantities that asks for no dataset of its own, beside ``INTENSITIES``.
+FRICTION_ALONE = "friction"
 
 
 @dataclass(frozen=True)
@@ -57,8 +54,8 @@ class Quantity:
         unit: "1" for dimensionless, "none" for texts.
         about: what it is; the dataset's long name, up to its first comma that of axes.
         over: its dimensions.
-        of: reads it off a solution of a body (see :mod:`galinx.solvers.solution`), one value a state;
-            None where the run itself gives it.
+        of: reads it off a solution of a body (see :mod:`galinx.solvers.contact.solution`), one value
+            a state; None where the run itself gives it.
         method: of the solution: ``"closed_form"``, ``"fem"``, ``"local"``, or one of the user's own.
         mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``PUNCH``, ``FOUND``, ``FINITE``,
             ``ALONE`` or ``SWEPT`` where only that one gives it.

@@ -6,19 +6,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE
+from galinx.solvers.contact.stresses import flatness
 from galinx.solvers.parameters import Range
 
-from ..stresses import flatness
 from .quantity import (
     ALONE,
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    FREE_ENDS,
     INNER,
-    INTENSITIES,
     LOCAL,
-    OWN_PRESSURE,
     QUANTITIES,
     SIE,
     STATE,

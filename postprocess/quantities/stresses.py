@@ -5,10 +5,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from galinx.solvers.contact import BELOW, ON_SURFACE
+from galinx.solvers.contact.free_ends import extreme_in_plane
+from galinx.solvers.contact.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
-from ..free_ends import extreme_in_plane
-from ..stresses import principal, von_mises
 from .quantity import (
     ALONE,
     BESIDE,
@@ -20,9 +21,6 @@ from .quantity import (
     STATE,
     Quantity,
 )
-
-#: Words of output.quantities.
-ON_SURFACE, BELOW, YIELD = "surface", "interior", "yield"
 
 SURFACE_X = Quantity(
     "surface/X_over_a", "1", "position on the surface over the half-width", (POINT,), asked_by=ON_SURFACE

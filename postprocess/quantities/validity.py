@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.solvers.contact import ON_SURFACE
+from galinx.solvers.contact.stresses import tension
 from galinx.solvers.parameters import Range
 
-from ..stresses import tension
 from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
@@ -17,7 +18,6 @@ from .quantity import (
     STATE,
     Quantity,
 )
-from .stresses import ON_SURFACE
 
 _NOT_NEGATIVE = Range(at_least=0.0)
 

@@ -5,9 +5,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from galinx.solvers.contact import YIELD
+from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
 
-from ..yielding import Peak
 from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
@@ -18,7 +19,6 @@ from .quantity import (
     STATE,
     Quantity,
 )
-from .stresses import YIELD
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
 _INFINITE = "NaN where it is infinite: with friction, where the pressure ends in a jump"

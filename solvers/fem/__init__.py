@@ -1,4 +1,4 @@
-"""Finite elements in dolfinx for the moving-frame equations: forms, space, punch, surface."""
+"""Finite elements in dolfinx for the moving-frame equations: forms, space, punch, contacts, sweeps."""
 
 import petsc4py
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from ..approximation import interpolation
-from ..contact import EdgeTraction
+from ..contact.edges import EdgeTraction
 from ..solids.solid import ByCells, Response
 from . import versions
 from .cells import image

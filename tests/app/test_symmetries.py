@@ -22,7 +22,7 @@ import galinx
 from galinx.app.scene.read import parse
 from galinx.postprocess.quantities import declared
 from galinx.postprocess.quantities.quantity import ALONG, POINT, STATE
-from galinx.postprocess.quantities.stresses import YIELD
+from galinx.solvers.contact import YIELD
 
 #: Punches with kinks, under which what yields takes seconds to find.
 _SLOW = () if THOROUGH else ("cubic", "cusp", "rounded flat", "table")

@@ -7,13 +7,13 @@ from support import space_on
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import Refinement
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem import fields
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.fields import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.traction import LinearLoads, LoadedHalfPlane, Pieces
 from galinx.solvers.rays import NEAR
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 REFINEMENT = Refinement(5, 0.35, 2, (3.0,) * 4)

@@ -9,9 +9,9 @@ from galinx import template
 from galinx.app.plan import fem
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
-from galinx.app.run.methods.error import ROUNDING
 from galinx.app.scene.library import templates
 from galinx.app.scene.read import parse
+from galinx.solvers.fem.ladder import ROUNDING
 
 #: What ranks agree on they agree on at every tolerance.
 SCENES = {name: template(name, {"solve.tolerance": 1e-3}) for name in templates()}

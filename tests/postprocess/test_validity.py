@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from support import computed
 
 from galinx.postprocess.validity import Steady, Validity
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.transient.late_time import approach
 

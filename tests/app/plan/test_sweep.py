@@ -5,8 +5,8 @@ import pytest
 from random_solids import random_solid
 
 from galinx import template
-from galinx.app.plan.fem import LEAST, swept, variable
 from galinx.app.plan.plan import expense, lines, make_plan
+from galinx.solvers.contact.fem_plan import LEAST, swept, variable
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 

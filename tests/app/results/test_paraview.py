@@ -10,7 +10,7 @@ from galinx.app.plan.states import enumerate_states
 from galinx.app.results import fields
 from galinx.app.results.fields import ABOUT, state_field, write_fields
 from galinx.app.scene.library import templates
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 

@@ -6,10 +6,10 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.postprocess.stresses import maximum_shear, von_mises
+from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.profiles import cusp
-from galinx.solvers.sie.free_contact import contacts
-from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
 MISSED, NEXT_TO_CUSP = 1e-6, 1e-4

@@ -13,7 +13,7 @@ from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.postprocess import stresses
+from galinx.solvers.contact import stresses
 from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic

@@ -15,11 +15,11 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.plan import expense, make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
-from galinx.postprocess import stresses
-from galinx.solvers.layers.contact import Equation
-from galinx.solvers.layers.free_contact import FreeContactsAtSpeed, Punch, conditions
+from galinx.solvers.contact import stresses
+from galinx.solvers.contact.equation import Equation
+from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, Punch, conditions
+from galinx.solvers.contact.solution import Body
 from galinx.solvers.profiles.power import Parabolic
-from galinx.solvers.solution import Body
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from layers_cases import SUBSTRATE

@@ -17,7 +17,7 @@ from galinx.app.results.csv import pieces
 from galinx.app.results.fields import displacement
 from galinx.app.results.report import answers, summary
 from galinx.app.results.si import drawn_in_si
-from galinx.app.run.methods.closed_form import ClosedForm, with_fixed_ends
+from galinx.solvers.contact.exact import ClosedForm, with_fixed_ends
 from galinx.solvers.parameters import parameter
 from galinx.solvers.profiles import PROFILES
 

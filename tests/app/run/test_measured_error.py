@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from galinx.app.run.methods import error
-from galinx.app.run.methods.error import Gauge, Ladder, MeasuredError, climb, solved_to_tolerance
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
-from galinx.postprocess.pressure import MOMENTS, JacobiPressure
+from galinx.solvers.contact.recovery import MOMENTS, JacobiPressure
+from galinx.solvers.fem import ladder as error
+from galinx.solvers.fem.ladder import Gauge, Ladder, MeasuredError, climb, solved_to_tolerance
 
 G = np.array([-0.5])
 FIRST = 6

@@ -9,8 +9,8 @@ from support import THOROUGH, computed, here
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
-from galinx.app.run.methods import prescribed_pressure
-from galinx.solvers.contact import from_edge
+from galinx.solvers.contact.edges import from_edge
+from galinx.solvers.fem import prescribed_pressure
 from galinx.solvers.fem.traction import LinearLoads
 from galinx.solvers.solids import Isotropic
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import galinx
-from galinx.postprocess import stresses
-from galinx.solvers.contact import under_punch
+from galinx.solvers.contact import stresses
+from galinx.solvers.contact.edges import under_punch
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers_fem import PARTS, off, random_scene

@@ -9,8 +9,8 @@ from support import HOME, THOROUGH, command
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.postprocess import stresses
 from galinx.postprocess.tables import solved_speeds
+from galinx.solvers.contact import stresses
 from galinx.solvers.parameters import values
 from galinx.solvers.solids import SOLIDS, Isotropic
 from galinx.solvers.solids.orthotropic import Orthotropic
@@ -136,7 +136,7 @@ def test_every_speed_is_solved_where_that_is_asked_for():
 @pytest.fixture
 def work_done(monkeypatch):
     """Degrees that are solved with, as long as the test runs."""
-    from galinx.app.run.methods.punch import PunchLevel
+    from galinx.solvers.fem.contact import PunchLevel
 
     degrees, init = [], PunchLevel.__init__
 
@@ -150,7 +150,7 @@ def work_done(monkeypatch):
 
 def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
     """And what was solved in vain, with the work as the fourth power of the degree, is little."""
-    from galinx.app.run.methods import sweep
+    from galinx.solvers.fem import sweep
 
     monkeypatch.setattr(sweep, "FIT", 1e-12)
     c = np.linspace(0.0, 0.8, 16)

@@ -9,7 +9,7 @@ import pytest
 from support import THOROUGH
 
 import galinx
-from galinx.postprocess import stresses
+from galinx.solvers.contact import stresses
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 

@@ -7,7 +7,7 @@ import pytest
 from support import computed
 
 from galinx.app.errors import BadInput
-from galinx.postprocess.stresses import principal, von_mises
+from galinx.solvers.contact.stresses import principal, von_mises
 
 #: Of the scene's states, the two with most and least friction; T302 yields at 205 MPa.
 CHANGES = {

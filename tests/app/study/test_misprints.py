@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.special import roots_jacobi
 
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 #: The study's solid at high speed, and the friction of its first forward motion at X/L = 0.8.

@@ -16,7 +16,7 @@ from galinx.app.results.fields import displacement_under_punch
 from galinx.app.scene import read as scenes
 from galinx.app.study import paper, published
 from galinx.postprocess.compare import RULES
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 
 
 @pytest.fixture(scope="module")

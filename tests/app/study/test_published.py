@@ -24,8 +24,8 @@ from galinx.app.study.published import (
     table2,
     table3,
 )
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 
 T302 = Isotropic(193e9, 0.25, 7860.0)

@@ -5,7 +5,7 @@ import pytest
 from support import computed, space_on
 
 from galinx.meshes.rings import Refinement
-from galinx.postprocess import stresses
+from galinx.solvers.contact import stresses
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 

@@ -7,12 +7,12 @@ from support import computed, space_on
 
 from galinx.app.errors import BadInput
 from galinx.meshes.rings import Refinement
-from galinx.solvers.contact import EdgeTraction
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.edges import EdgeTraction
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.forms import FORMS, Form
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.traction import LoadedHalfPlane
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 from galinx.solvers.solids.orthotropic import Orthotropic
 

@@ -6,10 +6,10 @@ from support import space_on
 
 from galinx.meshes import MESHES, Requirements
 from galinx.solvers import rays
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import traction
 from galinx.solvers.fem.traction import LinearLoads, Pieces
-from galinx.solvers.sie.prescribed_pressure import LinearPressure
 from galinx.solvers.solids.isotropic import MovingFrame
 
 FRAME = MovingFrame(2.0, 0.6)

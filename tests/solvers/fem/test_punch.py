@@ -6,9 +6,9 @@ from scipy.special import eval_chebyt
 from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem import punch as punches
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 

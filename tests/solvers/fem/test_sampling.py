@@ -7,9 +7,9 @@ from scipy.spatial import cKDTree
 from support import areas, space_on
 
 from galinx.meshes.rings import Refinement
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.fields import InteriorGradients, sample
 from galinx.solvers.fem.punch import SlidingPunch
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 κ, C, G, EXTENT = 2.0, 0.6, -0.66, 4.0

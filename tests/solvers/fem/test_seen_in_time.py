@@ -8,11 +8,11 @@ from scipy.special import roots_jacobi
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.cells import lagrange
 from galinx.solvers.fem.dynamic import BOX, Energies, Motion, of_both
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.punch import ON_SURFACE, smooth

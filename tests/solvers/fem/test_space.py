@@ -2,9 +2,9 @@ import pytest
 from mpi4py import MPI
 from support import space_on
 
-from galinx.app.plan.fem import unknowns
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import TAGS, Refinement
+from galinx.solvers.contact.fem_plan import unknowns
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.space import Space, distribute
 

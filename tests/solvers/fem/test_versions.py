@@ -10,11 +10,11 @@ from support import HOME
 
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, QuadMesh
-from galinx.postprocess.pressure import contact_recovery, from_moments
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem import versions
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
 STORED = HOME / "tests" / "reference" / "stored_mesh.npz"

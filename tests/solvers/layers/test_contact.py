@@ -7,11 +7,11 @@ from layers_cases import COAT, SUBSTRATE, equation, flat
 from layers_reference import plane_strain, punch
 from support import THOROUGH
 
-from galinx.solvers.layers.contact import ContactsAtSpeed, Polynomial, converged_pressure
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.collocation import Expansion, solve, weights_hilbert
+from galinx.solvers.contact.equation import ContactsAtSpeed, Polynomial, converged_pressure
+from galinx.solvers.contact.panelled import solved as panelled
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.layers.panelled import solved as panelled
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.collocation import Expansion, solve, weights_hilbert
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the

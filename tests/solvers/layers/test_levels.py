@@ -6,10 +6,10 @@ import pytest
 from layers_cases import COAT, SUBSTRATE, constants, equation
 from layers_reference import system
 
-from galinx.solvers.layers.contact import converged_pressure
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.equation import converged_pressure
 from galinx.solvers.layers.kernel import Level
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.sie.closed_form import FlatPunch
 
 X = np.linspace(-3.0, 3.0, 25)
 

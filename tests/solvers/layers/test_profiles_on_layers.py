@@ -9,10 +9,10 @@ from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
 from support import THOROUGH
 
-from galinx.solvers.layers.free_contact import FreeContactsAtSpeed, Punch, local_exponents
+from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, Punch, local_exponents
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.sie.free_contact import contacts
 
 COATED = Layered((Layer(1.0, COAT),), SUBSTRATE)
 SAME = Layered((Layer(1.0, SUBSTRATE), Layer(0.3, SUBSTRATE)), SUBSTRATE)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from random_solids import isotropic_as, random_solid, stiffness
 
-from galinx.postprocess import stresses
-from galinx.solvers.sie.closed_form import FlatPunch
-from galinx.solvers.sie.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact import stresses
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic

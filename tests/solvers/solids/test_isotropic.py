@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from fourier_reference import surface_response
 
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
 
 mpmath = pytest.importorskip("mpmath")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from random_solids import random_solid
 
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import ON_SURFACE, AlongSurface
 from galinx.solvers.transient.transform import Transformed

@@ -7,7 +7,7 @@ from scipy.interpolate import make_interp_spline
 from started import THOROUGH, ByFiniteElements
 
 from galinx.postprocess.over_time import contact_numbers
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.march import FrictionInterpolation
 from galinx.solvers.transient.punch import StartingPunch, smooth

@@ -8,10 +8,10 @@ from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import contact_numbers
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion, damping, of_both
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.sie.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import StartingPunch, smooth
 

@@ -5,7 +5,7 @@ import pytest
 from random_solids import random_solid
 from started import THOROUGH, ByFiniteElements, by_integral_equation
 
-from galinx.solvers.sie.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import BESIDE, smooth
 

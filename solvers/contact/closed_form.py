@@ -1,0 +1,244 @@
+"""Closed form of a rigid flat punch that slides over a half-plane at constant speed (Eqs 38-58).
+
+Lengths are divided by the half-width a, stresses by N/(2a); positions r = X/a. ``g`` is the signed
+ratio σ_XY/σ_YY under the punch: g = -f for a punch that drags the surface along with it.
+
+Parabolic and tilted flat punches have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is an
+integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface are
+exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
+
+    Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt = (X(z) q(z) - [X q])/sin(πα),
+
+[X q] the part of X q that does not vanish at infinity.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import log1p
+
+from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
+
+#: Newton's steps for the logarithm of a distance; at a double root they halve the error.
+_STEPS = 80
+
+
+@dataclass(frozen=True)
+class FlatPunch(EdgeExponents):
+    """The exact solution at one speed and friction, or at several frictions."""
+
+    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r = X/a; 0 outside the contact, NaN at |r| = 1 (Eq 55).
+
+        The study's Eq 55 has lost the sign of its Eq 37; the stress is compressive.
+        """
+        r = np.asarray(r, dtype=float)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            inside = 2.0 * self._sin / np.pi * self._weight(r)
+        return np.where(under_punch(r), inside, np.where(from_edge(r) > 0.0, 0.0, np.nan))
+
+    def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
+        return self.traction(np.asarray(left, dtype=float), np.asarray(right, dtype=float))
+
+    @property
+    def traction(self) -> EdgeTraction:
+        """The contact stress over N/(2a) by distances over a from the two edges."""
+        return EdgeTraction(2.0 * self._sin / np.pi, self.α, self.β)
+
+    def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
+        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface over N/(2a); NaN at |r| = 1."""
+        r = np.asarray(r, dtype=float)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            outside = np.abs(r - 1.0) ** self.α * np.abs(r + 1.0) ** self.β / self._sin
+            F = np.where(under_punch(r), self._cot * self._weight(r), np.sign(r) * outside)
+        return np.where(from_edge(r) == 0.0, np.nan, 2.0 * self._sin / np.pi * F)
+
+    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN at |r| = 1 (Eq 32)."""
+        answer, σ_YY = self.response, self.σ_YY(r)
+        u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.hilbert(r)
+        return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
+
+    def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
+
+        Under the punch u,X is a multiple of the pressure, infinite at both edges. From its least value,
+        which is between them, the pressure grows towards each, so that its logarithm can be halved.
+
+        Args:
+            strain: value of -μ u,X over N/(2a) that is exceeded there, positive.
+
+        Returns:
+            Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
+        """
+        answer = self.response
+        by_pressure = answer.q + (answer.n12 + answer.m * self.g) * self._cot
+        size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
+        log_ratio = np.log(strain / size)
+        return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
+
+    @staticmethod
+    def _within(own: Any, other: Any, level: Any) -> NDArray[np.float64]:
+        """Largest d with own·log d + other·log(2 - d) >= level, not beyond the least of that sum."""
+        high = np.log(-2.0 * own)
+        low = np.minimum((level - other * np.log(2.0)) / own, high)  # as if 2 - d were 2
+        # Convex and falling from the left of the answer on: Newton's steps never pass it.
+        t = low
+        for _ in range(_STEPS):
+            d = np.exp(t)
+            excess = own * t + other * np.log(2.0 - d) - level
+            slope = np.minimum(own - other * d / (2.0 - d), -np.finfo(float).tiny)
+            with np.errstate(over="ignore"):
+                moved = np.where(excess > 0.0, np.minimum(t - excess / slope, high), t)
+            if np.array_equal(moved, t):
+                break
+            t = moved
+        return np.exp(t)
+
+    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
+        return self.response.inside(EdgePotential(self.α, self.β), self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.σ_YY(X)
+        return np.where(
+            on, [self.σ_XX(X), σ_YY, self.g * σ_YY], self.inside(X, np.where(on, -1.0, Y))
+        )  # fmt: skip
+
+    def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""
+        return (1.0 - r) ** self.α * (1.0 + r) ** self.β
+
+
+@dataclass(frozen=True)
+class EdgePotential:
+    """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, the flat punch's; α and β broadcast against z."""
+
+    α: Any
+    β: Any
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        by_right, by_left = step / (z - 1.0), step / (z + 1.0)
+        if share == 0.0:
+            return self.at(z) * (self.α * by_right + self.β * by_left)
+        growth = self.α * log1p(share * by_right) + self.β * log1p(share * by_left)
+        return self.at(z) * np.expm1(growth) / share
+
+
+#: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
+_FAR, _POWERS = 3.0, 36
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """σ_YY = (1 - s)^α (1 + s)^β (A + B s) over N/(2a); all broadcast against positions.
+
+    Attributes:
+        α, β: exponents at the right and the left end; their sum is ``order``.
+        A, B: coefficients, dimensionless.
+        order: -1, 0 or 1, the same for all states.
+    """
+
+    α: Any
+    β: Any
+    A: Any
+    B: Any
+    order: int
+
+    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress at r; 0 beside the contact, and NaN at an end where it is infinite."""
+        r = np.asarray(r, dtype=float)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            inside = (1.0 - r) ** self.α * (1.0 + r) ** self.β * (self.A + self.B * r)
+        beside = np.where(from_edge(r) > 0.0, 0.0, np.nan)
+        return np.where(under_punch(r), inside, beside)
+
+    def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
+        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface off the ends."""
+        r = np.asarray(r, dtype=float)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            size = np.abs(1.0 - r) ** self.α * np.abs(1.0 + r) ** self.β * (self.A + self.B * r)
+            sign = np.where(under_punch(r), np.cos(np.pi * self.α), 1.0)
+            # Left of the contact both factors of X are negative: (-1)^(α + β).
+            sign = np.where(r < -1.0, (-1.0) ** self.order, sign)
+            near = (sign * size - self._polynomial(r)) / self._sin
+        return np.where(np.abs(r) > _FAR, self._far(np.where(np.abs(r) > _FAR, r, np.inf)), near)
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        far = np.abs(z) > _FAR
+        near = (self._X(z) * (self.A + self.B * z) - self._polynomial(z)) / self._sin
+        return np.where(far, self._far(np.where(far, z, np.inf)), near)
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        by_right, by_left = step / (z - 1.0), step / (z + 1.0)
+        if share == 0.0:
+            growth = self.α * by_right + self.β * by_left
+        else:
+            exponent = self.α * log1p(share * by_right) + self.β * log1p(share * by_left)
+            growth = np.expm1(exponent) / share
+        moved = z + share * step
+        near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
+        near = (near - self._leading * step) / self._sin
+        far = np.minimum(np.abs(z), np.abs(moved)) > _FAR
+        return np.where(far, self._far_change(np.where(far, z, np.inf), step, share), near)
+
+    @property
+    def _sin(self) -> Any:
+        return np.sin(np.pi * self.α)
+
+    def _X(self, z: NDArray) -> NDArray[np.complex128]:
+        return np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+
+    @property
+    def _leading(self) -> Any:
+        """Coefficient of z in [X q]; 0 for the orders 0 and -1, of which [X q] is a constant."""
+        return self.A if self.order == 1 else 0.0
+
+    def _polynomial(self, z: Any) -> Any:
+        """Polynomial [X q] at z; B vanishes where the order is 0 or 1."""
+        if self.order == 1:
+            return self.A * (z + self.β - self.α)
+        return self.A if self.order == 0 else self.B
+
+    @cached_property
+    def _powers(self) -> list[Any]:
+        """Coefficients of z^-1, z^-2, … of Φ, from those of (1 - y)^α (1 + y)^β, y = 1/z."""
+        lean, total = self.β - self.α, self.order
+        e = [1.0 + 0.0 * lean, lean]
+        for k in range(1, _POWERS + 2):
+            e.append((lean * e[k] + (k - 1 - total) * e[k - 1]) / (k + 1))
+        # X q = Σ e_k z^(order - k) (A + B z)
+        return [
+            (self.A * e[j + total] + self.B * e[j + total + 1]) / self._sin for j in range(1, _POWERS)
+        ]
+
+    def _far(self, z: NDArray) -> Any:
+        y, total = 1.0 / z, 0.0
+        for coefficient in reversed(self._powers):
+            total = (total + coefficient) * y
+        return total
+
+    def _far_change(self, z: NDArray, step: NDArray, share: complex) -> Any:
+        with np.errstate(invalid="ignore"):
+            y, other = 1.0 / z, 1.0 / (z + share * step)
+        value, divided = 0.0, 0.0  # of the sum so far at y, and its divided difference
+        for coefficient in reversed(self._powers):
+            value, divided = (value + coefficient) * y, (value + coefficient) + divided * other
+        return -step * y * other * divided
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Intensity at the left and the right end as in Eqs 56-57, 0 at one that is free: (..., 2)."""
+        K_left = np.where(self.β < 0.0, 0.5 * (self.B - self.A) * 2.0 ** (self.α + self.β + 1.0), 0.0)
+        K_right = np.where(self.α < 0.0, -0.5 * (self.A + self.B) * 2.0 ** (self.α + self.β + 1.0), 0.0)
+        return np.stack(np.broadcast_arrays(K_left, K_right), axis=-1)

@@ -1,0 +1,492 @@
+"""The singular integral equation of a punch on a layered half-plane.
+
+    (n̂/π) ⨍ σ(t)/(t - r) dt - g q σ(r) + ∫ K(r - t) σ(t) dt = μ v,X(r),   ∫ σ dr = -2,
+
+σ = σ_YY, n̂ = n + g n₁₂ of the surface's solid, K of :mod:`galinx.solvers.layers.kernel`. The dominant
+part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
+their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels replace them.
+
+:class:`Pressure` is the interface of contact pressures, solved for or prescribed: values, transforms,
+integrals. A prescribed pressure is linear between knots (:class:`Given`). It is integrated by Gauss's
+rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
+towards it. The part of the half-plane of the surface's solid is known exactly.
+
+Any number of frictions at one speed share the kernels, which do not depend on friction
+(:class:`Speed`). A pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond a few
+frictions the equation is solved at Chebyshev's points in g, and interpolated between them.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import roots_jacobi
+
+from ..errors import SolveError
+from ..layers.kernel import Kernel, Scaled
+from ..layers.layered import LayersAtSpeed
+from .collocation import Expansion, jacobi
+from .panelled import PanelledPressure, Panels
+from .panelled import parts as panelled
+from .prescribed_pressure import LinearPressure
+
+#: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
+_NEAR, _GROWN, _FINE = 1.1, 1e3, 96
+
+
+class Pressure(Protocol):
+    """Contact pressure σ_YY over N/(2a) = (1 - r)^α (1 + r)^β p(r), |r| < 1.
+
+    Attributes:
+        α, β: exponents.
+        near: |r| up to which p can be evaluated.
+        tips: places under the punch at which the pressure is infinite.
+    """
+
+    @property
+    def α(self) -> float: ...
+    @property
+    def β(self) -> float: ...
+    @property
+    def near(self) -> float: ...
+    @property
+    def tips(self) -> tuple[float, ...]: ...
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        """p at |r| <= near, (len(r),)."""
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
+
+
+def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points and weights of Gauss's rule for the weight (1 - t)^α (1 + t)^β, (points,) each."""
+    with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
+        t, w = roots_jacobi(points, α, β)
+    return t, w
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Pressure as a sum of Jacobi polynomials under their weight, see :class:`Pressure`."""
+
+    expansion: Expansion
+
+    tips: ClassVar[tuple[float, ...]] = ()
+
+    @property
+    def near(self) -> float:
+        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.expansion.c))))
+
+    @property
+    def α(self) -> float:
+        return self.expansion.α
+
+    @property
+    def β(self) -> float:
+        return self.expansion.β
+
+    @cached_property
+    def _rule(self) -> tuple[NDArray, NDArray, NDArray]:
+        t, w = gauss(max(_FINE, 2 * len(self.expansion.c)), self.α, self.β)
+        return t, w, self.series(t)
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.expansion.series(r)
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        t, w, p = self._rule
+        close = np.abs(r) <= near
+        taken = np.zeros_like(r)
+        taken[close] = self.series(r[close])
+        difference = t - r[:, None]
+        on = np.abs(difference) < 1e-13
+        return np.asarray(((p - taken[:, None]) / np.where(on, np.inf, difference)) @ w / np.pi)
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        t, w, p = self._rule
+        return np.asarray(np.einsum("rtf,t->rf", kernel(r[:, None] - t), w * p))
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        fine = Panels(self.α, self.β, min(finest, 0.7))
+        return fine.t, fine.weights * self.series(fine.t)
+
+
+#: Points of a panel, and of the coarser rule that measures the error of the finer one.
+FINE, COARSE = 20, 14
+#: Longest panel over the length of a kernel's variation; factor and number of steps by which panels
+#: shorten towards a logarithm.
+_SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
+#: Panels at most.
+_MOST = 200_000
+
+
+@dataclass(frozen=True)
+class PrescribedPressure:
+    """Prescribed pressure with the integrals of :class:`Pressure`.
+
+    Attributes:
+        pressure: σ_YY over N/(2a).
+        nodes: number of points of a panel.
+        length: length over a over which the kernel on the surface varies.
+        rough: True where the kernel has a logarithm at 0.
+    """
+
+    pressure: LinearPressure
+    nodes: int
+    length: float
+    rough: bool
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
+        return self._weighted(self._cut(self.pressure.knots, finest))
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+        whole = self.points(self.length)
+        integrals = []
+        for place in r.tolist():
+            t, σ = self._weighted(self._towards(place)) if self.rough else whole
+            integrals.append(σ @ kernel(place - t))
+        return np.array(integrals)
+
+    def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
+        """Ends of panels between ``ends``, none too long for functions that vary over ``finest``."""
+        longest = max(_SHARE * finest, 2.0 / _MOST)
+        panels = [ends[:1]]
+        for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
+            count = max(int(np.ceil((high - low) / longest)), 1)
+            panels.append(low + (high - low) * np.arange(1, count + 1) / count)
+        return np.concatenate(panels)
+
+    def _towards(self, place: float) -> NDArray[np.float64]:
+        """Ends of panels that get shorter towards a place."""
+        near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
+        knots = self.pressure.knots
+        more = np.concatenate([place - near, place + near])
+        inside = more[(more > knots[0]) & (more < knots[-1])]
+        return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
+
+    def _weighted(self, ends: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        x, w = np.polynomial.legendre.leggauss(self.nodes)
+        half = np.diff(ends) / 2.0
+        t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
+        return t, (half[:, None] * w).ravel() * self.pressure(t)
+
+
+#: Number of polynomials at first, its growth from step to step, and its maximum.
+FIRST, _MORE, MOST = 24, 1.5, 1400
+#: Where pressures of two numbers of polynomials are compared.
+_ENDS = np.array([-1.0, 1.0])
+_LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
+#: Distance from a tip of the punch within which pressures are not compared.
+NEAR_TIP = 0.02
+#: Least distance from -1 of the pressure's exponents: points of quadrature fall on the edges beyond it.
+_STRONGEST = 1e-4
+
+#: μ v,X under the punch over N/(2a) at given r.
+Slope: TypeAlias = Callable[[NDArray], NDArray]
+#: Number of polynomials, or the longest panel where the kernel is rough.
+Resolution: TypeAlias = int | float
+
+#: A change that rounding alone may make.
+_ROUNDING = 2e-12
+#: Longest panel at first where the kernel is rough, over the contact's half-width, its factor from step
+#: to step, and the number of steps.
+_COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Pressures whose sums are other pressures.
+
+    Attributes:
+        coefficients: of each pressure, (unknowns, parts).
+        made: makes a pressure of coefficients, (unknowns,).
+    """
+
+    coefficients: NDArray[np.float64]
+    made: Callable[[NDArray], Pressure]
+
+    def pressure(self, amplitudes: NDArray) -> Pressure:
+        """Sum of the parts with amplitudes, (parts,)."""
+        return self.made(self.coefficients @ amplitudes)
+
+    @property
+    def ends(self) -> NDArray[np.float64]:
+        """Values of p at the left and the right end, (2, parts)."""
+        return np.stack([self.made(c).series(_ENDS) for c in self.coefficients.T], axis=-1)
+
+
+@dataclass(frozen=True)
+class Equation:
+    """Singular integral equation at one speed and friction.
+
+    Attributes:
+        response: of the surface's solid.
+        kernel: of the layers.
+        g: σ_XY/σ_YY under the punch.
+        slope: μ v,X under the punch over N/(2a) at given r.
+        kinks: places r next to which the slope is not smooth.
+    """
+
+    response: Any
+    kernel: Kernel | Scaled
+    g: float
+    slope: Slope
+    kinks: tuple[float, ...] = ()
+
+    @property
+    def n(self) -> float:
+        """n̂ = n + g n₁₂, dimensionless."""
+        return float(self.response.n + self.g * self.response.n12)
+
+    @cached_property
+    def α(self) -> float:
+        """Exponent at X = a, that of the surface's solid, dimensionless."""
+        return float(-0.5 - np.arctan2(self.g * self.response.q, self.n) / np.pi)
+
+    @property
+    def β(self) -> float:
+        """Exponent at X = -a, dimensionless."""
+        return -1.0 - self.α
+
+    def solved(self, terms: int) -> Expansion:
+        """Pressure as a sum of ``terms`` polynomials, with resultant -2."""
+        (c,) = self._coefficients(terms, [self.slope], [-2.0]).T
+        return Expansion(self.α, self.β, c)
+
+    def pressure(self, resolution: Resolution) -> Pressure:
+        """Pressure with resultant -2 at a resolution."""
+        return self.parts(resolution, [self.slope], [-2.0]).pressure(np.ones(1))
+
+    def parts(self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]) -> Parts:
+        """Pressures under several slopes with resultants ``loads``, whose sums are other pressures."""
+        if isinstance(resolution, float):
+            panels, values = panelled(self, resolution, slopes, loads)
+            return Parts(values, lambda p: PanelledPressure(panels, p))
+        c = self._coefficients(resolution, slopes, loads)
+        return Parts(c, lambda c: Polynomial(Expansion(self.α, self.β, c)))
+
+    def _coefficients(
+        self, terms: int, slopes: Sequence[Slope], loads: Sequence[float]
+    ) -> NDArray[np.float64]:
+        """Coefficients of ``terms`` polynomials for each slope and load, (terms, slopes)."""
+        t, w = gauss(terms, self.α, self.β)
+        r, _ = gauss(terms - 1, -self.α, -self.β)
+        P = jacobi(terms, self.α, self.β, t)
+        A = np.empty((terms, terms))
+        A[:-1] = self.n / np.pi * (w / (t - r[:, None])) @ P
+        by_kernel = self.kernel(r[:, None] - t)
+        A[:-1] += (w * (by_kernel[..., 3] + self.g * by_kernel[..., 2])) @ P
+        A[-1] = w @ P
+        b = np.vstack([np.stack([slope(r) for slope in slopes], axis=-1), loads])
+        return np.asarray(np.linalg.solve(A, b))
+
+
+@dataclass(frozen=True)
+class ConvergedPressure:
+    """A pressure and its change with the number of unknowns.
+
+    Attributes:
+        pressure: the pressure.
+        before: the pressure with fewer unknowns.
+        change: relative change of the pressure and its intensities.
+    """
+
+    pressure: Pressure
+    before: Pressure
+    change: float
+
+
+def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> ConvergedPressure:
+    """Pressure of an equation to a relative tolerance, with ``first`` polynomials at first.
+
+    Raises:
+        SolveError: the tolerance was not reached; the message says by how much.
+    """
+    check_exponents(equation)
+    before: Pressure | None = None
+    moved = np.inf
+    for resolution in resolutions(equation.kernel.rough, first):
+        now = equation.pressure(resolution)
+        if before is not None:
+            moved = change(before, now)
+            if is_converged(moved, tolerance):
+                return ConvergedPressure(now, before, moved)
+        before = now
+    raise not_converged(moved, tolerance)
+
+
+def check_exponents(equation: Equation) -> None:
+    """Check that the pressure can be resolved up to its edges.
+
+    Raises:
+        SolveError: an exponent is too close to -1.
+    """
+    least = 1.0 + min(equation.α, equation.β)
+    if not least >= _STRONGEST:
+        raise SolveError(
+            f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
+            f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
+        )
+
+
+def is_converged(moved: float, tolerance: float) -> bool:
+    """Return True if a relative change with the resolution is small enough."""
+    return moved <= tolerance / 4.0 or moved <= _ROUNDING
+
+
+def not_converged(moved: float, tolerance: float) -> SolveError:
+    """Error of a pressure that still changes with the most unknowns."""
+    return SolveError(
+        f"with the most unknowns the pressure still changes by {moved:.2g}, expected {tolerance:g}: "
+        "the uppermost layer is very thin over the contact's width; take a larger tolerance"
+    )
+
+
+def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
+    """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
+    if rough:
+        for time in range(_TIMES):
+            yield _COARSE * _SHORTER**time
+        return
+    terms = max(int(first / _MORE), 8)
+    while terms < MOST:
+        yield terms
+        terms = int(_MORE * terms)
+    yield MOST
+
+
+def change(before: Pressure, now: Pressure) -> float:
+    """Largest change of intensities and p, relative to the largest |p|; not next to tips."""
+    at = np.concatenate([_ENDS, _LOOKED_AT])
+    for tip in now.tips:
+        at = at[np.abs(at - tip) > NEAR_TIP]
+    earlier, later = before.series(at), now.series(at)
+    return float(np.abs(earlier - later).max() / np.abs(later).max())
+
+
+#: Chebyshev's points in g at first and at most; the last coefficients estimate the error.
+_FEW, _MANY, _LAST = 9, 65, 2
+
+
+@dataclass(frozen=True)
+class ContactsAtSpeed:
+    """Contacts with any friction at one speed, which share kernels.
+
+    Attributes:
+        response: of the surface's solid.
+        stack: layers with their substrate, lengths over a.
+        slope: μ v,X under the punch over N/(2a) at given r.
+        tolerance: relative.
+    """
+
+    response: Any
+    stack: LayersAtSpeed
+    slope: Callable[[NDArray], NDArray]
+    tolerance: float
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        return Kernel(self.stack, self.tolerance / 1e3)
+
+    def solved(self, g: NDArray) -> tuple["PressuresByFriction", NDArray[np.float64]]:
+        """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
+
+        Args:
+            g: σ_XY/σ_YY, sorted, (states,).
+        """
+        if len(g) <= _FEW:
+            return self._together(g, self._each(g)), np.zeros(1)
+        count = _FEW
+        middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
+        while True:
+            nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
+            frictions = self._together(nodes, self._each(nodes))
+            error = frictions.unresolved
+            if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
+                return frictions, np.array([error])
+            count = 2 * count - 1
+
+    def _together(self, g: NDArray, each: list[Any]) -> "PressuresByFriction":
+        return PressuresByFriction(g, each)
+
+    def _each(self, g: NDArray) -> list[ConvergedPressure]:
+        answers: list[ConvergedPressure] = []
+        first = FIRST
+        for value in g.tolist():
+            equation = Equation(self.response, self.kernel, value, self.slope)
+            answers.append(converged_pressure(equation, self.tolerance, first))
+        return answers
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of the pressure by that of the kernel."""
+        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
+
+
+@dataclass(frozen=True)
+class PressuresByFriction:
+    """Pressures at several frictions, from which those at others are interpolated.
+
+    Attributes:
+        g: σ_XY/σ_YY, (nodes,).
+        each: pressures with their changes, one for each g.
+    """
+
+    g: NDArray[np.float64]
+    each: list[ConvergedPressure]
+
+    @property
+    def near(self) -> float:
+        """|r| up to which p of all pressures can be evaluated."""
+        return min(p.near for solution in self.each for p in (solution.pressure, solution.before))
+
+    def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """Values of a function of every pressure, (nodes, ...)."""
+        return np.array([what(solution.pressure) for solution in self.each])
+
+    def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """Values of a function of every pressure, and of that with fewer unknowns, (2, nodes, ...)."""
+        return np.array([self.read(what), [what(solution.before) for solution in self.each]])
+
+    @cached_property
+    def unresolved(self) -> float:
+        """Relative error of pressures interpolated in g, from their last Chebyshev coefficients."""
+        values = self.smooth
+        x = np.cos(np.pi * np.arange(len(self.g)) / (len(self.g) - 1))
+        c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
+        return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
+
+    @property
+    def smooth(self) -> NDArray[np.float64]:
+        """Samples of every pressure that are smooth in g, (nodes, n)."""
+        r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
+        return self.read(lambda pressure: pressure.series(r))
+
+    def at(self, g: NDArray) -> NDArray[np.float64]:
+        """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
+        difference = g[:, None] - self.g
+        same = difference == 0.0
+        if same.any(axis=1).all():
+            return same / same.sum(axis=1, keepdims=True)
+        weights = (-1.0) ** np.arange(len(self.g))
+        weights[[0, -1]] /= 2.0
+        terms = weights / np.where(same, 1.0, difference)
+        terms = np.where(same.any(axis=1, keepdims=True), same, terms)
+        return np.asarray(terms / terms.sum(axis=1, keepdims=True))
+
+    @property
+    def change(self) -> float:
+        """Largest relative change of a pressure with the number of unknowns."""
+        return max(solution.change for solution in self.each)

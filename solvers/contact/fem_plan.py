@@ -1,0 +1,372 @@
+"""Plan of the finite elements of a scene: mesh, degrees, solver; it needs no mesh and no dolfinx.
+
+Over layers, meshes follow the interfaces, and the pressure is recovered from nodal forces by moments,
+see :class:`PressureMoments`. In a scene of many speeds finite elements solve a few of them, and a fit
+through these gives the others, see :class:`Sweep`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.meshes import MeshKind, Requirements
+from galinx.meshes.layered import OnLayers, on_layers
+from galinx.meshes.rings import QuadMesh, Refinement
+
+from ..layers.layered import Layered, LayeredResponse
+from ..rays import NEAR
+from ..solids import Solid
+from ..solids.solid import Response
+from . import FREE_ENDS
+from .recovery import Stretch
+from .solution import Places
+
+#: Assemblers of the matrices: element matrices by tensor products, or dolfinx's own.
+TENSOR, DOLFINX = "tensor", "dolfinx"
+ASSEMBLERS = (TENSOR, DOLFINX)
+
+#: Most states whose own meshes are held at once.
+OWN_MESHES_KEPT = 32
+
+#: Spread of the planes of a surface's fields up to which cells are drawn together for both fields.
+_APART = 0.8
+#: Least distance of the speed from that of a wave along the substrate: below it no far boundary is far
+#: enough.
+_LEAST_LEFT = 1e-6
+#: Distance over a from a free end within which stresses are continued from farther away.
+_NEAR_FREE_END = 1e-2
+#: Additional moments over solids that are graded from the surface on: few polynomials do not make up for
+#: what functions of the ends add away from these.
+_MORE_GRADED = 6
+#: Loosest tolerance of meshes over them: on coarser ones these functions' moments are not sure.
+_LOOSEST_GRADED = 1e-4
+
+
+@dataclass(frozen=True)
+class PressureMoments:
+    """Moments by which a pressure over layers is recovered from nodal forces.
+
+    Attributes:
+        stretch: variable in which the pressure is smooth.
+        count: moments at the first degree; each degree more takes more, so that the error of a finite
+            number of moments shows in the measured error.
+    """
+
+    stretch: Stretch
+    count: int
+
+    @property
+    def a_degree(self) -> int:
+        """Additional moments a degree; over graded solids fewer, where moments are nearly dependent."""
+        return 1 if self.stretch.graded else 2
+
+
+def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments | None:
+    """Moments that recover the pressure over layers; None on a solid without layers."""
+    if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
+        return None
+    graded = graded_from_the_surface(solid)
+    return PressureMoments(Stretch(kind.length, graded), kind.moments(required) + _MORE_GRADED * graded)
+
+
+def required_of_free_ends_on_layers(required: Requirements) -> Requirements:
+    """Requirements on a mesh for free ends over layers, where stresses at the ends are finite.
+
+    The solutions whose sum has no intensity at the ends have an intensity each.
+    """
+    if required.nearest is None:
+        return required
+    return replace(required, nearest=max(required.nearest, _NEAR_FREE_END))
+
+
+def graded_from_the_surface(solid: Layered) -> bool:
+    """True where constants change within the uppermost layer."""
+    return solid.layers[0].bottom not in (None, solid.layers[0].solid)
+
+
+def required_over_layers(required: Requirements, solid: Layered) -> Requirements:
+    """Requirements on a mesh for sharp edges over layers; tighter where the uppermost is graded."""
+    if not graded_from_the_surface(solid):
+        return required
+    return replace(required, tolerance=min(required.tolerance, _LOOSEST_GRADED))
+
+
+def required_of_prescribed_pressure(required: Requirements) -> Requirements:
+    """Requirements on a mesh for a prescribed pressure over layers.
+
+    Stresses next to the pressure's knots are continued from farther away.
+    """
+    if required.nearest is None:
+        return required
+    return replace(required, nearest=max(required.nearest, NEAR))
+
+
+def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
+    """The kind of mesh of a layered solid, for all speeds.
+
+    Args:
+        depths: of the interfaces over a.
+        responses: of the half-plane, one a speed.
+        places: positions X/a towards which cells are graded.
+    """
+    roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Fields that live far apart have no middle.
+    apart = max(response.spread for response in responses) > _APART
+    return on_layers(
+        depths.tolist(),
+        drawn_together=float(np.min(roots)),
+        wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
+        far_length=max(response.far_field.length for response in responses),
+        left=max(min(response.left_below for response in responses), _LEAST_LEFT),
+        roots=_roots(responses),
+        changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
+        places=tuple(places),
+    )
+
+
+def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
+    """p of every solid at the lowest and at the highest speed, where they are farthest apart."""
+    by_speed = sorted(responses, key=lambda response: response.c)
+    each = [response.roots for response in (by_speed[0], by_speed[-1])]
+    return tuple(slow + fast for slow, fast in zip(*each))
+
+
+#: Least number of speeds at which a fit costs less than solving all of them: it takes about a dozen
+#: solutions, four of these with all that measures an error.
+LEAST = 16
+#: Speeds at which the discretisation's error is measured, how many are solved besides as a rule, and
+#: the most that are solved.
+LADDERS, BESIDES, MOST = 4, 7, 24
+#: Most values of σ_XY/σ_YY at which punches are sampled one by one.
+_FEW = 8
+#: Change of an inverse contraction over that of c² below which it separates speeds no better.
+_FLAT = 1e-3
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Speeds of which finite elements solve a few, and a fit gives the others.
+
+    Attributes:
+        z: the speeds in the variable of the fit, in the order of the plan, (speeds,).
+        g: all values of σ_XY/σ_YY where they are few, else the smallest and the largest.
+        few: True where ``g`` has all values.
+    """
+
+    z: NDArray[np.float64]
+    g: NDArray[np.float64]
+    few: bool
+
+
+def swept(choice: str, responses: Sequence[Response], g: NDArray) -> Sweep | None:
+    """The sweep over the speeds of a scene, None where each speed is to be solved.
+
+    Args:
+        choice: ``"auto"`` or ``"every"``, the scene's solve.sweep.
+        responses: of the half-plane, one a speed.
+        g: all values of σ_XY/σ_YY.
+    """
+    if choice == "every" or len({response.c for response in responses}) < LEAST:
+        return None
+    values = np.unique(g)
+    few = len(values) <= _FEW
+    return Sweep(variable(responses), values if few else values[[0, -1]], few)
+
+
+def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
+    """Speeds in the variable in which results are smoothest, (speeds,); like them it is analytic in c².
+
+    The planes in which fields are analytic, and the mesh where it follows them, contract with a root of
+    the distance to the slowest wave in the solid. So results are smooth in the contraction up to that
+    speed, and not in c². The inverse contraction spreads speeds near the limit; where it does not
+    separate them, the variable is c².
+
+    Along layers waves of all lengths run, each with a speed of its own from the limit on: the limit is no
+    pole but the end of a branch cut, which the logarithm of the distance from it sends to infinity.
+    """
+    if isinstance(responses[0], LayeredResponse):
+        return np.array([-np.log(response.margin) for response in responses])
+    square = np.array([response.c**2 for response in responses])
+    inverse = np.array([1.0 / response.contraction.imag for response in responses])
+    order = np.argsort(square, kind="stable")
+    steps, changes = np.diff(square[order]), np.diff(inverse[order])
+    # Between speeds that hardly differ the change may be rounding.
+    apart = steps > 1e-6 * max(square.max(), np.finfo(float).tiny)
+    tells = apart.any() and np.ptp(square) > 1e-4 and np.all(changes[apart] > _FLAT * steps[apart])
+    return inverse if tells else square
+
+
+#: Distance over a from a punch edge that no mesh resolves: rounding of positions.
+_NEAREST = 1e-12
+#: Mode in which every state has a mesh of its own, graded towards kinks of the punch.
+OWN_MESHES = "own meshes"
+#: Mode in which meshes over layers follow a contact with free ends.
+FREE_ON_LAYERS = "meshes that follow the contact"
+#: Mode of a prescribed pressure over layers.
+PRESCRIBED_ON_LAYERS = "loads over layers"
+#: Modes in which a fit through a few speeds may give the others.
+FITTED = ("contact", FREE_ENDS)
+#: Number of cuts from which half as many, at one degree more, are no worse.
+_MANY = 8
+
+
+@dataclass(frozen=True)
+class FemPlan:
+    """Plan of the finite elements of a scene.
+
+    Attributes:
+        mesh, kind: name and kind of the mesh.
+        refinement: of the one mesh that all speeds share, before it is cut.
+        cuts: of every cell's sides.
+        form: name of the weak form.
+        assembler: ``TENSOR`` or ``DOLFINX``.
+        solver: ``"direct"``, ``"boomeramg"``, ``"gamg"``, or ``"multigrid"`` for the better of these two.
+        degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
+        fixed: True where the scene fixes the degree.
+        wanted: requirements on the mesh.
+        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES``,
+            ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
+        shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
+            False where all ranks share one mesh.
+        sharp: exponent of the strongest pressure next to a sharp edge.
+        drawn: the mesh where it follows interfaces, None elsewhere.
+        tests: moments that recover the pressure over layers, None without layers.
+        sweep: speeds of a fit; None where each speed is solved.
+        shapes: number of polynomials whose sum is the punch under every contact, for free ends.
+    """
+
+    mesh: str
+    kind: MeshKind
+    refinement: Refinement
+    cuts: int
+    form: str
+    assembler: str
+    solver: str
+    degrees: tuple[int, ...]
+    fixed: bool
+    wanted: Requirements
+    mode: str
+    shared_speeds: bool
+    sharp: float = -0.5
+    drawn: QuadMesh | None = None
+    tests: PressureMoments | None = None
+    sweep: Sweep | None = None
+    shapes: int = 0
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted relative accuracy."""
+        return self.wanted.tolerance
+
+    @property
+    def terms(self) -> int:
+        """Number of moments of the contact forces that the far boundary follows; 0 where it is held."""
+        return self.kind.terms(self.wanted)
+
+    @property
+    def pattern(self) -> QuadMesh:
+        """The mesh before it is cut."""
+        return self.drawn or self.kind.build(self.refinement)
+
+    @property
+    def size(self) -> int:
+        """Unknowns of the largest system, estimated without building the mesh."""
+        largest = largest_level(max(self.degrees), self.cuts, self.fixed)
+        return unknowns(self.drawn, largest) if self.drawn else size_of(self.refinement, largest)
+
+
+def requirements(
+    tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
+) -> Requirements:
+    """Requirements on a mesh, by the points where stresses are output.
+
+    Args:
+        tolerance: relative accuracy.
+        places: points where stresses are output.
+        exponent: of the strongest singularity of the pressure.
+        spread: distance between the planes in which the solid's fields are analytic.
+        planes: p of the planes X + pY in which the mesh is drawn.
+    """
+    on_surface = np.column_stack([places.X, 0.0 * places.X])
+    X, Y = np.concatenate([on_surface, places.points, places.around]).T
+    if not len(X):
+        return Requirements(tolerance, exponent=exponent, spread=spread)
+    nearest = np.hypot(np.abs(X) - 1.0, Y).min()
+    farthest = max(float(np.abs(X + p * Y).max()) for p in {1j, *planes})
+    around, inside = bool(len(places.around)), bool(len(places.points))
+    return Requirements(
+        tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread
+    )
+
+
+def required_of_free_ends(required: Requirements) -> Requirements:
+    """Requirements for free ends, where stresses are finite: larger cells do, with less rounding."""
+    if required.nearest is None:
+        return required
+    return replace(required, nearest=max(required.nearest, _NEAR_FREE_END), exponent=0.5)
+
+
+def required_of_pieces(required: Requirements, knots: NDArray) -> Requirements:
+    """Requirements for every piece of a prescribed pressure, over the narrowest one's half-width."""
+    farthest = (1.0 + required.farthest) / (np.diff(knots).min() / 2.0)
+    return Requirements(required.tolerance, NEAR, farthest, spread=required.spread)
+
+
+def levels(degree: int, cuts: int, fixed: bool) -> list[tuple[int, int]]:
+    """Degrees and cuts to solve with: the last gives the results, the others measure its error."""
+    if fixed:
+        return [(degree + 1, cuts // 2 if cuts >= _MANY else cuts), (degree, cuts)]
+    return [(degree - 2, cuts), (degree - 1, cuts), (degree, cuts)]
+
+
+def largest_level(degree: int, cuts: int, fixed: bool) -> int:
+    """Degree times cuts of the largest level."""
+    return max(p * k for p, k in levels(degree, cuts, fixed))
+
+
+def size_of(refinement: Refinement, p: int) -> int:
+    """Unknowns of a mesh by its refinement; p is degree times cuts, which gives the same nodes."""
+    cells = 2 * refinement.sectors * (
+        2 * len(refinement.sizes) - 2 + refinement.sectors + len(refinement.columns)
+    )  # fmt: skip
+    return 2 * p**2 * cells
+
+
+def unknowns(mesh: QuadMesh, p: int) -> int:
+    """Unknowns at degree p, two a node: p - 1 nodes an edge (Euler's formula), (p - 1)² a cell."""
+    cells, vertices = len(mesh.cells), len(mesh.points)
+    edges = cells + vertices - 1
+    return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
+
+
+class Planned(Protocol):
+    """Plan of a scene, as far as finite elements need it.
+
+    Attributes:
+        fem: plan of the finite elements.
+        tasks: speeds to solve, each a :class:`galinx.solvers.contact.solution.Task`.
+        chunk: number of states that are computed at once, which bounds their memory.
+    """
+
+    @property
+    def fem(self) -> FemPlan | None: ...
+    @property
+    def tasks(self) -> Any: ...
+    @property
+    def chunk(self) -> int: ...
+
+    def asks(self, word: str, method: str = "") -> bool:
+        """True where a quantity of this name in output.quantities is computed, by a method or by any."""
+
+
+class Messages(Protocol):
+    """Messages to the user while work goes on."""
+
+    def say(self, text: str) -> None:
+        """Say what is done now."""
+
+    def warn(self, text: str) -> None:
+        """Warn the user."""

@@ -1,0 +1,180 @@
+"""Exact solution for a prescribed pressure, linear between knots, with σ_XY = g σ_YY.
+
+A piece from x₀ to x₁ has its middle at m, its half-width h and its own coordinate w = (z - m)/h. With
+L = log((w - 1)/(w + 1)) its part of ∫ σ/(t - z) dt is σ(w) L + σ₁ - σ₀. Where two pieces meet their
+logarithms cancel; far away L and σ(w) L + ... are sums of powers of 1/w, in which nothing does.
+"""
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import log1p
+
+from ..solids.solid import Response
+from .edges import from_edge
+
+#: |w| from which powers of 1/w serve, and their number: 4^-27 is below rounding.
+_FAR, _POWERS = 2.0, 27
+
+#: A point nearer to a knot than this is moved to this distance, over a: the logarithms of two pieces
+#: cancel there, but infinite ones would not.
+_NEXT_TO_KNOT = 1e-30
+
+#: Pairs of a piece and a point that are computed together.
+_AT_ONCE = 50_000
+
+
+@dataclass(frozen=True)
+class LinearPressure:
+    """σ_YY over N/(2a), linear between knots and 0 beside them.
+
+    Attributes:
+        knots: positions X/a that grow from -1 to 1, (n,).
+        values: σ_YY there, not all of them 0, (n,).
+    """
+
+    knots: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+    @property
+    def resultant(self) -> float:
+        """∫ σ_YY d(X/a) over N/(2a)."""
+        return float(np.diff(self.knots) @ (self.values[1:] + self.values[:-1]) / 2.0)
+
+    def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at r = X/a."""
+        r = np.asarray(r, dtype=float)
+        return np.where(np.abs(r) <= 1.0, np.interp(r, self.knots, self.values), 0.0)
+
+    def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
+        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface; NaN at an end where the pressure is not 0."""
+        r = np.asarray(r, dtype=float)
+        infinite = (from_edge(r) == 0.0) & (self(r) != 0.0)
+        return np.where(infinite, np.nan, self._sum(piece.at() for piece in self._pieces(r)))
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        return self._sum(piece.at() for piece in self._pieces(z))
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        return self._sum(piece.change(step, share) for piece in self._pieces(z))
+
+    @staticmethod
+    def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:
+        """Φ, or its real part on the surface, of all pieces."""
+        return functools.reduce(np.add, (of_pieces.sum(axis=0) for of_pieces in integrals)) / np.pi
+
+    def _pieces(self, z: NDArray) -> Iterator["_Pieces"]:
+        """Pieces that are loaded, as many at a time as memory allows, with the points z."""
+        loaded = np.flatnonzero((self.values[1:] != 0.0) | (self.values[:-1] != 0.0))
+        ends = np.stack([loaded, loaded + 1])
+        together = max(1, _AT_ONCE // max(z.size, 1))
+        for first in range(0, len(loaded), together):
+            group = ends[:, first : first + together].reshape(2, -1, *(1,) * z.ndim)
+            yield _Pieces(self.knots[group], self.values[group], z)
+
+
+class _Pieces:
+    """Pieces of the pressure and points, of which each gives ∫ σ/(t - z) dt, (pieces, ...).
+
+    Args:
+        ends: positions of their two ends, (2, pieces, 1, ...).
+        values: the pressure there, (2, pieces, 1, ...).
+        z: points, (...); real ones are on the surface, and the integral is a principal value.
+    """
+
+    def __init__(self, ends: NDArray, values: NDArray, z: NDArray) -> None:
+        self._half = (ends[1] - ends[0]) / 2.0
+        self._values = values
+        # w + 1 and w - 1: each exact next to its end, where w is not.
+        self._left, self._right = (_moved(z - end) / self._half for end in ends)
+        self._w = np.where(abs(self._left) < abs(self._right), self._left - 1.0, self._right + 1.0)
+        self._far = abs(self._w) > _FAR
+
+    def at(self) -> NDArray[Any]:
+        """Integrals ∫ σ/(t - z) dt, (pieces, ...)."""
+        ratio = self._right / self._left
+        L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
+        v = 1.0 / np.where(self._far, self._w, np.inf)
+        mean, slope = self._mean, self._slope
+        far = -2.0 * v * (mean * _series(v**2, 1)[0] + slope * v * _series(v**2, 3)[0])
+        return np.where(self._far, far, self._pressure * L + 2.0 * slope)
+
+    def change(self, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        """Change of the integrals for a step share·step of the points, over share, (pieces, ...)."""
+        d = step / self._half
+        from_left, from_right = self._left + share * d, self._right + share * d
+        growth = 2.0 * d / (from_left * self._right)
+        if share != 0.0:
+            growth = log1p(share * growth) / share  # of L
+        near = self._pressure * growth + self._slope * d * np.log(from_right / from_left)
+        far = self._far & (abs(self._w + share * d) > _FAR)
+        w = np.where(far, self._w, np.inf)
+        v, moved = 1.0 / w, 1.0 / (w + share * d)
+        δ = -d * v * moved * (v + moved)  # of v²
+        T, by_v2 = _series(v**2, 3, moved**2)
+        by_series = self._mean * growth - 2.0 * self._slope * δ * (T + moved**2 * by_v2)
+        return np.where(far, by_series, near)
+
+    @property
+    def _mean(self) -> NDArray[np.float64]:
+        return (self._values[0] + self._values[1]) / 2.0
+
+    @property
+    def _slope(self) -> NDArray[np.float64]:
+        """Half the difference of the values."""
+        return (self._values[1] - self._values[0]) / 2.0
+
+    @property
+    def _pressure(self) -> NDArray[Any]:
+        """Linear function of the piece at the points; exact at both ends."""
+        return (self._values[1] * self._left - self._values[0] * self._right) / 2.0
+
+
+def _moved(distance: NDArray) -> NDArray[Any]:
+    return np.where(abs(distance) < _NEXT_TO_KNOT, _NEXT_TO_KNOT, distance)
+
+
+def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Series S = Σ q^k/(2k + first), and (S(other) - S(q))/(other - q), by Horner's rule."""
+    S, divided = np.zeros_like(q), np.zeros_like(q)
+    for k in reversed(range(_POWERS)):
+        divided = divided * other + S
+        S = S * q + 1.0 / (2 * k + first)
+    return S, divided
+
+
+@dataclass(frozen=True)
+class PrescribedPressureSolution:
+    """Exact solution for a prescribed pressure, at one speed.
+
+    Args:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
+        pressure: prescribed pressure.
+    """
+
+    response: Response
+    g: float | NDArray[np.float64]
+    pressure: LinearPressure
+
+    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) on the surface Y = 0; NaN where it is infinite."""
+        answer, σ_YY = self.response, self.pressure(r)
+        u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.pressure.hilbert(r)
+        return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
+
+    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
+        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.pressure(X)
+        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
+        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))

@@ -1,0 +1,487 @@
+"""Contact pressure, edge exponents and stress intensity factors from consistent nodal forces.
+
+Nodal forces tested with smooth functions give moments of the pressure that converge at twice the rate of
+the displacement. So K_I and the smooth pressure follow from Jacobi moments, whose weight uses the
+exponents of the local edge analysis; the exponents reported for the finite elements are fitted to the raw
+pressure, for which none are assumed. The largest contact pressure and its place follow from the smooth
+pressure.
+
+All states of a speed are treated at once: a small matrix, made once, has all that depends on the mesh.
+
+**Pressures that change fast towards the ends**, as over thin layers, have functions of their own. Without
+its weight such a pressure varies over a length h next to the ends, and farther away over the distance
+from the end. In
+
+    ζ = [asinh((1 + r)/h) - asinh((1 - r)/h)]/asinh(2/h)
+
+it is smooth everywhere, and few Chebyshev polynomials of ζ represent it for any h. On a solid that is
+graded from the surface on it also has terms dⁿ logᵐ d, 1 <= m <= n, of the distance d from an end, which
+no polynomial represents; the first of these terms, with u = d/(d + h/4) for d, stand before the
+polynomials. Where elastic constants change much within h, omitted powers decrease slowly with the number
+of functions, and the last functions measure their effect on the intensities.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solveh_banded
+from scipy.special import gammaln, roots_legendre
+
+from .edges import under_punch
+from .panelled import Panels
+
+#: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
+#: another profile add further moments, and the highest measure how well these are resolved.
+MOMENTS = 9
+
+
+@dataclass(frozen=True)
+class JacobiPressure:
+    """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r), r = X/a.
+
+    Attributes:
+        α, β: exponents at X = a and X = -a, (states,).
+        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, ``MOMENTS``).
+    """
+
+    α: NDArray[np.float64]
+    β: NDArray[np.float64]
+    c: NDArray[np.float64]
+
+    def factor(self, r: NDArray) -> NDArray[np.float64]:
+        """Smooth factor Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
+        return np.asarray(self.c @ chebyshev(r).T)
+
+    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
+        r = np.asarray(r, dtype=float)
+        inside = under_punch(r)
+        log_left, log_right = np.log1p(r[inside]), np.log1p(-r[inside])
+        result = np.full((len(self.c), len(r)), np.nan)
+        weight = np.exp(np.outer(self.α, log_right) + np.outer(self.β, log_left))
+        result[:, inside] = weight * self.factor(r[inside])
+        return result
+
+    @property
+    def unresolved(self) -> Any:
+        """Relative error measured on the last of the functions; 0 for enough functions."""
+        return 0.0
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Stress intensity factors at X = -a and X = a, dimensionless as in Eqs 56-57, (states, 2)."""
+        return -0.5 * self.factor(np.array([-1.0, 1.0]))
+
+
+def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
+    """Chebyshev coefficients of smooth factors divided by 1 + r or 1 - r where they vanish at an end.
+
+    Args:
+        p: Chebyshev coefficients of the factors, (states, ``MOMENTS``).
+        zeros: True where a factor vanishes at r = -1 and at r = 1, (states, 2).
+
+    Returns:
+        Coefficients of the quotients, (states, ``MOMENTS``).
+    """
+    coefficients = np.array(p)
+    for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
+        quotient = np.zeros((MOMENTS, MOMENTS))
+        for k, row in enumerate(np.eye(MOMENTS)):
+            part = np.polynomial.chebyshev.chebdiv(row[: k + 1], divisor)[0]
+            quotient[k, : len(part)] = part
+        coefficients = np.where(zeros[:, [end]], coefficients @ quotient, coefficients)
+    return coefficients
+
+
+def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
+    """Chebyshev polynomials T_0, T_1, … at r in [-1, 1], (len(r), count)."""
+    return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
+
+
+def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
+    """Pressure with given moments.
+
+    Args:
+        moments: ∫ σ_YY T_k dr of each state over N/(2a), (states, ``MOMENTS``).
+        α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
+    """
+    maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
+    return JacobiPressure(α, β, np.einsum("skm,sm->sk", maps, moments))
+
+
+@lru_cache(maxsize=4)
+def _to_factors(α: bytes, β: bytes) -> NDArray[np.float64]:
+    """Maps from moments to coefficients of the smooth factor, (states, k, moments).
+
+    Levels by which an error is measured have equal exponents, so recent maps are kept.
+    """
+    of = np.frombuffer(α), np.frombuffer(β)
+    P = jacobi_in_chebyshev(*of)
+    return P.swapaxes(1, 2) @ (P / jacobi_norms(*of)[..., None])
+
+
+def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    """Chebyshev coefficients of P_n^(α,β), α + β = -1, by the three-term recurrence: (states, n, k)."""
+    P = np.zeros((len(α), MOMENTS, MOMENTS))
+    P[:, 0, 0] = 1.0
+    P[:, 1, 0], P[:, 1, 1] = α + 0.5, 0.5
+    for n in range(1, MOMENTS - 1):
+        last = P[:, n]
+        times_r = np.zeros_like(last)  # r T_k = (T_{k+1} + T_{|k-1|})/2
+        times_r[:, 1:] += last[:, :-1] / 2.0
+        times_r[:, :-1] += last[:, 1:] / 2.0
+        times_r[:, 1] += last[:, 0] / 2.0
+        leading = (2 * n + 1) * (2 * n - 1) * times_r + (β - α)[:, None] * last
+        trailing = ((n + α) * (n + β) * (2 * n + 1) / n)[:, None] * P[:, n - 1]
+        P[:, n + 1] = (leading - trailing) / ((n + 1) * (2 * n - 1))
+    return P
+
+
+def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    """Norms ∫ (1-r)^α (1+r)^β P_n² dr of Jacobi polynomials for α + β = -1, (states, n).
+
+    Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
+    """
+    n = np.arange(1, MOMENTS)
+    a, b = α[:, None], β[:, None]
+    logs = gammaln(n + a + 1.0) + gammaln(n + b + 1.0) - gammaln(n + 1.0) - gammaln(n)
+    return np.concatenate([np.pi / np.sin(np.pi * (1.0 + a)), np.exp(logs) / (2.0 * n)], axis=1)
+
+
+@dataclass(frozen=True)
+class ContactRecovery:
+    """Linear maps from nodal forces to moments and to the raw pressure; they depend on the mesh alone.
+
+    Attributes:
+        moments: map to ∫ σ_YY T_k dr, or to moments with other test functions, (nodes, moments).
+        raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
+        edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
+            there, (nodes, q).
+    """
+
+    moments: NDArray[np.float64]
+    raw: NDArray[np.float64]
+    edges: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]
+
+    def exponents(self, forces: NDArray) -> NDArray[np.float64]:
+        """Exponents at X = a and X = -a fitted to the raw pressure, (states, 2)."""
+        return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
+
+
+def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
+    """Exponent of σ ~ d^α by least squares on the logarithms, (states,); NaN where the sign changes.
+
+    Args:
+        d: distances, (q,).
+        σ: stresses, (states, q).
+    """
+    x = np.log(d) - np.log(d).mean()
+    one_sign = np.all(σ < 0.0, axis=1) | np.all(σ > 0.0, axis=1)
+    slopes = np.log(np.where(one_sign[:, None], np.abs(σ), 1.0)) @ (x / (x @ x))
+    return np.where(one_sign, slopes, np.nan)
+
+
+def contact_recovery(
+    s: NDArray,
+    degree: int,
+    chart: Any,
+    r: NDArray,
+    farthest: float = 1e-3,
+    tests: Callable[[NDArray], NDArray] = chebyshev,
+) -> ContactRecovery:
+    """Linear maps from nodal forces at the contact nodes of a mesh to moments and raw pressure.
+
+    The raw pressure is the piecewise polynomial with these nodal forces: the mass matrix of the contact
+    is solved, and no exponent is assumed. Exponents are fitted at its Gauss points, where a polynomial
+    best approximates functions that it cannot represent.
+
+    Args:
+        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
+        degree: polynomial degree p.
+        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
+        r: positions X/a of the raw pressure, (points,).
+        farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
+            the outer half of them, two at least: the innermost cannot follow the singularity and disturb
+            their neighbours, and beyond this distance the pressure's second term biases the exponent.
+        tests: smooth functions of r, (points, moments), with which forces are tested.
+    """
+    facets = facets_of(s, degree)
+    density = density_of_forces(s, facets, np.eye(len(s)))  # symmetric
+    start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
+    nodes = reference_nodes(s, facets)
+
+    inside = under_punch(r)
+    at = chart.surface_coordinate(r[inside])
+    facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
+    values = lagrange(nodes, (at - start[facet]) / length[facet])
+    raw = np.full((len(s), len(r)), np.nan)
+    raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
+    raw[:, inside] /= chart.surface_stretch(at)
+
+    t = (roots_legendre(degree)[0] + 1.0) / 2.0
+    d_left, d_right, stretch = chart.under_punch(
+        start[:, None] - s[0] + length[:, None] * t,
+        s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
+    )
+    at_gauss = density[:, facets] @ lagrange(nodes, t).T / stretch
+    edges = []
+    for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
+        last = max(int((d.max(axis=1) < farthest).sum()), 3)
+        used = slice(min(last // 2, last - 2), last)
+        edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
+    return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
+
+
+def facets_of(s: NDArray, degree: int) -> NDArray[np.int64]:
+    """Numbers of the nodes of each facet of the contact, (F, p + 1)."""
+    return np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
+
+
+def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[np.float64]:
+    """Density σ_YY dX/ds of nodal forces at the nodes, by the mass matrix of the contact, (n, ...).
+
+    Args:
+        s: surface coordinates of the contact nodes, (n,).
+        facets: numbers of the nodes of each facet, (F, p + 1).
+        forces: forces at the nodes, (n, ...).
+    """
+    degree = facets.shape[1] - 1
+    t, w = roots_legendre(degree + 1)
+    nodes = reference_nodes(s, facets)
+    basis = lagrange(nodes, (t + 1.0) / 2.0)
+    unit_mass = basis.T * (w / 2.0) @ basis
+    banded = np.zeros((degree + 1, len(s)))
+    for row in facets:
+        mass = unit_mass * (s[row[-1]] - s[row[0]])
+        for k in range(degree + 1):
+            banded[degree - k, row[k:]] += np.diagonal(mass, k)
+    return np.asarray(solveh_banded(banded, forces))
+
+
+def reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
+    """Nodes of a facet over its length, (p + 1,), taken from the widest, which rounding affects least."""
+    widest = facets[np.argmax(s[facets[:, -1]] - s[facets[:, 0]])]
+    return (s[widest] - s[widest[0]]) / (s[widest[-1]] - s[widest[0]])
+
+
+def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
+    """Lagrange polynomials of nodes in [0, 1] at points t in [0, 1], (len(t), len(nodes))."""
+    at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
+    return at_t @ np.linalg.inv(at_nodes)
+
+
+#: Positions over a at which the search for the largest pressure starts, rounds of refinement, factor of
+#: each, and least distance between places.
+_STARTS = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+_ROUNDS, _NEARER, _NEAREST = 6, 8.0, 1e-4
+#: Most tops that are refined, and three places around each.
+_TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
+
+
+def largest(
+    pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value of a smooth pressure and its place over a, (states,) each.
+
+    Args:
+        pressure: function of positions over a, (n,), that gives the pressure of all states, (states, n).
+        of_state: function of a state's number and positions (n,), that gives its pressure, (n,).
+    """
+    p = pressure(_STARTS)
+    inner = p[:, 1:-1]
+    top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
+    best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
+    values, places = zip(*(_nearer(of_state, i) for i in best.T))
+    first, rows = np.argmax(values, axis=0), np.arange(len(p))
+    return np.array(values)[first, rows], np.array(places)[first, rows]
+
+
+def _nearer(
+    of_state: Callable[[int, NDArray], NDArray], i: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value and its place between the neighbours of position i of each state, (states,) each."""
+    places = _STARTS[i[:, None] + [-1, 0, 1]]
+    for _ in range(_ROUNDS):
+        three = np.stack([of_state(k, x) for k, x in enumerate(places)])
+        half = (places[:, 2] - places[:, 0]) / 2.0
+        divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
+        bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
+        round_ = (bend < 0.0) & (top > places[:, 0]) & (top < places[:, 2])
+        top = np.where(round_, top, places[np.arange(len(i)), three.argmax(axis=1)])
+        to_left, to_middle = top - places[:, 0], top - places[:, 1]
+        value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
+        half = np.maximum(half / _NEARER, _NEAREST)
+        places = np.clip(top, -1.0 + 2.0 * half, 1.0 - 2.0 * half)[:, None] + half[:, None] * _THREE
+    return value, top
+
+
+#: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.
+_FINE = 0.3
+#: Number of last polynomials that measure how well a pressure is resolved, and on graded solids, where
+#: the remainder falls like a power of their number.
+_LAST, _LAST_GRADED = 2, 4
+#: Remainder on graded solids over the part of the last polynomials, measured on layers whose moduli grow
+#: three to a hundred times.
+_TAIL = 4.0
+#: Highest power of the distance from an end, with its logarithms, among the functions of an end.
+_POWERS = 3
+#: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
+#: nearly dependent.
+_SHARE = 0.25
+#: Number of functions of both ends.
+_OF_ENDS = _POWERS * (_POWERS + 1)
+#: Times that functions are made orthonormal: rounding spoils the first result.
+_TIMES = 2
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Functions of a coordinate stretched towards the ends, which follow a pressure without its weight.
+
+    Attributes:
+        h: length over a within which the pressure changes next to an end.
+        graded: True where the solid is graded from the surface on.
+    """
+
+    h: float
+    graded: bool = False
+
+    def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Stretched coordinate ζ in [-1, 1] at r, in the shape of r."""
+        r = np.asarray(r, dtype=float)
+        ζ = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
+        return np.asarray(np.clip(ζ / np.arcsinh(2.0 / self.h), -1.0, 1.0))
+
+    def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Functions of the ends, then ``count`` polynomials of ζ, at r, (len(r), functions)."""
+        if not self.graded:
+            return chebyshev(self(r), count)
+        with np.errstate(divide="ignore"):
+            x = np.log1p(r) - np.log1p(-r)
+        return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)
+
+    def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Functions as in :meth:`functions`, before they are orthonormal, (len(r), functions)."""
+        columns = []
+        for d in (1.0 - r, 1.0 + r):
+            d = np.maximum(d, 0.0)
+            u = d / (d + _SHARE * self.h)
+            log = np.log(np.maximum(u, np.finfo(float).tiny))
+            columns += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
+        return np.column_stack([*columns, chebyshev(self(r), count)])
+
+    def polynomials(self, functions: int) -> int:
+        """Number of polynomials among a number of functions."""
+        return functions - _OF_ENDS * self.graded
+
+
+@cache
+def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
+
+    The functions are nearly dependent, and rounding of their combinations differs from place to place. So
+    combinations are represented by polynomials on panels through their values at the points of the
+    quadrature, and evaluated by these everywhere: pressure and test functions are then equal.
+
+    Returns:
+        Values at the points of the quadrature, (points, functions).
+    """
+    rule = _rule(-0.5, -0.5, stretch)
+    f, root = stretch.of_ends(rule.t, count), np.sqrt(rule.weights)[:, None]
+    for _ in range(_TIMES):
+        f = f @ np.linalg.inv(np.linalg.qr(f * root, mode="r"))
+    return np.asarray(f)
+
+
+@dataclass(frozen=True)
+class StretchedPressure(JacobiPressure):
+    """Contact stress of several states, (1 - r)^α (1 + r)^β Σ c_k f_k(r), f of :class:`Stretch`."""
+
+    stretch: Stretch = Stretch(1.0)
+
+    def factor(self, r: NDArray) -> NDArray[np.float64]:
+        count = self.stretch.polynomials(self.c.shape[1])
+        return np.asarray(self.c @ self.stretch.functions(r, count).T)
+
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
+
+        The pressure is stretched from the opposite edge. Its moments change like the functions over the
+        length of the misplacement; the more functions there are, the more of this change appears as
+        pressure at the ends.
+
+        Args:
+            r: positions over a in [-1, 1], (points,).
+            length: misplacement of each edge over a.
+        """
+        count = self.c.shape[1]
+        f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
+        at_r = self.stretch.functions(r, functions)
+        change = np.empty((len(self.c), len(r)))
+        for i, c in enumerate(self.c):
+            weights = _rule(float(self.α[i]), float(self.β[i]), self.stretch).weights
+            moments = _moved(self.stretch, count, length) @ (weights * (f @ c))
+            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
+            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
+        return change
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """Share of the last functions in the larger smooth factor at both ends, (states,)."""
+        ends, last = np.array([-1.0, 1.0]), _LAST_GRADED if self.stretch.graded else _LAST
+        f = self.stretch.functions(ends, self.stretch.polynomials(self.c.shape[1]))
+        added = np.abs(self.c[:, None, -last:] * f[:, -last:]).sum(axis=2)
+        share = added.max(axis=1) / np.abs(self.factor(ends)).max(axis=1)
+        return np.asarray((_TAIL if self.stretch.graded else 1.0) * share)
+
+
+def stretched_from_moments(
+    moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch
+) -> StretchedPressure:
+    """Pressure with given moments.
+
+    Args:
+        moments: ∫ σ_YY f_k dr of each state over N/(2a), f of the stretch, (states, moments).
+        α, β: exponents at X = a and X = -a, (states,).
+        stretch: functions that represent the smooth factor.
+    """
+    c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
+    for i, row in enumerate(moments):
+        weights = _rule(float(α[i]), float(β[i]), stretch).weights
+        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, row)
+    return StretchedPressure(α, β, c, stretch)
+
+
+def _rule(α: float, β: float, stretch: Stretch) -> Panels:
+    """Quadrature of products of functions under a weight; its points do not depend on the exponents."""
+    return Panels(α, β, _FINE * min(1.0, stretch.h))
+
+
+@lru_cache(maxsize=8)
+def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
+    """Functions at the points of the quadrature, (points, count)."""
+    return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
+
+
+@lru_cache(maxsize=8)
+def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
+    """Changes of functions at the points of the quadrature where the right or the left edge is misplaced.
+
+    Args:
+        stretch: the functions.
+        count: number of the functions.
+        length: misplacement over a.
+
+    Returns:
+        Changes for either edge, (2, count, points).
+    """
+    t = _rule(-0.5, -0.5, stretch).t
+    inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
+    moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]
+    return np.array([(functions - _at_points(stretch, count)).T for functions in moved])

@@ -1,0 +1,333 @@
+"""Contact of a punch and a half-plane, and its solutions by any method: friction states at one speed.
+
+Lengths are over the contact's half-width a, stresses over N/(2a), N the load per depth. A
+:class:`Body` has the units of both in SI. At free ends of a contact and at kinks of its punch stresses
+change with a power of the distance, and the largest may lie between samples: a :class:`Surface` has
+limits there, :class:`Turns`.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..layers.in_cells import LayersInCells
+from ..layers.layered import Layered
+from ..profiles import Profile, exponent, half_width, has_free_end, jumps
+from ..solids import Solid
+from ..solids.solid import Response
+from .edges import under_punch
+from .prescribed_pressure import LinearPressure
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places at which stresses are computed, over a.
+
+    Attributes:
+        X: positions on the surface, (n,).
+        points: positions X, Y inside, (m, 2).
+        around: positions X, Y at which stresses are compared with the yield strength, (k, 2).
+        interfaces: depths of a layered solid's interfaces, (layers,).
+        along: positions X along each interface, (l,).
+    """
+
+    X: NDArray[np.float64]
+    points: NDArray[np.float64]
+    around: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
+    interfaces: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    along: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+
+    @cached_property
+    def under(self) -> NDArray[np.bool_]:
+        """True at positions on the surface under the punch, (n,)."""
+        return under_punch(self.X)
+
+
+@dataclass(frozen=True)
+class Body:
+    """Punch and half-plane in SI.
+
+    The units of results are numbers for a single load, and arrays (states,) for a load of each state.
+
+    Attributes:
+        solid: elastic solid of the half-plane.
+        profile: shape of the punch.
+        load: N per depth [N/m], a number, or that of each state, (states,).
+        pressure: prescribed pressure; None where the punch determines it.
+        yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
+    """
+
+    solid: Solid
+    profile: Profile
+    load: Any
+    pressure: LinearPressure | None = None
+    yield_strength: float | None = None
+
+    @cached_property
+    def found(self) -> bool:
+        """True if an end of the contact is free: the half-width then depends on the state."""
+        return has_free_end(self.profile)
+
+    def response(self, c: float) -> Response:
+        """Response of the half-plane at a speed over its wave speed, dimensionless.
+
+        Raises:
+            ValueError: a wave in the half-plane is not faster than this speed.
+        """
+        if isinstance(self.solid, Layered):
+            return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
+        return self.solid.response(c)
+
+    def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
+
+        Args:
+            σ: σ_XX, σ_YY, σ_XY, (3, ..., n).
+            Y: heights over a, not above 0, (n,).
+        """
+        if not isinstance(self.solid, Layered):
+            return self.solid.σ_ZZ(*σ)
+        values = np.empty(σ.shape[1:])
+        for height in np.unique(Y).tolist():
+            at = height == Y
+            values[..., at] = self.solid.at(-height * self.half_width).σ_ZZ(*σ[..., at])
+        return values
+
+    @property
+    def layered(self) -> bool:
+        """True if the half-plane has layers."""
+        return isinstance(self.solid, Layered)
+
+    @cached_property
+    def free(self) -> bool:
+        """True if both ends of the contact are free at every load."""
+        return not any(getattr(self.profile, "sharp", (True, True)))
+
+    @cached_property
+    def finite(self) -> bool:
+        """True if all stresses are finite: both ends are free, and the profile has no tip."""
+        return self.free and not jumps(self.profile)
+
+    @cached_property
+    def alike(self) -> bool:
+        """True if contacts under all loads are similar: they differ in size alone.
+
+        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
+        prescribed pressure.
+        """
+        if self.pressure is not None or self.flat:
+            return True
+        # Layers have a length: their thickness over the contact's width changes with the load.
+        return self.free and bool(exponent(self.profile)) and not self.layered
+
+    def loaded(self, load: Any = None) -> "Body":
+        """Punch and half-plane under another load [N/m], a number or (states,); unchanged for None."""
+        return self if load is None else replace(self, load=load)
+
+    def growth(self, load: Any) -> Any:
+        """Half-widths of similar contacts at other loads [N/m], over that at this load."""
+        k = exponent(self.profile) if self.free else None
+        return (load / self.load) ** (1.0 / k) if k else np.ones_like(load)
+
+    @cached_property
+    def half_width(self) -> Any:
+        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
+        if not self.found:
+            return half_width(self.profile)
+        if np.ndim(self.load) and self.alike:
+            first = self.loaded(float(self.load[0]))
+            return first.half_width * first.growth(self.load)
+        if isinstance(self.solid, Layered):
+            each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
+            return np.array(each) if np.ndim(self.load) else each[0]
+        from .free_contact import contacts
+
+        g = np.zeros(np.size(self.load))
+        rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
+        return rest if np.ndim(self.load) else float(rest[0])
+
+    def _at_rest(self, load: float) -> float:
+        """Half-width [m] on layers at rest, with free ends, under a load N per depth [N/m]."""
+        from .free_on_layers import half_width_at_rest
+
+        profile: Any = self.profile
+        assert isinstance(self.solid, Layered)
+        return half_width_at_rest(self.solid, profile, load / self.solid.μ)
+
+    @property
+    def compression(self) -> Any:
+        """Load over the shear modulus, N/μ [m]."""
+        return self.load / self.solid.μ
+
+    def height(self, X: NDArray) -> NDArray[np.float64]:
+        """Height of the punch over N/(2μ) at X over a, in the shape of X."""
+        return self.profile.height(self.half_width * X) / self.displacement
+
+    def slope(self, X: NDArray) -> NDArray[np.float64]:
+        """Slope μ v,X under the punch over N/(2a), at X over a, in the shape of X."""
+        a = self.half_width
+        return self.profile.slope(a * X) * a / self.displacement
+
+    @cached_property
+    def flat(self) -> bool:
+        """True if the punch is flat and not tilted: its slope vanishes at 101 positions."""
+        if self.found:
+            return False
+        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
+
+    @property
+    def force(self) -> Any:
+        """Unit of nodal forces, N/2 [N/m]: that of stresses, N/(2a), times that of lengths, a."""
+        return self.load / 2.0
+
+    @property
+    def displacement(self) -> Any:
+        """Unit of displacements, N/(2μ) [m]."""
+        return self.load / (2.0 * self.solid.μ)
+
+    @property
+    def strain(self) -> Any:
+        """Unit of strains, N/(2aμ), dimensionless."""
+        return self.stress / self.solid.μ
+
+    @property
+    def stress(self) -> Any:
+        """Unit of stresses, N/(2a) [Pa], a as in :attr:`half_width`.
+
+        With free ends a state's stresses are over its own half-width instead.
+        """
+        return self.load / (2.0 * self.half_width)
+
+
+@dataclass(frozen=True)
+class Task:
+    """States of one speed, for every method to solve.
+
+    Attributes:
+        number: of the speed, from 0.
+        body: contact of punch and solid, under the first of the loads.
+        response: of the half-plane at that speed.
+        places: points where stresses are output.
+        runs: rows of the states at that speed, as runs of consecutive states.
+        loads: of these states [N/m], each once.
+    """
+
+    number: int
+    body: Body
+    response: Response
+    places: Places
+    runs: tuple[slice, ...]
+    loads: tuple[float, ...]
+
+    def of(self, values: NDArray) -> NDArray:
+        """Rows of the task's states, of values of all states, (states, …)."""
+        return np.concatenate([values[run] for run in self.runs])
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.
+
+    Near these places stresses go with a power of the distance, and samples miss the largest stress.
+
+    Attributes:
+        X: places over a, NaN for none, (states, k).
+        σ: σ_XX, σ_YY, σ_XY over N/(2a) at these places, NaN for none, (3, states, k).
+        between: in-plane stress between the places, where samples of the surface are too far from them;
+            None where samples are near enough.
+    """
+
+    X: NDArray[np.float64]
+    σ: NDArray[np.float64]
+    between: "Between | None" = None
+
+    def of(self, rows: NDArray) -> "Turns":
+        """Turns of the states with these numbers, which may repeat."""
+        between = self.between and Between(
+            self.between.X, self.between.x, self.between.σ_XX[rows]
+        )  # fmt: skip
+        return Turns(self.X[rows], self.σ[:, rows], between)
+
+    def joined(self, other: "Turns") -> "Turns":
+        """Turns at these places and at other places of the same states."""
+        σ = np.concatenate([self.σ, other.σ], axis=2)
+        return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
+
+
+@dataclass(frozen=True)
+class Between:
+    """In-plane stress between neighbouring kinks, near both of which it has a logarithm of the distance.
+
+    Attributes:
+        X: positions over a, in intervals between kinks, (intervals, n).
+        x: logarithm of the ratio of a position's distances from both kinks, in which stresses are
+            smooth, (n,).
+        σ_XX: in-plane stress over N/(2a) at these positions, (states, intervals, n).
+    """
+
+    X: NDArray[np.float64]
+    x: NDArray[np.float64]
+    σ_XX: NDArray[np.float64]
+
+
+def together(each: list[Turns]) -> Turns | None:
+    """Turns of all states from those of each, padded with NaN where a state has fewer places than others.
+
+    Args:
+        each: turns of a single state.
+
+    Returns:
+        Turns of as many states; None where the list is empty.
+    """
+    if not each:
+        return None
+    most = max(turns.X.shape[1] for turns in each)
+    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
+    for i, turns in enumerate(each):
+        X[i, : turns.X.shape[1]], σ[:, i, : turns.X.shape[1]] = turns.X[0], turns.σ[:, 0]
+    return Turns(X, σ)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Stresses on the surface Y = 0.
+
+    Attributes:
+        places: positions at which the stresses are computed.
+        σ_YY: contact stress over N/(2a), NaN beside the punch, (states, n).
+        σ_XX: in-plane stress over N/(2a), (states, n).
+        raw: contact stress over N/(2a) without an assumed exponent, (states, n); of finite elements
+            alone.
+        v_X: slopes μ v,X over N/(2a), (states, n); of finite elements alone.
+        turns: limits of the stresses; None where they are infinite at both ends and have no cusp.
+    """
+
+    places: Places
+    σ_YY: NDArray[np.float64]
+    σ_XX: NDArray[np.float64]
+    raw: NDArray[np.float64] | None = None
+    v_X: NDArray[np.float64] | None = None
+    turns: Turns | None = None
+
+
+class Solution(Protocol):
+    """Friction states at one speed, from any method; an attribute is computed when it is first used.
+
+    Attributes:
+        g: σ_XY/σ_YY under the punch, (states,).
+        local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
+        surface: stresses on the surface.
+        inside: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m).
+    """
+
+    @property
+    def g(self) -> NDArray[np.float64]: ...
+    @property
+    def local(self) -> Any: ...
+    @property
+    def surface(self) -> Surface: ...
+    @property
+    def inside(self) -> NDArray[np.float64]: ...

@@ -1,0 +1,197 @@
+"""Stresses from the displacement fields of a speed, on the surface, inside and at interfaces.
+
+For a contact with free ends, slopes next to the ends are continued from a little farther away
+(:class:`KinkedDisplacement`).
+"""
+
+from collections.abc import Collection, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact import AT_INTERFACES, BELOW, YIELD
+from ..contact.free_ends import slopes_towards_ends
+from ..contact.solution import Surface, Task
+from ..solids.solid import ByCells
+from .fields import InteriorGradients, KeptValues, SurfaceSlopes
+from .punch import FittedSlopes
+from .space import Space
+
+
+class Displacement:
+    """Stresses of combinations of displacement fields; each derivative is taken once, when first needed.
+
+    Args:
+        task: the speed, and the places.
+        space: the finite element space.
+        fields: displacements over N/(2μ).
+        slopes: slopes of the fields along X on the surface, from a fit; computed if None.
+    """
+
+    def __init__(
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
+    ) -> None:
+        self._task, self._space, self._fields = task, space, fields
+        self._fitted_slopes = slopes
+
+    def prepare(self, words: Collection[str]) -> None:
+        """Take the derivatives that words of output.quantities request, before the fields are freed."""
+        if words:
+            self._slopes  # noqa: B018 - cached
+        if BELOW in words:
+            self._gradients  # noqa: B018
+        if YIELD in words:
+            self._around  # noqa: B018
+        if AT_INTERFACES in words:
+            self._interfaces  # noqa: B018
+
+    @property
+    def slopes(self) -> SurfaceSlopes | FittedSlopes:
+        """Slopes of the fields along X at the places on the surface."""
+        return self._slopes
+
+    @cached_property
+    def _slopes(self) -> SurfaceSlopes | FittedSlopes:
+        if self._fitted_slopes is not None:
+            return self._fitted_slopes
+        return SurfaceSlopes(self._space, self._fields, self._task.places.X)
+
+    @cached_property
+    def _gradients(self) -> InteriorGradients:
+        return self._at(self._task.places.points)
+
+    @cached_property
+    def _around(self) -> InteriorGradients:
+        return self._at(self._task.places.around)
+
+    @cached_property
+    def _values(self) -> KeptValues:
+        return KeptValues(self._space, self._task.response, self._fields)
+
+    @cached_property
+    def _interfaces(self) -> list[tuple[NDArray, InteriorGradients, InteriorGradients]]:
+        """Points of each interface, (n, 2), and gradients above and below it."""
+        places, gradients = self._task.places, []
+        for depth in places.interfaces.tolist():
+            points = np.column_stack([places.along, np.full_like(places.along, -depth)])
+            gradients.append((points, self._at(points), self._at(points, -1)))
+        return gradients
+
+    def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
+        """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
+        response = self._task.response
+        return InteriorGradients(self._space, response, self._fields, points, self._values, side)
+
+    def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""
+        response = self._task.response
+        if not isinstance(response, ByCells):
+            return response.stresses(gradients)
+        Y = points[:, 1]
+        return response.stresses_at(response.solids(Y, side), Y, gradients)
+
+    def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
+        """Stresses on the surface, by weights (states, fields) and σ_YY, NaN beside the punch."""
+        u_X, v_X = self._slopes.of(weights)
+        σ = np.nan_to_num(σ_YY)
+        σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
+        return Surface(self._task.places, σ_YY, σ_XX, raw, v_X)
+
+    def around(self, weights: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at the points checked for yield, (3, states, k)."""
+        return self._stresses(self._task.places.around, self._around.of(weights))
+
+    def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
+        flat = points.reshape(-1, 2)
+        gradients = self._at(flat)
+        if len(points) == 1:
+            return self._stresses(flat, gradients.of(weights))
+        each = gradients.of_each(weights)
+        whole = self._stresses(flat, each.reshape(1, -1, 2, 2))
+        return whole.reshape(3, *each.shape[:2])
+
+    def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).
+
+        Tractions, which both sides share, are taken from the softer side rather than from the stiffer,
+        whose other stresses may be large beside them: each side's weight goes with the other's modulus.
+        """
+        stresses = []
+        for i, (points, above, below) in enumerate(self._interfaces):
+            σ_above = self._stresses(points, above.of(weights))
+            σ_below = self._stresses(points, below.of(weights), -1)
+            upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
+            share = lower.μ / (upper.μ + lower.μ)
+            tractions = share * σ_above[1:] + (1.0 - share) * σ_below[1:]
+            stresses.append([*tractions, σ_above[0], σ_below[0]])
+        return np.moveaxis(np.array(stresses), 0, 2)
+
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        """Effect of rounding of the fields on σ_XX on the surface, (states, n)."""
+        noise = self._slopes.rounding(weights)
+        return np.abs(self._task.response.σ_XX(noise, 0.0 * noise, 0.0 * noise))
+
+    def inside(self, weights: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY inside by weights (states, fields), (3, states, m)."""
+        σ = np.empty((3, len(weights), len(self._task.places.points)))
+        for batch, gradients in self._gradients.by_batches(weights):
+            σ[:, :, batch] = self._stresses(self._task.places.points[batch], gradients)
+        return σ
+
+
+class KinkedDisplacement(Displacement):
+    """Displacement of a contact with free ends; see :class:`Displacement`.
+
+    Args:
+        task: the speed, and the places.
+        space: the finite element space.
+        field: displacement over N/(2μ).
+        gaps: distances of the left and the right end from the nearest kink, over a.
+        exponents: of the pressure at the left and at the right end.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        space: Space,
+        field: Any,
+        gaps: tuple[float, float],
+        exponents: tuple[float, float],
+    ) -> None:
+        super().__init__(task, space, [field])
+        self._gaps, self._exponents = gaps, exponents
+
+    def at_places_of(self, task: Task) -> "KinkedDisplacement":
+        """Displacement at the places of another task."""
+        return KinkedDisplacement(task, self._space, self._fields[0], self._gaps, self._exponents)
+
+    def strain(self, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X over N/(2a) at positions on the surface, (n,), by the polynomials of the cells."""
+        return SurfaceSlopes(self._space, self._fields, X).of(np.ones((1, 1)))[0][0]
+
+    @cached_property
+    def _slopes(self) -> Any:
+        places, of_places = slopes_towards_ends(self._task.places.X, self._gaps, self._exponents)
+        return _Slopes(SurfaceSlopes(self._space, self._fields, places), of_places)
+
+
+class _Slopes:
+    """Slopes continued from sampled places; see :class:`SurfaceSlopes`.
+
+    Args:
+        slopes: slopes of the fields at sampled places.
+        of_places: matrix from slopes there to slopes at the requested places, (requested, places).
+    """
+
+    def __init__(self, slopes: SurfaceSlopes, of_places: NDArray) -> None:
+        self._slopes, self._of_places = slopes, of_places
+
+    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        u_X, v_X = self._slopes.of(weights)
+        return u_X @ self._of_places.T, v_X @ self._of_places.T
+
+    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
+        return self._slopes.rounding(weights) @ np.abs(self._of_places).T

@@ -1,1 +1,0 @@
-"""Singular integral equation of the flat punch: closed form, collocation, field."""

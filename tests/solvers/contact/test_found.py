@@ -1,0 +1,316 @@
+"""Contacts whose ends are found, against formulas and quadrature in many digits."""
+
+from dataclasses import dataclass
+
+import mpmath as mp
+import numpy as np
+import pytest
+from found_reference import exponents, parabola, solved
+from random_solids import random_solid, stiffness
+from scipy.integrate import quad
+from stroh import Stroh
+from support import THOROUGH
+
+from galinx.solvers.contact.closed_form import FlatPunch, Weighted
+from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.errors import SolveError
+from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
+
+flat, parabolic, wedge, power, rounded, table = (
+    PROFILES[name] for name in ("flat", "parabolic", "wedge", "power", "rounded_flat", "table")
+)
+LOAD = 1e-7  # N/μ [m]
+
+
+def known(seed, c=None):
+    """A random solid's response, and n, q, n12 of it by Stroh's eigenvectors."""
+    solid, rng = random_solid(seed), np.random.default_rng(100 + seed)
+    response = solid.response(float(rng.uniform(0.0, 0.99) * solid.limit()) if c is None else c)
+    n, _, n12, q = Stroh(stiffness(response), response.c).surface
+    return response, (n, q, n12), float(rng.uniform(-1.2, 1.2))
+
+
+@pytest.mark.parametrize("seed", range(60) if THOROUGH else range(0, 60, 5))
+def test_a_parabola_is_that_of_the_formulas(seed):
+    response, constants, g = known(seed)
+    found = contacts(response, np.array([g]), parabolic(0.3), LOAD)
+    h, m, top, place = parabola(*constants, g, mp.mpf("0.3"), mp.mpf(LOAD))
+    value, where = found.largest()
+    got = [found.of("half_width")[0], found.of("centre")[0] / h, value[0], where[0]]
+    wanted = [float(h), float(m / h), float(top), float(place)]
+    np.testing.assert_allclose(np.array(got, dtype=float), wanted, rtol=1e-11, atol=1e-12)
+    a, b = exponents(*constants, g)
+    r = np.array([-1 + 1e-6, -0.9, -0.2, 0.0, 0.4, 0.99])
+    w = [float((1 - mp.mpf(x)) ** a * (1 + mp.mpf(x)) ** b) for x in r]
+    peak = float(top / ((1 - place) ** a * (1 + place) ** b))
+    np.testing.assert_allclose(found.σ_YY(r)[0], -peak * np.array(w), rtol=1e-11)
+
+
+def test_without_friction_at_rest_it_is_hertz():
+    """h² = 4 N R (1 - ν²)/(π E) and p₀ = 2N/(π h) (Johnson, Contact Mechanics, 4.43, 4.45)."""
+    E, ν, R, N = 193e9, 0.25, 0.02, 5e4
+    solid = Isotropic(E, ν, 7860.0)
+    found = contacts(solid.response(0.0), np.zeros(1), parabolic(R), N / solid.μ)
+    h = np.sqrt(4.0 * N * R * (1.0 - ν**2) / (np.pi * E))
+    r = np.linspace(-0.999, 0.999, 41)
+    assert found.of("half_width")[0] == pytest.approx(h, rel=1e-14)
+    assert found.of("centre")[0] == pytest.approx(0.0, abs=1e-15 * h)
+    np.testing.assert_allclose(found.σ_YY(r)[0], -4.0 / np.pi * np.sqrt(1.0 - r**2), rtol=1e-12)
+
+
+def test_the_contact_grows_towards_the_rayleigh_speed():
+    """h(c)/h(0) at ν = 1/4, g = 0, from 40-digit arithmetic."""
+    h = [
+        contacts(MovingFrame(2.0, c), np.zeros(1), parabolic(1.0), LOAD).of("half_width")[0]
+        for c in (0.0, 0.3, 0.6, 0.8, 0.9)
+    ]
+    wanted = ["1.03662", "1.20082", "1.64686", "3.54087"]
+    assert [f"{x / h[0]:.5f}" for x in h[1:]] == wanted
+
+
+SHAPE = (
+    (-2e-3, 9e-6), (-1.1e-3, 3.5e-6), (-0.4e-3, 0.6e-6), (0.1e-3, 0.0), (0.9e-3, 0.7e-6), (1.5e-3, 3e-6),
+    (2.5e-3, 11e-6),
+)  # fmt: skip
+
+
+def profiles():
+    """Each with its slope in many digits."""
+    one = mp.mpf(1)
+    yield "wedge", wedge(0.01), lambda X: mp.mpf(0.01) * mp.sign(X)
+    yield "power 3", power(3.0, 1e3), lambda X: mp.mpf(3e3) * X * abs(X)
+    yield "power 1.5", power(1.5, 0.02), lambda X: mp.mpf(0.03) * mp.sign(X) * mp.sqrt(abs(X))
+    b, R = mp.mpf(1e-4), mp.mpf(0.2)
+    yield "rounded", rounded(1e-4, 0.2), lambda X: mp.sign(X) * max(abs(X) - b, 0 * one) / R
+    yield "table", table(SHAPE), _linear(*table(SHAPE)._knots)
+
+
+def _linear(x, s):
+    x, s = [mp.mpf(v) for v in x.tolist()], [mp.mpf(v) for v in s.tolist()]
+
+    def slope(X):
+        i = max(0, min(len(x) - 2, sum(knot < X for knot in x) - 1))
+        return s[i] + (s[i + 1] - s[i]) * (X - x[i]) / (x[i + 1] - x[i])
+
+    return slope
+
+
+ALL = {name: (profile, slope) for name, profile, slope in profiles()}
+
+
+@pytest.mark.parametrize("seed", range(6) if THOROUGH else [0])
+@pytest.mark.parametrize("name", ALL)
+def test_every_profile_is_that_of_the_quadrature(name, seed):
+    profile, slope = ALL[name]
+    response, constants, g = known(list(ALL).index(name) + 5 * seed)
+    found = contacts(response, np.array([g]), profile, LOAD)
+    h, m = (float(found.of(key)[0]) for key in ("half_width", "centre"))
+    with mp.workdps(28 if name == "rounded" else 20):
+        exact = solved(constants, g, slope, profile.kinks, mp.mpf(LOAD), (m, h))
+        assert h == pytest.approx(float(exact.h), rel=1e-11)
+        assert (m - float(exact.m)) / h == pytest.approx(0.0, abs=1e-11)
+        r = [-0.97, float(exact.at[0]) + 1e-5, 0.999]
+        r = np.array([x for x in r if -1.0 < x < 1.0])
+        wanted = np.array([float(exact.σ_YY(x)) for x in r])
+        # Next to a tip the pressure is steep: where it is counts.
+        near = 1e-9 if "power 1.5" in name or "wedge" in name else 1e-11
+        np.testing.assert_allclose(found.σ_YY(r)[0], wanted, rtol=near, atol=1e-11)
+
+
+def test_a_wedge_at_rest_is_that_of_the_textbook():
+    """p = 2s/(π n) arcosh(h/|X|), h = N n/(2s) without friction (Johnson, Contact Mechanics, 5.7)."""
+    n = MovingFrame(2.0, 0.0).n
+    found = contacts(MovingFrame(2.0, 0.0), np.zeros(1), wedge(0.02), LOAD)
+    h = found.of("half_width")[0]
+    assert h == pytest.approx(LOAD * n / (2.0 * 0.02), rel=1e-13)
+    r = np.array([-0.99, -0.5, -1e-3, 1e-5, 0.2, 0.9])
+    p = 2.0 * 0.02 / (np.pi * n) * np.arccosh(1.0 / np.abs(r)) * 2.0 * h / LOAD
+    np.testing.assert_allclose(found.σ_YY(r)[0], -p, rtol=1e-12)
+
+
+@dataclass(frozen=True)
+class Cosh:
+    """A smooth convex punch of a user's own."""
+
+    sharp = (False, False)
+
+    def slope(self, X):
+        return 0.01 * np.sinh(X / 1e-3 + 0.3)
+
+    def words(self):
+        return "cosh"
+
+
+def equations_hold(response, g, found, slope, load):
+    """v,X below the contact, the load by the field far away, and no pressure at the ends."""
+    (group,) = found.groups
+    h, m = group.half_width[0], group.centre[0]
+    r = np.array([-0.9, -0.35, 0.15, 0.6, 0.98])
+    Φ = group.pressure.at(r - 1e-13j)
+    n, Q = response.n + g * response.n12, g * response.q
+    wanted = slope(m + h * r) * 2.0 * h / load
+    np.testing.assert_allclose(n * Φ.real + Q * Φ.imag, wanted, atol=1e-10 * np.abs(wanted).max())
+    np.testing.assert_allclose(-Φ.imag, found.σ_YY(r)[0], atol=1e-10)
+    z = np.array([-1e5j])
+    np.testing.assert_allclose(np.pi * z * group.pressure.at(z), 2.0, rtol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["wedge", "power 3", "rounded", "table", "own"])
+def test_the_field_solves_the_equation(name):
+    profile = Cosh() if name == "own" else ALL[name][0]
+    for seed in (1, 2, 3):
+        response, _, g = known(seed)
+        found = contacts(response, np.array([g]), profile, LOAD)
+        equations_hold(response, g, found, profile.slope, LOAD)
+
+
+def test_quadrature_gives_the_parabola_and_its_field():
+    """Two ways to one contact: by the elementary potential, and by quadrature."""
+
+    @dataclass(frozen=True)
+    class Other:
+        sharp = (False, False)
+        kinks = (1e-5,)  # a panel ends there, and nothing may be seen of it
+        slope = staticmethod(lambda X: X / 0.3)
+        words = staticmethod(lambda: "the same")
+
+    X, Y = np.array([0.0, 0.7, -2.0, 1.0, 30.0]), np.array([-0.5, -1e-3, -0.3, -1e-4, -20.0])
+    for response in (MovingFrame(1.8, 0.0), MovingFrame(1.8, 0.7), random_solid(2).response(0.1)):
+        g = np.array([-0.7, 0.4])
+        one, two = (contacts(response, g, profile, LOAD) for profile in (parabolic(0.3), Other()))
+        for key in ("half_width", "centre", "α", "β"):
+            np.testing.assert_allclose(two.of(key), one.of(key), rtol=1e-12, atol=1e-18)
+        r = np.concatenate([np.linspace(-0.99, 0.99, 9), [1.0 - 1e-6, -1.0 + 1e-6]])
+        np.testing.assert_allclose(two.σ_YY(r), one.σ_YY(r), rtol=1e-10, atol=1e-12)
+        beside = np.array([-5.0, -1.0 - 1e-6, 0.2, 1.0 + 1e-6, 1.7, 2.9, 3.1])
+        np.testing.assert_allclose(two.σ_XX(beside), one.σ_XX(beside), rtol=1e-10, atol=1e-11)
+        np.testing.assert_allclose(two.inside(X, Y), one.inside(X, Y), atol=1e-11)
+        np.testing.assert_allclose(
+            np.concatenate(two.largest()), np.concatenate(one.largest()), atol=1e-8
+        )
+
+
+def test_below_hertz_the_largest_stresses_are_those_of_the_books():
+    """τ_max 0.300283 p₀ at 0.786151 h below the middle."""
+    solid = Isotropic(1.0, 0.3, 1.0)
+    found = contacts(solid.response(0.0), np.zeros(1), parabolic(1.0), LOAD)
+    p0 = found.largest()[0][0]
+    y = -np.array([0.786051, 0.786151, 0.786251])
+    XX, YY, XY = found.inside(0.0 * y, y)[:, 0] / p0
+    shear = np.hypot((XX - YY) / 2.0, XY)
+    assert f"{shear[1]:.6f}" == "0.300283" and shear[1] == shear.max()
+
+
+@pytest.mark.parametrize("g", [-0.8, 0.0, 0.5])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_tilted_punch_lifts_off_where_its_intensity_vanishes(g, side):
+    response, a = random_solid(1).response(0.2), 1e-3
+    local = FlatPunch(response, g)
+    share = 1.0 + (local.α if side > 0 else local.β)
+    n = response.n + g * response.n12
+    threshold = np.degrees(LOAD * n / (2.0 * np.pi * share * a))
+    tilts = side * threshold * np.array([0.0, 0.5, 1.0 - 1e-9, 1.0 + 1e-9, 2.0, 20.0])
+    found = [contacts(response, np.array([g]), flat(a, tilt), LOAD) for tilt in tilts.tolist()]
+    h, m = (np.array([one.of(key)[0] for one in found]) for key in ("half_width", "centre"))
+    K = np.array([one.of("K_I")[0] for one in found])
+    higher = 1 if side > 0 else 0
+    assert K[0] == pytest.approx([local.K_I] * 2, rel=1e-14)
+    np.testing.assert_allclose(K[:, higher], K[0, higher] * np.array([1, 0.5, 0, 0, 0, 0]), atol=2e-9)
+    np.testing.assert_allclose(h / a, [1, 1, 1, 1, 0.5, 0.05], rtol=1e-8)
+    np.testing.assert_allclose(m / a, side * (h / a - 1.0), atol=1e-12)
+    r = np.linspace(-0.9, 0.9, 7)
+    np.testing.assert_allclose(found[2].σ_YY(r), found[3].σ_YY(r), rtol=1e-7)
+    z = r - 1e-13j
+    for one, tilt, width in zip(found, tilts, h):
+        Φ = one.groups[0].pressure.at(z)[0]
+        wanted = np.radians(tilt) * 2.0 * width / LOAD
+        found_slope = n * Φ.real + g * response.q * Φ.imag
+        np.testing.assert_allclose(found_slope, wanted, atol=1e-9 * max(wanted.max(), -wanted.min(), 1.0))
+
+
+def test_the_mirror_image_swaps_the_ends():
+    response = MovingFrame(2.0, 0.5)
+    mirrored = table(tuple((-x, y) for x, y in reversed(SHAPE)))
+    one = contacts(response, np.array([0.6]), table(SHAPE), LOAD)
+    two = contacts(response, np.array([-0.6]), mirrored, LOAD)
+    assert one.of("half_width") == pytest.approx(two.of("half_width"), rel=1e-12)
+    assert one.of("centre") == pytest.approx(-two.of("centre"), rel=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_far_points_of_a_table_leave_no_step_under_a_kink(seed):
+    """A step of the height, however small, is an infinite pressure there."""
+    rng = np.random.default_rng(seed)
+    X = np.sort(np.append(rng.choice([-1.0, 1.0], 5) * 10.0 ** rng.uniform(-6.0, -3.0, 5), [-0.2, 0.2]))
+    punch = table(tuple(zip(X.tolist(), (12.0 * X**2).tolist())))
+    at = np.array(punch.kinks)
+    before, after = (punch.height(np.nextafter(at, side)) for side in (-np.inf, np.inf))
+    np.testing.assert_allclose(before, after, rtol=1e-13)
+    slope, heights = punch.slope(at), punch.height(at)
+    rises = np.diff(at) * (slope[1:] + slope[:-1]) / 2.0
+    np.testing.assert_allclose(np.diff(heights), rises, rtol=1e-12, atol=1e-12 * heights[1:-1].max())
+
+
+def test_what_has_no_contact_says_so():
+    with pytest.raises(SolveError, match="Rayleigh"):
+        contacts(MovingFrame(2.0, 0.95), np.zeros(1), parabolic(1.0), LOAD)
+    with pytest.raises(SolveError, match=r"known from -0\.002 m to 0.0025 m only"):
+        contacts(MovingFrame(2.0, 0.5), np.zeros(1), table(SHAPE), 1e-3)
+
+    class Hollow(Cosh):
+        def slope(self, X):
+            return -X
+
+    with pytest.raises(SolveError, match="convex"):
+        contacts(MovingFrame(2.0, 0.5), np.zeros(1), Hollow(), LOAD)
+
+
+def moment_of_shoulders(k, a, left, right):
+    """∫ s^k |s - end of the flat part| sign(s)/w ds outside a flat part, by QUADPACK."""
+
+    def of_right(s):
+        return s**k * (s - right) * (1.0 + s) ** (a - 1.0)
+
+    def of_left(s):
+        return s**k * (s - left) * (1.0 - s) ** -a
+
+    exact = {"weight": "alg", "epsabs": 0.0, "epsrel": 1e-12}
+    found = quad(of_right, right, 1.0, wvar=(0.0, -a), **exact)[0]
+    return found + quad(of_left, -1.0, left, wvar=(a - 1.0, 0.0), **exact)[0]
+
+
+@pytest.mark.parametrize("b", [1e-6, 1e-4, 3e-3])
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.84, 0.985, 0.999])
+def test_a_contact_little_wider_than_the_flat_part_is_found(b, share):
+    response, R, h, φ = Isotropic(2e11, 0.3, 7850.0).response(0.0), 0.01, b / share, np.arcsin(share)
+    # The load of the conditions in closed form, without friction.
+    load = h**2 / (response.n * R) * (np.pi / 2.0 - φ - share * np.sqrt(1.0 - share**2))
+    all_g = np.array([0.0, -0.8, 0.8])
+    found = contacts(response, all_g, rounded(b, R), load)
+    assert found.of("half_width")[0] == pytest.approx(h, rel=1e-13)
+    assert abs(found.of("centre")[0]) <= 1e-15 * h
+    ends = zip(all_g[1:], found.of("centre")[1:], found.of("half_width")[1:])
+    for g, m, h in ends:
+        a, left, right = 1.0 + float(FlatPunch(response, g).α), (-b - m) / h, (b - m) / h
+        assert -1.0 < left < right < 1.0
+        lifted, carried = (moment_of_shoulders(k, a, left, right) for k in (0, 1))
+        assert abs(lifted) <= 1e-9 * carried
+        n = response.n + g * response.n12
+        assert h**2 / R * np.sin(np.pi * a) / n * carried == pytest.approx(load, rel=1e-9)
+
+
+@pytest.mark.parametrize("order", (-1, 0, 1))
+def test_the_change_of_a_potential_is_a_difference(order):
+    """Of a punch with both edges in contact, with one, and of a parabola; near and far."""
+    rng = np.random.default_rng(order + 5)
+    α = float(rng.uniform(-0.9, -0.1)) + (order == 1)
+    A, B = rng.normal(size=2) * [1.0, order == -1]
+    pressure = Weighted(α, order - α, A, B, order)
+    z = rng.uniform(-6.0, 6.0, 40) + 1j * rng.uniform(0.05, 6.0, 40)
+    step, share = 0.1 * rng.normal(size=40), 0.3 + 0.2j
+    exact = (pressure.at(z + share * step) - pressure.at(z)) / share
+    np.testing.assert_allclose(pressure.change(z, step, share), exact, rtol=0.0, atol=1e-13)
+    ε = 1e-6
+    slope = step * (pressure.at(z + ε) - pressure.at(z - ε)) / (2.0 * ε)
+    np.testing.assert_allclose(pressure.change(z, step, 0.0), slope, rtol=0.0, atol=1e-9)

@@ -1,0 +1,101 @@
+"""The exact solution of a pressure that is linear between knots, against integrals in 60 digits."""
+
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.solids.isotropic import MovingFrame
+from galinx.solvers.solids.potentials import field
+
+PRESSURES = {
+    "triangle": [[-1, 0], [0.3, -2], [1, 0]],
+    "spike": [[-1, -1], [0.301, -1], [0.302, -50], [0.303, -1], [1, -1]],
+    "jumps": [[-1, -3], [-0.2, 0], [0.5, 0], [0.500001, -7], [1, -1]],
+}
+SPEEDS = [0.0, 4.786e-7, 1e-155, 0.6, 0.9]
+
+
+def pressure_of(name):
+    return LinearPressure(*np.array(PRESSURES[name], dtype=float).T)
+
+
+class ExactFrame(MovingFrame):
+    """The constants of the moving frame in mpmath's digits."""
+
+    def __init__(self, κ, c):
+        κ, c = mp.mpf(κ), mp.mpf(c)
+        k = (κ - 1) / (κ + 1)
+        vars(self).update(κ=κ, c=c, k=k, β_s=mp.sqrt(1 - c**2), β_d=mp.sqrt(1 - k * c**2))
+
+
+def integral(name, kernel):
+    """(1/π) ∫ σ kernel dt over all pieces, by Gauss's rule in as many digits as mpmath has now."""
+    pairs = [(mp.mpf(float(x)), mp.mpf(σ)) for x, σ in PRESSURES[name]]
+
+    def of_piece(start, end):
+        (x0, s0), (x1, s1) = start, end
+        return mp.quad(lambda t: (s0 + (s1 - s0) * (t - x0) / (x1 - x0)) * kernel(t), [x0, x1])
+
+    return sum(of_piece(*ends) for ends in pairwise(pairs)) / mp.pi
+
+
+def exact_inside(name, κ, c, g, X, Y):
+    frame = ExactFrame(κ, c)
+    z = mp.mpc(X, frame.β_s * mp.mpf(Y))
+    δ = mp.mpc(0, Y) * (1 - frame.k) / (frame.β_d + frame.β_s)
+    Φ = integral(name, lambda t: 1 / (t - z))
+    # (1/(t - z - c²δ) - 1/(t - z))/c²
+    d = integral(name, lambda t: δ / ((t - z) * (t - z - frame.c**2 * δ)))
+    return [float(σ) for σ in field(frame, mp.mpf(g), -Φ.imag, Φ.real, -d.imag, d.real)]
+
+
+@pytest.mark.parametrize("c", SPEEDS)
+@pytest.mark.parametrize("name", PRESSURES)
+def test_stresses_inside_are_those_of_the_integrals(name, c):
+    solution = PrescribedPressureSolution(MovingFrame(2.2, c), -0.66, pressure_of(name))
+    with mp.workdps(40):
+        for X, Y in [(0.3, -0.2), (0.31, -0.02), (-3.0, -0.5), (1.0, -0.1), (2e3, -1e4), (1e8, -3e7)]:
+            found = solution.inside(X, Y)
+            wanted = exact_inside(name, 2.2, c, -0.66, X, Y)
+            np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-13 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("name", PRESSURES)
+def test_the_hilbert_transform_beside_the_contact_is_the_integral(name):
+    X = np.array([-1e8, -40.0, -1.2, 1.01, 1.8, 3e3, 1e8])
+    with mp.workdps(40):
+        wanted = [float(integral(name, lambda t, x=x: 1 / (t - mp.mpf(x)))) for x in X.tolist()]
+    np.testing.assert_allclose(pressure_of(name).hilbert(X), wanted, rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", PRESSURES)
+def test_under_the_pressure_the_field_meets_the_surface(name):
+    """At knots, next to them and between them, where integrals are principal values."""
+    pressure = pressure_of(name)
+    knots = pressure.knots[1:-1]
+    X = np.concatenate([knots, knots + 1e-12, knots - 1e-12, [-0.7, 0.1, 0.9]])
+    below = pressure.at(X - 1e-18j)
+    np.testing.assert_allclose(below.real, pressure.hilbert(X), atol=1e-9)
+    np.testing.assert_allclose(-below.imag, pressure(X), atol=1e-9)
+    uneven = pressure.hilbert(np.array([-0.7])) - pressure.hilbert(np.array([-0.7 + 1e-9]))
+    assert np.abs(uneven) < 1e-6
+
+
+def test_a_known_transform():
+    """Of a uniform pressure; it is infinite at its ends."""
+    r = np.array([-1.0, -0.5, 0.0, 0.25, 1.0, 3.0])
+    found = LinearPressure(np.array([-1.0, 1.0]), np.array([-1.0, -1.0])).hilbert(r)
+    with np.errstate(divide="ignore"):
+        wanted = -np.log(np.abs((1.0 - r) / (1.0 + r))) / np.pi
+    np.testing.assert_allclose(found[1:4], wanted[1:4], rtol=1e-15, atol=1e-16)
+    assert np.isnan(found[[0, 4]]).all()
+    triangle = pressure_of("triangle").hilbert(np.array([-1.0, 1.0]))
+    assert np.isfinite(triangle).all()
+
+
+def test_the_resultant_is_that_of_trapezoids():
+    assert pressure_of("triangle").resultant == pytest.approx(-2.0, rel=1e-15)
+    assert pressure_of("spike").resultant == pytest.approx(-2.049, rel=1e-15)

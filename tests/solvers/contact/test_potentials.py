@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+import sympy as sp
+
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.solids import potentials
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
+
+
+def punch_of(entry, g):
+    solid = Isotropic(193e9, float(entry["nu"]), 7860.0, entry["plane"])
+    return FlatPunch(MovingFrame(solid.κ, float(entry["c"])), float(g))
+
+
+def test_interior_stresses_of_the_references(references):
+    for entry in references["interior"]:
+        found = punch_of(entry, entry["g"]).inside(float(entry["X/a"]), float(entry["Y/a"]))
+        wanted = np.array([float(entry[f"sigma_{ij}"]) for ij in ("XX", "YY", "XY")])
+        np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("c", [0.0, 4.786e-7, 0.6])
+def test_interior_field_meets_the_surface(c):
+    punch = FlatPunch(MovingFrame(2.0, c), -0.66)
+    X = np.array([-2.0, -0.5, 0.0, 0.7, 1.5])
+    σ_XX, σ_YY, σ_XY = punch.inside(X, np.full_like(X, -1e-9))
+    np.testing.assert_allclose(σ_XX, punch.σ_XX(X), atol=1e-7)
+    np.testing.assert_allclose(σ_YY, punch.σ_YY(X), atol=1e-7)
+    np.testing.assert_allclose(σ_XY, -0.66 * punch.σ_YY(X), atol=1e-7)
+
+
+class SymbolicFrame(MovingFrame):
+    """The code's own constants over symbols: c² = 1 - β_s², k = (1 - β_d²)/c², κ = (1 + k)/(1 - k)."""
+
+    β_s, β_d = sp.symbols("β_s β_d", positive=True)
+    k = (1 - β_d**2) / (1 - β_s**2)
+
+    def __init__(self):
+        vars(self).update(c=sp.sqrt(1 - self.β_s**2), κ=sp.cancel((1 + self.k) / (1 - self.k)))
+
+
+def exactly(expression):
+    """The same with floating-point constants as the integers they are."""
+    return sp.cancel(sp.nsimplify(expression, rational=True))
+
+
+def amplitudes(σ, symbols, c2):
+    """What a stress has of -Im and Re of the shear wave (first row) and of the dilatational one."""
+    s_s, h_s, s, h = (exactly(σ.subs({one: int(one == other) for one in symbols})) for other in symbols)
+    return sp.Matrix([[s_s - s / c2, h_s - h / c2], [s / c2, h / c2]])
+
+
+def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
+    """Eqs 15-16 inside and the relations of the surface, for potentials that span all decaying ones.
+
+    Any potential analytic below the surface is a superposition of Φ = A exp(-i p z), p > 0; here p = 1,
+    lengths being free. With s = -Im Φ and h = Re Φ, s,X = h and h,X = -s, and Y multiplies by β; what
+    vanishes for every A has no s and no h.
+    """
+    frame, g = SymbolicFrame(), sp.Symbol("g")
+    symbols = sp.symbols("s_s h_s s h")
+    c2, κ, β = 1 - frame.β_s**2, frame.κ, sp.diag(frame.β_s, frame.β_d)
+    n, q, m = (exactly(constant) for constant in (frame.n, frame.q, frame.m))
+    σ_XX, σ_YY, σ_XY = (amplitudes(σ, symbols, c2) for σ in potentials.field(frame, g, *symbols))
+    K, λ, coupling = (κ + 1) / (κ - 1), (3 - κ) / (κ - 1), 2 / (κ - 1)
+    # Hooke's law, Eqs 6-7, solved for the strains.
+    u_X, v_Y = ((K * a - λ * b) / (K**2 - λ**2) for a, b in ((σ_XX, σ_YY), (σ_YY, σ_XX)))
+    by_X, at_surface = sp.Matrix([[0, 1], [-1, 0]]), sp.ones(1, 2)
+    s, h = sp.Matrix([[1, 0]]), sp.Matrix([[0, 1]])  # of σ_YY on the surface, and its Hilbert transform
+    v_X = β.inv() * v_Y * by_X  # v,XY integrated from -∞, where the field vanishes
+    identities = {
+        "Eq 15, by X": (K - c2) * u_X * by_X**2 + coupling * v_Y * by_X**2 + β**2 * u_X,
+        "Eq 16, by Y": (1 - c2) * v_Y * by_X**2 + coupling * β**2 * u_X + K * β**2 * v_Y,
+        "σ_XY = u,Y + v,X, by X and Y": β * σ_XY * by_X - β**2 * u_X - v_Y * by_X**2,
+        "σ_YY on Y = 0": at_surface * σ_YY - s,
+        "σ_XY on Y = 0": at_surface * σ_XY - g * s,
+        "v,X = n H[σ_YY] - q σ_XY": at_surface * v_X - (n * h - q * g * s),
+        "u,X = q σ_YY + m H[σ_XY]": at_surface * u_X - (q * s + m * g * h),
+    }
+    for name, identity in identities.items():
+        assert identity.applyfunc(sp.cancel).is_zero_matrix, name
+
+
+def test_the_moving_frame_turns_eqs_9_to_12_into_eqs_15_and_16():
+    """Balance of momentum and Hooke's law in x, y and t, for a field that travels: u(x - Vt, y)."""
+    x, y, t = sp.symbols("x y t", real=True)
+    μ, ρ, κ, V = sp.symbols("μ ρ κ V", positive=True)
+    X, c2, K, coupling = x - V * t, V**2 * ρ / μ, (κ + 1) / (κ - 1), 2 / (κ - 1)
+    u, v = (sp.Function(name)(X, y) for name in "uv")
+    λ_div = (3 - κ) / (κ - 1) * (u.diff(x) + v.diff(y))
+    σ_xx, σ_yy = (μ * (2 * strain + λ_div) for strain in (u.diff(x), v.diff(y)))
+    σ_xy = μ * (u.diff(y) + v.diff(x))
+    by_momentum = [
+        σ_xx.diff(x) + σ_xy.diff(y) - ρ * u.diff(t, 2),
+        σ_xy.diff(x) + σ_yy.diff(y) - ρ * v.diff(t, 2),
+    ]
+    eqs_15_and_16 = [
+        (K - c2) * u.diff(x, 2) + coupling * v.diff(x, y) + u.diff(y, 2),
+        (1 - c2) * v.diff(x, 2) + coupling * u.diff(x, y) + K * v.diff(y, 2),
+    ]
+    for momentum, equation in zip(by_momentum, eqs_15_and_16):
+        assert sp.simplify(momentum - μ * equation) == 0
+
+
+@pytest.mark.parametrize("c", [1e-200, 1e-162, 3e-155, 1e-155, 1e-154, 1e-150, 1e-16, 1e-12])
+def test_at_the_slowest_speeds_the_field_is_that_of_rest(c):
+    """c² may be below the smallest number, or have lost its digits there."""
+    still, slow = (FlatPunch(MovingFrame(2.0, speed), -0.6).inside(0.3, -0.2) for speed in (0.0, c))
+    np.testing.assert_allclose(slow, still, rtol=1e-14)

@@ -1,0 +1,80 @@
+import numpy as np
+from scipy.integrate import newton_cotes
+from scipy.special import eval_jacobi, roots_jacobi
+
+from galinx.meshes import MESHES
+from galinx.solvers.contact import recovery as pressure
+
+α = np.array([-0.5, -0.42, -0.7])
+β = -1.0 - α
+
+
+def test_jacobi_polynomials_by_chebyshev_coefficients():
+    r = np.linspace(-1.0, 1.0, 9)
+    found = np.einsum("snk,qk->snq", pressure.jacobi_in_chebyshev(α, β), pressure.chebyshev(r))
+    for i in range(len(α)):
+        for n in range(pressure.MOMENTS):
+            np.testing.assert_allclose(found[i, n], eval_jacobi(n, α[i], β[i], r), atol=1e-13)
+
+
+def test_norms_are_the_integrals():
+    for i in range(len(α)):
+        with np.errstate(invalid="ignore"):
+            t, w = roots_jacobi(20, α[i], β[i])
+        wanted = [w @ eval_jacobi(n, α[i], β[i], t) ** 2 for n in range(pressure.MOMENTS)]
+        np.testing.assert_allclose(pressure.jacobi_norms(α, β)[i], wanted, rtol=1e-12)
+
+
+def test_a_pressure_is_found_from_its_moments():
+    """(1 - r)^α (1 + r)^β (2 + r³) and its values at the ends."""
+    for i in range(len(α)):
+        with np.errstate(invalid="ignore"):
+            t, w = roots_jacobi(20, α[i], β[i])
+        moments = (w * (2.0 + t**3)) @ pressure.chebyshev(t)
+        found = pressure.from_moments(moments[None], α[i : i + 1], β[i : i + 1])
+        r = np.array([-2.0, -0.9, 0.1, 0.999])
+        wanted = (1.0 - r[1:]) ** α[i] * (1.0 + r[1:]) ** β[i] * (2.0 + r[1:] ** 3)
+        σ_YY = found.σ_YY(r)
+        assert np.isnan(σ_YY[0, 0])
+        np.testing.assert_allclose(σ_YY[0, 1:], wanted, rtol=1e-12)
+        np.testing.assert_allclose(found.K_I, [[-0.5, -1.5]], rtol=1e-12)
+
+
+def test_fitted_exponents():
+    d = np.geomspace(1e-6, 1e-3, 8)
+    σ = np.array([-3.0 * d**-0.43, d**-0.6, np.linspace(-1.0, 1.0, 8)])
+    found = pressure.fitted_exponent(d, σ)
+    np.testing.assert_allclose(found[:2], [-0.43, -0.6], rtol=1e-12)
+    assert np.isnan(found[2])
+
+
+def test_a_pressure_is_recovered_from_its_nodal_forces():
+    """-1/√(1 - r²) is a constant of the confocal chart's surface coordinate, so its forces are exact."""
+    degree, facets, chart = 4, 60, MESHES["confocal"].chart
+    s = np.linspace(-np.pi / 2.0, np.pi / 2.0, facets * degree + 1)
+    forces = np.zeros_like(s)
+    for first in range(0, len(s) - 1, degree):
+        forces[first : first + degree + 1] -= newton_cotes(degree)[0] * (s[1] - s[0])
+    r = np.array([-1.5, -0.8, 0.0, 0.33, 0.9, 1.2])
+    maps = pressure.contact_recovery(s, degree, chart, r, farthest=1e-2)
+    inside = np.abs(r) < 1.0
+    found = forces @ maps.raw
+    assert np.isnan(found[~inside]).all()
+    np.testing.assert_allclose(found[inside], -1.0 / np.sqrt(1.0 - r[inside] ** 2), rtol=1e-11)
+    # ∫ T_k/√(1 - r²) dr is π for k = 0 and else 0; nodes interpolate T_k = cos(kθ).
+    np.testing.assert_allclose(forces @ maps.moments, [-np.pi] + 8 * [0.0], atol=1e-9)
+    # The second term of the pressure at an edge bends d^(-1/2) by a quarter of the distance.
+    np.testing.assert_allclose(maps.exponents(forces[None]), [[-0.5, -0.5]], atol=1e-2 / 4.0)
+
+
+def test_rounding_of_the_smallest_cells_positions_stays_there():
+    """They have a few digits only; facets of 1e-11 a beside the edges tell nothing of the others."""
+    ends = np.array([-1.0, -1.0 + 1e-11, -1.0 + 1e-5, -0.5, 0.5, 1.0 - 1e-5, 1.0 - 1e-11, 1.0])
+    nodes = (1.0 - np.cos(np.pi * np.arange(5) / 4.0)) / 2.0
+    inner = ends[:-1, None] + np.diff(ends)[:, None] * nodes[:-1]
+    s = np.append(inner.ravel(), 1.0)
+    moved = s.copy()
+    moved[1:4] = np.nextafter(moved[1:4], 1.0)
+    chart, r = MESHES["graded"].chart, np.array([-0.9, 0.0, 0.7])
+    one, other = (pressure.contact_recovery(positions, 4, chart, r).raw for positions in (s, moved))
+    np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())

@@ -1,0 +1,54 @@
+"""What answers leave of equations they were not computed by: nothing, or what is wrong with them."""
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx.solvers.contact import residual
+from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.profiles.power import Parabolic, Wedge
+from galinx.solvers.solids.isotropic import Isotropic
+
+POINTS = np.array([[0.3, -0.01], [-1.5, -0.4], [0.9, -3.0], [4.0, -2.0]])
+
+
+@pytest.fixture(params=range(4))
+def contact(request):
+    seed = request.param
+    solid = random_solid(seed) if seed else Isotropic(1.0, 0.3, 1.0)
+    response, g = solid.response(0.8 * solid.limit()), np.array([-0.5, 0.3])
+    profile = Wedge(0.1) if seed == 3 else Parabolic(1.0)
+    found = contacts(response, g[:1] if seed == 3 else g, profile, 0.5)
+    slope = 2.0 * found.of("half_width")[:, None] / 0.5
+    lengths = found.of("centre")[:, None], found.of("half_width")[:, None]
+    return found, lambda s: slope * profile.slope(lengths[0] + lengths[1] * s), found.groups[0].cusps[0]
+
+
+def left(contact, pressure=None, inside=None):
+    found, slope, kinks = contact
+    exponents, pressure = (found.of("α"), found.of("β")), pressure or found.pressure
+    of_pressure = residual.of_pressure(found.response, found.g, exponents, slope, pressure, kinks)
+    field = inside or found.inside
+    return of_pressure, residual.of_field(
+        found.response, found.g, exponents, pressure, field, POINTS, kinks
+    )
+
+
+def test_exact_answers_leave_nothing(contact):
+    of_pressure, of_field = left(contact)
+    assert of_pressure.max() <= 1e-9 and of_field.max() <= 1e-9
+
+
+@pytest.mark.parametrize("ε", [1e-2, 1e-5])
+def test_a_wrong_pressure_is_seen(contact, ε):
+    found = contact[0]
+    of_pressure, of_field = left(contact, lambda r: found.pressure(r) * (1.0 + ε * r))
+    assert (0.1 * ε <= of_pressure).all() and (of_pressure <= 10.0 * ε).all()
+    assert (0.01 * ε <= of_field).all() and (of_field <= 10.0 * ε).all()
+
+
+def test_a_wrong_field_is_seen(contact):
+    found = contact[0]
+    at_a_point = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (X == 0.9)))[1]
+    at_a_depth = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (len(X) > 9)))[1]
+    assert at_a_point.min() >= 1e-7 and at_a_depth.min() >= 1e-6

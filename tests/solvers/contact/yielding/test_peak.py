@@ -1,0 +1,138 @@
+"""The largest stresses below a pressure, and how deep it makes the solid yield: Hertz's line contact."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.solution import Body
+from galinx.solvers.contact.stresses import von_mises
+from galinx.solvers.contact.yielding import Strength
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.solids import Isotropic
+
+SOLID = Isotropic(210e9, 0.3, 7850.0)
+AT_REST = SOLID.response(0.0)
+
+
+class Hertz:
+    """Φ of σ_YY = -√(1 - X²): z - √(z² - 1)."""
+
+    def at(self, z):
+        return z - np.sqrt(z - 1.0) * np.sqrt(z + 1.0)
+
+    def change(self, z, step, share):
+        assert share == 0.0
+        return step * (1.0 - z / (np.sqrt(z - 1.0) * np.sqrt(z + 1.0)))
+
+
+def hertz(g):
+    """Stresses of Hertz's pressure with σ_XY = g σ_YY at rest."""
+
+    def stresses(points):
+        X, Y = np.moveaxis(points, -1, 0)
+        σ_YY = -np.sqrt(np.maximum(1.0 - X**2, 0.0))
+        H = X - np.sign(X) * np.sqrt(np.maximum(X**2 - 1.0, 0.0))
+        on = [AT_REST.σ_XX(AT_REST.q * σ_YY + AT_REST.m * g * H, σ_YY, 0.0), σ_YY + 0.0 * g, g * σ_YY]
+        return np.where(Y == 0.0, on, AT_REST.inside(Hertz(), g, X, np.where(Y == 0.0, -1.0, Y)))
+
+    return stresses
+
+
+def of_pressure(pressure, g, strength=1.0, stresses=None):
+    """Yield below a pressure at rest; the strength is over N/(2a)."""
+    g = np.asarray(g, dtype=float)
+    exact = PrescribedPressureSolution(AT_REST, g[:, None], pressure)
+    body = Body(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
+    field = stresses or (lambda points: exact.stresses(points[..., 0], points[..., 1]))
+    return Strength(field, body, AT_REST, g, None)
+
+
+def linear(pieces):
+    X = -np.cos(np.pi * np.arange(pieces + 1) / pieces)
+    X[[0, -1]] = -1.0, 1.0
+    return LinearPressure(X, -np.sqrt(1.0 - X**2))
+
+
+def of_hertz(g, strength=1.0):
+    return of_pressure(linear(40), g, strength, hertz(np.asarray(g, dtype=float)[:, None]))
+
+
+def test_largest_stresses_below_a_line_contact_are_hertzs():
+    found = of_hertz([0.0])
+    np.testing.assert_allclose(found.von_mises.value, 0.557516, atol=1e-6)
+    np.testing.assert_allclose(found.shear.value, 0.300283, atol=1e-6)
+    np.testing.assert_allclose([found.von_mises.X[0], found.von_mises.Y[0]], [0.0, -0.704290], atol=2e-6)
+    np.testing.assert_allclose([found.shear.X[0], found.shear.Y[0]], [0.0, -0.786151], atol=2e-6)
+
+
+def test_first_yield_with_friction_comes_to_the_surface():
+    found = of_hertz([0.0, 0.1, 0.2, 0.3, 0.4, 0.5]).shear
+    np.testing.assert_allclose(1.0 / found.value, [3.330, 3.281, 3.135, 2.900, 2.500, 2.000], atol=1e-3)
+    assert (found.Y[:4] < -0.3).all() and (found.Y[4:] == 0.0).all()
+
+
+def test_a_fine_linear_pressure_is_hertzs():
+    found, exact = of_pressure(linear(60), [0.0, 0.3]), of_hertz([0.0, 0.3])
+    np.testing.assert_allclose(found.von_mises.value, exact.von_mises.value, rtol=1e-3)
+    np.testing.assert_allclose(found.shear.Y, exact.shear.Y, atol=2e-3)
+
+
+def test_the_load_at_first_yield_makes_the_largest_stress_the_strength():
+    found = of_hertz([0.0, 0.5], strength=0.8)
+    np.testing.assert_allclose(found.first_load, 2e6 * 0.8 / found.von_mises.value, rtol=1e-12)
+
+
+@pytest.mark.parametrize("strength", [0.5574, 0.4, 0.2])
+def test_without_friction_the_zone_is_deepest_in_the_middle(strength):
+    def over(Y):
+        σ = hertz(0.0)(np.array([0.0, Y]))
+        return von_mises(*σ, SOLID.σ_ZZ(*σ)) - strength
+
+    expected = -brentq(over, -8.0, -0.70429)
+    np.testing.assert_allclose(of_hertz([0.0], strength).depth, expected, rtol=1e-6)
+
+
+def test_with_friction_no_place_of_a_fine_grid_yields_deeper():
+    X, Y = np.meshgrid(np.linspace(-2.0, 2.0, 201), -np.linspace(2e-3, 4.0, 2000))
+    for g, strength in ((0.3, 0.4), (0.5, 0.9), (-0.5, 0.3)):
+        σ = hertz(g)(np.stack([X, Y], axis=-1))
+        expected = -Y[von_mises(*σ, SOLID.σ_ZZ(*σ)) >= strength].min()
+        np.testing.assert_allclose(of_hertz([g], strength).depth, expected, atol=2.2e-3)
+
+
+def test_what_no_solid_carries_has_no_depth():
+    assert np.isnan(of_hertz([0.0, 0.5], strength=1e-2).depth).all()
+
+
+def test_what_is_nowhere_reached_has_no_depth():
+    assert of_hertz([0.0, 0.5], strength=1.0).depth.tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("where, width", [(-0.9, 1e-3), (0.37, 1e-5)])
+def test_a_spike_is_found_however_narrow(where, width):
+    knots = np.array([-1.0, where - width, where, where + width, 1.0])
+    found = of_pressure(LinearPressure(knots, np.array([0.0, -0.1, -3.0, -0.1, 0.0])), [0.0, 0.2])
+    alone = LinearPressure(np.array([-1.0, 0.0, 1.0]), np.array([0.0, -2.9, 0.0]))
+    single = of_pressure(alone, [0.0, 0.2])
+    np.testing.assert_allclose(found.shear.value, single.shear.value, rtol=5e-2)
+    assert (np.abs(found.shear.X - where) <= 2.0 * width).all()
+    assert (-2.0 * width <= found.shear.Y).all()
+
+
+def test_a_jump_has_an_infinite_stress_with_friction_alone():
+    found = of_pressure(LinearPressure(np.array([-1.0, 1.0]), np.array([-1.0, -1.0])), [0.0, 0.3])
+    assert np.isfinite(found.von_mises.value).tolist() == [True, False]
+    assert found.first_load[0] > 0.0 and found.first_load[1] == 0.0
+    # A strip of even pressure: the largest shear is p/π, on the circle over it.
+    np.testing.assert_allclose(found.shear.value[0], 1.0 / np.pi, rtol=1e-6)
+    np.testing.assert_allclose(found.shear.X[0] ** 2 + found.shear.Y[0] ** 2, 1.0, rtol=1e-3)
+
+
+def test_an_island_on_another_side_is_found():
+    """Two bumps, of which the right one carries a little more."""
+    knots = np.array([-1.0, -0.8, -0.6, 0.5, 0.75, 1.0])
+    values = np.array([0.0, -1.0, 0.0, 0.0, -1.001, 0.0])
+    for flip in (1, -1):
+        pressure = LinearPressure(flip * knots[::flip], values[::flip])
+        assert flip * of_pressure(pressure, [0.0]).von_mises.X[0] > 0.5

@@ -41,7 +41,7 @@ class DolfinxSpace(Space):
     @cached_property
     def _pressures(self) -> Any:
         """Discontinuous pressures, two degrees below the displacement."""
-        return versions.function_space(self.mesh, versions.pressure_element(self.degree - 2))
+        return versions.space(self.mesh, versions.pressure_element(self.degree - 2))
 
     @cached_property
     def _plane(self) -> tuple[Any, Any]:
@@ -56,13 +56,13 @@ class DolfinxSpace(Space):
     @cached_property
     def _varying(self) -> list[Any]:
         """The weak form's constants where they change with depth: values at the points of quadrature."""
-        Q = versions.function_space(self.mesh, versions.quadrature_element(self._quadrature))
+        Q = versions.space(self.mesh, versions.quadrature_element(self._quadrature))
         return [fem.Function(Q) for _ in self.form.constants]
 
     @cached_property
     def _sizes(self) -> Any:
         """Sizes of cells, by which pressures are divided: small cells' weigh as much as large ones'."""
-        D = versions.function_space(self.mesh, versions.pressure_element(0))
+        D = versions.space(self.mesh, versions.pressure_element(0))
         sizes, corners = fem.Function(D), self._all_corners
         sizes.x.array[versions.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
         return sizes

@@ -477,7 +477,7 @@ def in_physical_plane(
     places[cells] = space.contracted(response).to_physical(image(vertices, nodes))
     mesh = versions.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
     values = displacement * _nodal(space, response, fields, weights)
-    V = versions.space(mesh, versions.vector_element(space.degree), {})
+    V = versions.space(mesh, versions.vector_element(space.degree))
     function = fem.Function(V, name="displacement")
     # dolfinx evaluates it at all nodes of one cell after the other.
     function.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)

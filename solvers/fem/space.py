@@ -26,7 +26,7 @@ from . import versions
 from .cells import Chart, Contracted, lagrange, model_cells
 from .element import CellMatrices
 from .forms import FORMS
-from .versions import compiling, create_mesh, tag_facets
+from .versions import create_mesh, tag_facets
 
 #: dolfinx numbers a quadrilateral's vertices row by row, others go round it.
 _ORDER = [0, 1, 3, 2]
@@ -240,7 +240,8 @@ class Space:
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        self.V = self._functions(versions.vector_element(degree))
+        with self.clock("forms"):
+            self.V = versions.space(mesh, versions.vector_element(degree), say)
         self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
@@ -308,13 +309,6 @@ class Space:
     def held_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns that a punch holds: v under it, and the far boundary."""
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
-
-    def _functions(self, element: Any) -> Any:
-        with self.clock("forms"):
-            if self.comm.allreduce(versions.is_compiled(element), MPI.LAND):
-                return versions.space(self.mesh, element, {})
-            with compiling(self.comm, repr(element), self._say) as options:
-                return versions.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""

@@ -377,48 +377,6 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     return np.concatenate(cell), np.concatenate(point)
 
 
-def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
-    """Nodal forces of a condensed field; collective.
-
-    Equal to the matrix times the field, but without the rounding of the cells' own motion.
-    """
-    result, numbers = field.duplicate(), space.outer_numbers
-    result.zeroEntries()
-    deformed = _deformed(space, [field])
-    for cells in space.pieces(len(numbers)):
-        condensed = space.condensed(response, cells)
-        for rows, S, u in zip(numbers[cells] // 2, condensed, deformed[cells]):
-            result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-    result.assemble()
-    return result
-
-
-def shapes(
-    space: Space, response: Response, fields: Sequence[PETSc.Vec], corrections: Sequence[PETSc.Vec]
-) -> NDArray[np.float64]:
-    """Values of fields plus corrections in all of this rank's cells, less those of a cell's first node.
-
-    Collective.
-
-    Returns:
-        Array (cells, nodes of a cell, 2, fields).
-    """
-    outer = _deformed(space, fields) + _deformed(space, corrections)
-    pieces = [space.extended(outer[:0], response, np.arange(0))]
-    numbers = np.arange(len(outer))
-    for cells in space.pieces(len(outer)):
-        pieces.append(space.extended(outer[cells], response, numbers[cells]))
-    return np.concatenate(pieces)
-
-
-def _deformed(space: Space, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
-    """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
-    outer = space.fetch(fields, space.outer_numbers)
-    displacement = outer[:, : len(space.kernel.outer)]
-    displacement -= displacement[:, :1].copy()
-    return outer
-
-
 def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
     """The part of a convex polygon with |X| <= extent and Y >= -extent.
 

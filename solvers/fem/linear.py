@@ -5,7 +5,7 @@ factor does not fit into memory, with the checks that PETSc leaves to its caller
 PETSc (:data:`METHODS`). :class:`ArraySolver` is the direct solver of a SciPy matrix on one rank.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 import numpy as np
@@ -161,31 +161,26 @@ class LinearSolver:
             "the Rayleigh speed"
         )
 
-    def solve(self, b: PETSc.Vec) -> PETSc.Vec:
-        """Solution of A x = b; see :meth:`solve_all`."""
-        return self.solve_all([b])[0]
+    def solve(self, b: NDArray, checked: bool = True) -> NDArray[np.float64]:
+        """Solutions at this rank's rows for right-hand sides there, (rows, n); a factor is read once for all.
 
-    def solve_all(self, loads: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
-        """Solutions of A x = b for several b at once, for which a factor is read once.
+        Args:
+            b: right-hand sides, (rows, n).
+            checked: measure what a factor leaves of them; the caller does so if not, by :meth:`check`.
 
         Raises:
             SolveError: a solution is not finite, or does not solve its system.
         """
-        b = np.column_stack([load.array_r for load in loads])
-        x = self.solve_columns(b)
-        self.check(b, x, b - times(self.A, x))
-        return [vector(self.A, column) for column in x.T]
+        x = self._solved(b)
+        if checked:
+            self.check(b, x, b - times(self.A, x))
+        return x
 
-    def solve_columns(self, b: NDArray) -> NDArray[np.float64]:
-        """Solutions at this rank's rows for right-hand sides there, (rows, n), not checked.
-
-        Raises:
-            SolveError: PETSc did not converge.
-        """
+    def _solved(self, b: NDArray) -> NDArray[np.float64]:
         self.solves += b.shape[1]
         with self._clock("back-substitutions" if self.direct else "multigrid solves"):
             if b.shape[1] == 1 or not self.direct:
-                return np.column_stack([self._solve(column) for column in b.T])
+                return np.column_stack([self._solve_one(column) for column in b.T])
             x = np.empty_like(b)
             count = max(_AT_ONCE // self.A.getSize()[0], 1)
             for start in range(0, b.shape[1], count):
@@ -197,7 +192,7 @@ class LinearSolver:
                 B.destroy(), X.destroy()
             return x
 
-    def _solve(self, load: NDArray) -> NDArray[np.float64]:
+    def _solve_one(self, load: NDArray) -> NDArray[np.float64]:
         b, x = vector(self.A, load), self.A.createVecRight()
         self._ksp.solve(b, x)
         reason, steps = self._ksp.getConvergedReason(), self._ksp.getIterationNumber()
@@ -318,7 +313,7 @@ class ArraySolver:
         Raises:
             SolveError: a solution does not solve its system.
         """
-        x = self._solver.solve_columns(b.reshape(len(b), -1)).reshape(b.shape)
+        x = self._solver.solve(b.reshape(len(b), -1), checked=False).reshape(b.shape)
         if np.any(b) and (b.ndim == 2 or not self._checked):
             residual = float(np.linalg.norm(self._A @ x - b) / np.linalg.norm(b))
             if not residual <= _RESIDUAL:

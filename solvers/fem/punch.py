@@ -33,7 +33,7 @@ from scipy.linalg import schur
 from ..approximation import barycentric
 from ..errors import SolveError
 from ..solids.solid import Response
-from .boundary import FarBoundary, forces_of_profile
+from .boundary import FarBoundary, held_forces
 from .linear import LinearSolver, times, vector
 from .space import Space
 
@@ -316,7 +316,7 @@ class SlidingPunch(Punch):
         self._far = times(A, moved)
         flat = np.full(len(nodes.s), -1.0)
         shapes = [flat, *([] if heights is None else np.atleast_2d(heights))]
-        shaped = [forces_of_profile(A, space, height) for height in shapes]
+        shaped = held_forces(A, space, nodes.dofs(1), np.array(shapes)[:, nodes.owned].T)
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
         rigid = None if solver == "direct" else space.rigid_motions(response)
@@ -362,38 +362,35 @@ class SlidingPunch(Punch):
         for held in (self.factor, self._boundary, *self._rows, *self.fields):
             held.destroy()
 
-    def _begin(self, shaped: list[PETSc.Vec], negligible: float) -> list[KrylovSpace]:
+    def _begin(self, shaped: NDArray, negligible: float) -> list[KrylovSpace]:
         """Krylov spaces of the flat punch at v = -1 and of each shape, without friction.
 
         The far boundary's fields are solved for with them.
 
         Args:
-            shaped: nodal forces of the held displacements; they are freed.
+            shaped: nodal forces of the held displacements, (rows, shapes).
             negligible: see the class.
         """
-        loads = [*self._boundary.loads, *shaped]
-        flat, b = len(loads) - len(shaped), np.column_stack([load.array_r for load in loads])
-        x = self._displacements(b)
-        self.factor.check(b, x, b - times(self.factor.A, x))
+        b = np.column_stack([self._boundary.loads, shaped])
+        flat, count = self._boundary.loads.shape[1], b.shape[1]
+        x = self._displacements(b, checked=True)
         before = self._reactions(x)
         # Under the flat punch all of the contact moves by the same distance, and no other load acts.
-        v = np.where(np.arange(len(loads)) == flat, -1.0, 0.0)
+        v = np.where(np.arange(count) == flat, -1.0, 0.0)
         b[:, flat] = 0.0
         # The far boundary's moments after the resultants have too little effect to be refined.
-        refined = [*range(min(flat, 2)), *range(flat, len(loads))]
+        refined = [*range(min(flat, 2)), *range(flat, count)]
         x[:, refined] += self._corrections(self._residuals(x[:, refined], b[:, refined], v[refined]))
         after = self._reactions(x)
         fields = [vector(self.factor.A, column) for column in x.T]
         if flat:
-            self._boundary.set_fields(fields[:flat])
             X = self.space.chart.surface_position(self.space.contact.s)
-            self._boundary.take(X, after[:flat])
+            self._boundary.take(fields[:flat], X, after[:flat])
         spaces = []
-        for load, field, rough, forces in zip(shaped, fields[flat:], before[flat:], after[flat:]):
+        for field, rough, forces in zip(fields[flat:], before[flat:], after[flat:]):
             change = np.linalg.norm(forces - rough) / np.linalg.norm(rough)
             forces = self._boundary.follow(forces, field)
             spaces.append(KrylovSpace(field, forces, bool(change > negligible), self._left))
-            load.destroy()
         return spaces
 
     def _contact_forces(
@@ -471,9 +468,9 @@ class SlidingPunch(Punch):
         b[nodes.dofs(0) - self._first] = forces[nodes.owned]
         return b
 
-    def _displacements(self, b: NDArray) -> NDArray[np.float64]:
+    def _displacements(self, b: NDArray, checked: bool = False) -> NDArray[np.float64]:
         """Displacements under nodal forces (rows, k), the effect of held displacements included."""
-        x, held = self.factor.solve_columns(b), self._held
+        x, held = self.factor.solve(b, checked), self._held
         x[held] = b[held]  # an iterative solver only comes near them
         return x
 
@@ -488,7 +485,7 @@ class SlidingPunch(Punch):
         left = np.any(residuals, axis=0)
         self.space.comm.Allreduce(MPI.IN_PLACE, left, MPI.LOR)
         if left.any():
-            x[:, left] = self.factor.solve_columns(residuals[:, left])
+            x[:, left] = self.factor.solve(residuals[:, left], checked=False)
         return x
 
     def _residuals(self, x: NDArray, b: NDArray, v: NDArray) -> NDArray[np.float64]:

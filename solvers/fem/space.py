@@ -5,7 +5,6 @@ it. It numbers nodes and facets on parts of the surface, and makes the nodal for
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -128,11 +127,7 @@ class SurfaceNodes:
 
     def dofs(self, component: int) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
-        return self._dofs[component]
-
-    @cached_property
-    def _dofs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        return self.numbers, self.numbers + 1
+        return np.asarray(self.numbers + np.int32(component))
 
 
 @dataclass(frozen=True)
@@ -236,7 +231,6 @@ class Space:
         self.terms = terms
         self.mixed = self.form.pressure
         self.clock, self._say = Clock() if clock is None else clock, say
-        self._kept: tuple[NDArray, ...] | None = None
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
@@ -367,7 +361,7 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        E = self._kept[1][cells] if self._kept else self._cells(self.kernel.extend, response, cells)
+        E = self._cells(self.kernel.extend, response, cells)
         kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
@@ -411,20 +405,6 @@ class Space:
         cells = self._range[1] - 2 * len(nodes) + 2 * np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
-    @contextmanager
-    def keeping(self, response: Response) -> Iterator[None]:
-        """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        chunks = list(self.pieces(len(self.outer_numbers))) or [slice(0, 0)]
-        with self.clock("assembly"):
-            self._kept = tuple(
-                np.concatenate([self._cells(part, response, cells) for cells in chunks])
-                for part in (self.kernel.condense, self.kernel.extend)
-            )
-        try:
-            yield
-        finally:
-            self._kept = None
-
     def pieces(self, count: int) -> Iterator[slice]:
         """Slices of ``count`` cells, each to be treated at once."""
         step = self.kernel.at_once
@@ -432,7 +412,7 @@ class Space:
 
     def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
-        return self._kept[0][cells] if self._kept else self._cells(self.kernel.condense, response, cells)
+        return self._cells(self.kernel.condense, response, cells)
 
     def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
         corners = self.vertices[cells]

@@ -4,10 +4,6 @@ On the surface Y = 0 displacements are piecewise polynomials, gathered from all 
 of combinations of fields are evaluated at any points: inner unknowns were condensed, and are recovered
 for the cells that hold a point, and for no other.
 
-All of the half-plane moves with a load, and near the end of a load cells are a billionth of that motion:
-in their displacement the deformation has lost its digits. A field and a small correction together hold
-it, if they are added only after each cell's own motion was subtracted (:func:`shapes`).
-
 For a picture of the solid a combination of condensed fields is sampled over whole cells
 (:class:`SampledField`). Cells of high degree are cut into small quadrilaterals, polygons along the sides
 of a box. Each cell has points of its own, since stresses jump from cell to cell.
@@ -18,8 +14,7 @@ every cell is curved as the chart bends it, by polynomials of the degree of the 
 values stay the same.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from copy import copy
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -136,7 +131,7 @@ _SLACK = 1e-9
 TOGETHER = 20_000
 
 
-#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields). Collective.
 Values = Callable[[NDArray[np.int64]], NDArray]
 
 
@@ -150,13 +145,13 @@ class KeptValues:
     """
 
     def __init__(self, space: Space, response: Response, fields: Sequence[PETSc.Vec]) -> None:
-        self._new = lambda cells: space.cell_values(fields, response, cells)
+        self._compute = lambda cells: space.cell_values(fields, response, cells)
         self._kept: dict[int, NDArray] = {}
 
     def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
         """Values at all nodes of cells, (cells, nodes, 2, fields). Collective."""
         new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
-        values = self._new(new)
+        values = self._compute(new)
         self._kept |= dict(zip(new.tolist(), values))
         u = np.empty((len(cells), *values.shape[1:]))
         for i, cell in enumerate(cells.tolist()):
@@ -172,9 +167,8 @@ class InteriorGradients:
     Args:
         space: the finite element space.
         response: that the fields are solutions for.
-        fields: displacements over N/(2μ), condensed.
+        values: of the fields in cells, over N/(2μ), such as :class:`KeptValues`.
         points: positions over a with Y <= 0, (n, 2).
-        values: of the fields in cells, as of :class:`KeptValues`; computed anew if not given.
         side: 1 for the solid above an interface at its points, -1 for that below.
 
     Raises:
@@ -182,27 +176,28 @@ class InteriorGradients:
     """
 
     def __init__(
-        self,
-        space: Space,
-        response: Response,
-        fields: Sequence[PETSc.Vec],
-        points: NDArray,
-        values: Values | None = None,
-        side: int = 1,
+        self, space: Space, response: Response, values: Values, points: NDArray, side: int = 1
     ) -> None:
-        values = values or (lambda cells: space.cell_values(fields, response, cells))
-        self._count, self._fields = len(points), len(fields)
+        self._count = len(points)
         self._batches = [
             _Batch(space, response, points[first : first + TOGETHER], side)
             for first in range(0, max(len(points), 1), TOGETHER)
         ]
-        cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
-        self._nodal = _Nodal(space, cells, values(cells))
+        self._cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
+        grid, self._nodes = tensor_order(space.reference_nodes)
+        #: At the nodes of these cells, (cells, p+1, p+1, 2, fields).
+        self._values = values(self._cells)[:, grid]
         #: Gradients of all fields, where one batch has all points.
         self._basis: NDArray[np.float64] | None = None
         if len(self._batches) == 1:
-            self._basis = self._batches[0].gradients(self._nodal)
-            self._nodal = self._nodal.combined(np.empty((0, 0)))  # no longer needed
+            self._basis = self._gradients(self._batches[0], self._values)
+            self._values = self._values[:0].copy()  # no longer needed
+
+    def of_fields(self) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields), the same on every rank."""
+        if self._basis is not None:
+            return self._basis
+        return np.concatenate([self._gradients(batch, self._values) for batch in self._batches])
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
@@ -216,11 +211,11 @@ class InteriorGradients:
         states, fields = weights.shape
         for i, batch in enumerate(self._batches):
             batch_points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
-            if self._basis is None and states < self._fields:
-                combined = batch.gradients(self._nodal.combined(weights))
+            if self._basis is None and states < self._values.shape[-1]:
+                combined = self._gradients(batch, self._values[..., :fields] @ weights.T)
                 yield batch_points, np.moveaxis(combined, -1, 0)
             else:
-                basis = batch.gradients(self._nodal) if self._basis is None else self._basis
+                basis = self._gradients(batch, self._values) if self._basis is None else self._basis
                 yield batch_points, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
 
     def of_each(self, weights: NDArray) -> NDArray[np.float64]:
@@ -233,58 +228,14 @@ class InteriorGradients:
         Returns:
             Array (states, n/states, 2, 2).
         """
-        basis = self._basis
-        if basis is None:
-            basis = np.concatenate([batch.gradients(self._nodal) for batch in self._batches])
         states, fields = weights.shape
-        each = basis[..., :fields].reshape(states, -1, 2, 2, fields)
+        each = self.of_fields()[..., :fields].reshape(states, -1, 2, 2, fields)
         return np.einsum("snijf,sf->snij", each, weights)
 
-
-def gradients_at(
-    space: Space, response: Response, points: NDArray, values: Values
-) -> NDArray[np.float64]:
-    """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
-
-    Args:
-        space: the finite element space.
-        response: that the fields are solutions for.
-        points: with Y <= 0, (n, 2).
-        values: of the fields in cells.
-
-    Raises:
-        MeshError: a point lies outside the mesh.
-    """
-    batch = _Batch(space, response, points)
-    return batch.gradients(_Nodal(space, batch.cells, values(batch.cells)))
-
-
-class _Nodal:
-    """Values of fields at the nodes of some cells.
-
-    Args:
-        space: the finite element space.
-        cells: numbers of this rank's cells, sorted, (m,).
-        values: at their local nodes, (m, nodes, 2, fields).
-
-    Attributes:
-        nodes: places of the nodes along a side of the unit square, (p+1,).
-        values: (m, p+1, p+1, 2, fields).
-    """
-
-    def __init__(self, space: Space, cells: NDArray[np.int64], values: NDArray) -> None:
-        grid, self.nodes = tensor_order(space.reference_nodes)
-        self.cells, self.values = cells, values[:, grid]
-
-    def combined(self, weights: NDArray) -> "_Nodal":
-        """Combinations of the fields with weights (states, fields) as fields."""
-        other = copy(self)
-        other.values = self.values[..., : weights.shape[1]] @ weights.T
-        return other
-
-    def of(self, cell: int) -> NDArray[np.float64]:
-        """Values at the nodes of one of the cells, (p+1, p+1, 2, fields)."""
-        return self.values[np.searchsorted(self.cells, cell)]
+    def _gradients(self, batch: "_Batch", values: NDArray) -> NDArray[np.float64]:
+        """Gradients of fields at a batch's points, from their values at the nodes of all cells."""
+        of_batch = np.searchsorted(self._cells, batch.cells)
+        return batch.gradients(self._nodes, (values[i] for i in of_batch), values.shape[-1])
 
 
 class _Batch:
@@ -303,64 +254,51 @@ class _Batch:
         MeshError: a point lies outside the mesh.
     """
 
-    def __init__(self, space: Space, response: Response, points: NDArray, side: int = 1) -> None:
+    def __init__(self, space: Space, response: Response, points: NDArray, side: int) -> None:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
-        held = _locate(self._vertices, self._chart.from_physical(points))
+        cell, point, t = _located(self._vertices, self._chart.from_physical(points))
+        order = np.argsort(cell, kind="stable")
         if isinstance(response, ByCells):
             of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
             of_points = response.solids(points[:, 1], side)
-            held = held.select(of_cells[held.cell] == of_points[held.point])
-        order = np.argsort(held.cell, kind="stable")
-        self._point, self._t = held.point[order].astype(np.int32), held.t[order]
-        self.cells, self._first = np.unique(held.cell[order], return_index=True)
-        count = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
+            order = order[(of_cells[cell] == of_points[point])[order]]
+        self._point, self._t = point[order].astype(np.int32), t[order]
+        self.cells, self._first = np.unique(cell[order], return_index=True)
+        count = self._comm.allreduce(np.bincount(self._point, minlength=len(points)))
         if not count.all():
             X, Y = points[np.argmin(count)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
         #: How many cells hold a point, which are many on a border only.
-        self._found = count.astype(np.int16)
+        self._sharing = count.astype(np.int16)
 
-    def gradients(self, nodal: _Nodal) -> NDArray[np.float64]:
-        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective."""
-        result = np.zeros((len(self._points), 2, 2, nodal.values.shape[-1]))
+    def gradients(
+        self, nodes: NDArray, values: Iterable[NDArray], fields: int
+    ) -> NDArray[np.float64]:
+        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective.
+
+        Args:
+            nodes: places along a side of the unit square, (p+1,).
+            values: at the nodes of each of the cells, (p+1, p+1, 2, fields).
+            fields: number of fields.
+        """
+        result = np.zeros((len(self._points), 2, 2, fields))
         ends = np.append(self._first[1:], len(self._point))
-        for cell, first, end in zip(self.cells, self._first, ends):
+        for cell, first, end, u in zip(self.cells, self._first, ends, values):
             # A cell holds a point once.
-            result[self._point[first:end]] += gradients_in_plane(
-                self._vertices[cell], nodal.nodes, self._t[first:end], nodal.of(cell)
-            )
+            t = self._t[first:end]
+            result[self._point[first:end]] += gradients_in_plane(self._vertices[cell], nodes, t, u)
         # On the border between cells the gradient jumps; the mean of both is taken.
-        result = self._comm.allreduce(result) / self._found[:, None, None, None]
+        result = self._comm.allreduce(result) / self._sharing[:, None, None, None]
         return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
 
 
-@dataclass(frozen=True)
-class _Held:
-    """Pairs of a point and a cell of this rank that holds it.
+def _located(vertices: NDArray, x: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Pairs of a cell and a point of the chart that it holds, and the point's place in the unit square.
 
-    Attributes:
-        point, cell: their numbers, (n,).
-        t: place of the point in the cell's unit square, (n, 2).
+    Returns:
+        Numbers of cells (m,) and points (m,), places (m, 2).
     """
-
-    point: NDArray[np.int64]
-    cell: NDArray[np.int64]
-    t: NDArray[np.float64]
-
-    def select(self, which: NDArray) -> "_Held":
-        """The pairs with these numbers, or where a mask is true."""
-        return _Held(self.point[which], self.cell[which], self.t[which])
-
-
-def _locate(vertices: NDArray, x: NDArray) -> _Held:
-    cell, point = _near(vertices, x)
-    t = pull_back(vertices[cell], x[point])
-    return _Held(point, cell, t).select(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
-
-
-def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of a cell and a point within the smallest box around it."""
     low, high = vertices.min(axis=1), vertices.max(axis=1)
     slack = _SLACK * (high - low)
     low, high = low - slack, high + slack
@@ -368,13 +306,15 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     along, across = x[order].T
     first = np.searchsorted(along, low[:, 0], side="left")
     last = np.searchsorted(along, high[:, 0], side="right")
-    cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    for i in np.flatnonzero(first < last):
+    near = [np.empty((2, 0), dtype=np.int64)]
+    for i in np.flatnonzero(first < last):  # points in the smallest box around the cell
         candidates = slice(first[i], last[i])
         inside = order[candidates][(low[i, 1] <= across[candidates]) & (across[candidates] <= high[i, 1])]
-        cell.append(np.full(len(inside), i))
-        point.append(inside)
-    return np.concatenate(cell), np.concatenate(point)
+        near.append(np.stack([np.full(len(inside), i), inside]))
+    cell, point = np.concatenate(near, axis=1)
+    t = pull_back(vertices[cell], x[point])
+    held = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
+    return cell[held], point[held], t[held]
 
 
 def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
@@ -429,40 +369,33 @@ def in_physical_plane(
     Returns:
         A dolfinx ``Function`` of two components, named displacement; its space and mesh come with it.
     """
-    vertices, nodes = space.vertices[..., :2], _evenly(space.reference_nodes)
+    vertices, reference = space.vertices[..., :2], space.reference_nodes
+    _, side = tensor_order(reference)
+    # Spaced evenly as in all versions of dolfinx's own cells.
+    nodes = np.abs(reference[..., None] - side).argmin(axis=-1) / (len(side) - 1.0)
     cells = versions.cell_nodes(space.V)
     places = np.empty((cells.max() + 1, 2))
     places[cells] = space.contracted(response).to_physical(image(vertices, nodes))
     mesh = versions.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
-    values = displacement * _nodal(space, response, fields, weights)
-    V = versions.space(mesh, versions.vector_element(space.degree))
-    function = fem.Function(V, name="displacement")
+    field, numbers = _combination(fields, weights), np.arange(len(vertices))
+    values = displacement * np.concatenate([
+        space.cell_values([field], response, numbers[piece])[..., 0]
+        for piece in space.pieces(len(numbers))
+    ])  # fmt: skip
+    field.destroy()
+    function = fem.Function(versions.space(mesh, versions.vector_element(space.degree)), name="displacement")
     # dolfinx evaluates it at all nodes of one cell after the other.
     function.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
     function.x.scatter_forward()
     return function
 
 
-def _evenly(reference: NDArray) -> NDArray[np.float64]:
-    """Places of a cell's nodes, spaced evenly as in all versions of dolfinx's own cells, (nodes, 2)."""
-    _, side = tensor_order(reference)
-    return np.abs(reference[..., None] - side).argmin(axis=-1) / (len(side) - 1.0)
-
-
-def _nodal(
-    space: Space, response: Response, fields: Sequence[PETSc.Vec], weights: NDArray
-) -> NDArray[np.float64]:
-    """Values of a combination of fields at the nodes of every cell, (cells, nodes, 2)."""
+def _combination(fields: Sequence[PETSc.Vec], weights: NDArray) -> PETSc.Vec:
+    """Sum of the first of the fields, or of all, with weights (fields,)."""
     field = fields[0].duplicate()
     field.zeroEntries()
     field.maxpy(weights.tolist(), list(fields[: len(weights)]))
-    numbers = np.arange(len(space.vertices))
-    values = [
-        space.cell_values([field], response, numbers[cells])[..., 0]
-        for cells in space.pieces(len(numbers))
-    ]
-    field.destroy()
-    return np.concatenate(values)
+    return field
 
 
 #: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
@@ -519,9 +452,7 @@ def sample(
     touched = np.all((low < extent) & (high > -extent), axis=2)
     whole = np.all((low >= -extent) & (high <= extent), axis=2)
     cells = np.flatnonzero(touched.any(axis=1))
-    field = fields[0].duplicate()
-    field.zeroEntries()
-    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
+    field = _combination(fields, weights)
     grid, nodes = tensor_order(space.reference_nodes)
     pieces = []
     for piece in space.pieces(space.comm.allreduce(len(cells), MPI.MAX)):

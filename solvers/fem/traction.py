@@ -5,8 +5,9 @@ two linear loads of an interval, from which the field of any pressure that is li
 summed (:class:`Pieces`). The half-plane has no length of its own, so the interval is [-1, 1] and one mesh
 serves pieces of every width. No kink of the pressure lies inside a cell, however narrow the piece is.
 
-Displacements are known relative to each cell's own place, to the last digits of how the cell deforms:
-next to an end of the interval a cell is a billionth of the distance that all of it moves.
+All of the half-plane moves with a load, and next to an end of the interval a cell is a billionth of that
+motion: in its displacement the deformation has lost its digits. A field and a small correction together
+hold it, if they are added only after each cell's own motion was subtracted.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from petsc4py import PETSc
 from ..rays import NEAR, rays
 from ..solids.solid import Response
 from .boundary import FarBoundary
-from .fields import gradients_at
+from .fields import InteriorGradients
 from .linear import LinearSolver, vector
 from .space import Space, Traction
 
@@ -155,7 +156,8 @@ class LinearLoads:
         Raises:
             MeshError: a point lies outside the mesh.
         """
-        return gradients_at(self.space, self.response, points, lambda cells: self._shapes[cells])
+        values = self._shapes.__getitem__
+        return InteriorGradients(self.space, self.response, values, points).of_fields()
 
 
 #: Pieces that meet have at most this ratio of widths, so that both meshes resolve what cancels there.

@@ -7,6 +7,7 @@ PETSc (:data:`METHODS`). :class:`ArraySolver` is the direct solver of a SciPy ma
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -26,10 +27,14 @@ PREFIX = "galinx_"
 TOLERANCE = 1e-10
 LIMIT = 1000
 
-#: In the plane the last front is too small to be spread over all ranks (ICNTL(13)), and approximate minimum
-#: degree leaves less fill than what MUMPS chooses without libraries for graphs, a tenth (ICNTL(7)).
-_MUMPS = {"ksp_type": "preonly", "pc_factor_mat_solver_type": "mumps", "mat_mumps_icntl_13": 1,
-          "mat_mumps_icntl_7": 6}
+#: In the plane the last front is too small to be spread over all ranks (ICNTL(13)). Approximate minimum
+#: degree leaves a tenth less fill than what MUMPS chooses without libraries for graphs (ICNTL(7)).
+_MUMPS = {
+    "ksp_type": "preonly",
+    "pc_factor_mat_solver_type": "mumps",
+    "mat_mumps_icntl_13": 1,
+    "mat_mumps_icntl_7": 6,
+}
 _GRADIENTS = {
     "ksp_type": "cg", "ksp_norm_type": "unpreconditioned", "ksp_rtol": TOLERANCE, "ksp_max_it": LIMIT,
 }  # fmt: skip
@@ -94,7 +99,7 @@ class LinearSolver:
         clock: takes the time of set-up and solves.
         method: a name of :data:`METHODS`, or ``"multigrid"`` for the best that PETSc has.
         definite: a symmetric matrix is positive definite, so that Cholesky's method needs no pivots.
-        rigid: the three rigid motions at this rank's rows, (rows, 3), which multigrid needs.
+        rigid: the three rigid motions at this rank's rows, (rows, 3); a factor needs none.
 
     Attributes:
         direct: True where a factor is kept.
@@ -120,7 +125,7 @@ class LinearSolver:
         if chosen != "unsymmetric":
             A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
             A.setOption(PETSc.Mat.Option.SPD, definite)
-        if rigid is not None:
+        if rigid is not None and not self.direct:
             A.setNearNullSpace(_orthonormal(A, rigid))
         self.A, self.solves, self.iterations = A, 0, 0
         self.condition, self.largest_residual = 0.0, 0.0
@@ -147,25 +152,25 @@ class LinearSolver:
                 self._ksp.setUp()
             except PETSc.Error as error:
                 raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
-        self._mumps = self._ksp.getPC().getFactorMatrix() if self.direct else None
+        self._mumps: Any = self._ksp.getPC().getFactorMatrix() if self.direct else None
 
     def _reason(self, status: int) -> str:
         if status in _MEMORY + _TOO_SMALL:
             largest, total = (self._mumps.getMumpsInfog(i) for i in (16, 17))
             return (
-                f"ran out of memory (MUMPS's status {status}); it needs {largest} MB a rank, {total} MB in "
-                "all: use more ranks, a larger tolerance, or more memory"
+                f"ran out of memory (MUMPS's status {status}); it needs {largest} MB a rank, {total} MB "
+                "in all: use more ranks, a larger tolerance, or more memory"
             )
         return (
-            f"failed (MUMPS's status {status}): the matrix is singular or not positive definite, as above "
-            "the Rayleigh speed"
+            f"failed (MUMPS's status {status}): the matrix is singular or not positive definite, as "
+            "above the Rayleigh speed"
         )
 
     def solve(self, b: NDArray, checked: bool = True) -> NDArray[np.float64]:
-        """Solutions at this rank's rows for right-hand sides there, (rows, n); a factor is read once for all.
+        """Solutions at this rank's rows, (rows, n); a factor is read once for all right-hand sides.
 
         Args:
-            b: right-hand sides, (rows, n).
+            b: right-hand sides at this rank's rows, (rows, n).
             checked: measure what a factor leaves of them; the caller does so if not, by :meth:`check`.
 
         Raises:

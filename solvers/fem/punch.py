@@ -51,7 +51,7 @@ class KrylovSpace:
     """The space that holds the contact forces of every friction.
 
     It grows by what is left of the equations at the worst friction. That is Arnoldi's method, but for
-    rounding: loads are applied one after the other by unrefined solutions, and these are refined together.
+    rounding: loads are applied one after the other by rough solutions, and these are refined together.
     What is left then is as small as the changes, and another few loads take it away.
 
     Args:
@@ -135,7 +135,7 @@ class KrylovSpace:
         """Coefficients y of R = V y for every g, and what is left of (I - g T) R = R₀ over R.
 
         Returns:
-            Coefficients (states, m), orthonormal directions (n, k), and residuals along them, (k, states).
+            Coefficients (states, m), orthonormal directions (n, k), residuals along them (k, states).
         """
         m = self.applied
         V, W = self._V[:, :m], self.forces[1:, 1].T
@@ -306,12 +306,11 @@ class SlidingPunch(Punch):
             A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=comm)) for i in (0, 1)
         ]
         self._first = A.getOwnershipRange()[0]
+        rigid = space.rigid_motions(response)
         #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
-        self._motions = np.zeros((A.getLocalSize()[0], 2))
-        moved = np.zeros_like(self._motions)
-        for i in (0, 1):
-            self._motions[space.node_dofs[i::2] - self._first, i] = 1.0
-            moved[space.numbers[space.far_nodes] + i - self._first, i] = 1.0
+        self._motions, moved = rigid[:, :2], np.zeros((len(rigid), 2))
+        far = space.far_dofs - self._first
+        moved[far] = self._motions[far]
         #: Forces that a motion of the far boundary alone causes, (rows, 2).
         self._far = times(A, moved)
         flat = np.full(len(nodes.s), -1.0)
@@ -319,7 +318,6 @@ class SlidingPunch(Punch):
         shaped = held_forces(A, space, nodes.dofs(1), np.array(shapes)[:, nodes.owned].T)
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
-        rigid = None if solver == "direct" else space.rigid_motions(response)
         self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
         self._nodal: tuple[NDArray, NDArray] | None = None
         #: Krylov spaces of the flat punch, and of each shape.
@@ -444,7 +442,7 @@ class SlidingPunch(Punch):
             space.refines, space.left = False, max(space.left, _BROUGHT_BACK)
 
     def _answers(self, loads: NDArray, refines: bool, x: NDArray) -> NDArray[np.float64]:
-        """Displacements x (rows, k) under tangential loads (n, k), checked, and refined if that is needed."""
+        """Displacements x (rows, k) under tangential loads (n, k), checked and refined if needed."""
         b = self._tangential(loads)
         residuals = self._residuals(x, b, np.zeros(b.shape[1]))
         self.factor.check(b, x, residuals)

@@ -260,7 +260,7 @@ class Space:
     @cached_property
     def contact(self) -> SurfaceNodes:
         """Nodes under the punch, both edges included."""
-        blocks = self._owned_blocks("contact")
+        blocks = self.nodes_on("contact")
         s = self.chart.along_surface(self.coordinates[blocks])
         parts = self.comm.allgather(s)
         everyone = np.concatenate(parts)
@@ -268,12 +268,6 @@ class Space:
         start = sum(len(part) for part in parts[: self.comm.rank])
         owned = rank_of[start : start + len(s)]
         return SurfaceNodes(np.sort(everyone), owned, self.numbers[blocks])
-
-    @cached_property
-    def node_dofs(self) -> NDArray[np.int32]:
-        """Global numbers of the owned displacements, node by node, without those inside cells."""
-        first, nodes = self._range[0], self._owned_nodes
-        return np.arange(first, first + 2 * len(nodes), dtype=np.int32)
 
     def contracted(self, response: Response) -> Contracted:
         """The chart as the plane is contracted at a response's speed."""
@@ -291,7 +285,7 @@ class Space:
     @cached_property
     def far_nodes(self) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on the far boundary."""
-        return self._owned_blocks("far")
+        return self.nodes_on("far")
 
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
@@ -458,10 +452,6 @@ class Space:
         A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
         return A
 
-    def nodes_on(self, part: str) -> NDArray[np.int32]:
-        """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
-        return self._owned_blocks(part)
-
     def densities(self, response: Response, corners: NDArray) -> NDArray[np.float64]:
         """The form at unit gradients: one for all cells, for each cell, or for each point of quadrature.
 
@@ -482,7 +472,8 @@ class Space:
             H[cells] = np.einsum("myxn,nij->mijyx", basis, by_solid[i], optimize=True)
         return H
 
-    def _owned_blocks(self, part: str) -> NDArray[np.int32]:
+    def nodes_on(self, part: str) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on a part of the boundary."""
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])
         return blocks[blocks < self.V.dofmap.index_map.size_local]
 

@@ -2,9 +2,10 @@
 
 Nothing else in the program depends on the version of dolfinx.
 
-FFCx compiles forms and elements into a folder of this run's own. When all is well the folder gets a digest
-and, by being renamed, the place where every run looks for the form. dolfinx's own cache would wait for what
-a killed run left, and load what was damaged since, which could end the program or change its numbers.
+FFCx compiles forms and elements into a folder of this run's own. When all is well the folder gets a
+digest and, by being renamed, the place where every run looks for the form. dolfinx's own cache would wait
+for what a killed run left, and load what was damaged since, which could end the program or change its
+numbers.
 """
 
 import hashlib
@@ -146,10 +147,6 @@ def _table(adjacency: Any, width: int) -> NDArray[np.int32]:
     return np.reshape(getattr(adjacency, "array", adjacency), (-1, width))
 
 
-#: The file with the digest of all others in its folder.
-_DIGEST = "digest"
-
-
 @contextmanager
 def compiling(
     comm: MPI.Comm, what: str, say: Callable[[str], None] = lambda _: None
@@ -164,80 +161,60 @@ def compiling(
     Raises:
         CompilerError: the form could not be compiled; the message says why.
     """
-    own = kept = _cache() / _key(what)
+    own = kept = _place(what)
     try:
         if comm.rank == 0 and not _is_whole(kept):
             if os.path.lexists(kept):
                 say(f"the compiled form in {kept} is damaged; it is compiled again")
-            own = _folder_beside(kept)
+            own = kept.with_suffix(f".{secrets.token_hex(4)}")
+            own.mkdir(parents=True)
         own = comm.bcast(own)
         yield {"cache_dir": str(own)}
         comm.barrier()  # the folder is renamed when all ranks have loaded what is in it
         if comm.rank == 0 and own != kept:
-            _keep(own, kept)
-    except CompilerError:
-        raise
+            with suppress(OSError):  # a file system that refuses is no fault
+                files.write(own / "digest", _digest(own, kept.name))
+                if not _is_whole(kept):  # there may be another's by now
+                    shutil.rmtree(kept) if kept.is_dir() else kept.unlink(missing_ok=True)
+                    own.rename(kept)
     except Exception as error:
-        raise CompilerError(f"compiling a form failed: {_why(error)}") from error
+        raise CompilerError(_why(error, kept.parent)) from error
     finally:
         if comm.rank == 0 and own != kept:
             shutil.rmtree(own, ignore_errors=True)
 
 
-def _key(what: str) -> str:
-    """Hash of everything that a form's code depends on, 24 digits."""
+def _place(what: str) -> Path:
+    """Folder of a compiled form in the cache, by all that its code depends on."""
     python = [sysconfig.get_config_var(name) for name in ("SOABI", "CFLAGS")]
-    description = repr([what, ffcx.__version__, dolfinx.__version__, *python])
-    return hashlib.sha256(description.encode()).hexdigest()[:24]
-
-
-def _folder_beside(kept: Path) -> Path:
-    """A new folder of this run's own in the cache."""
-    own = kept.with_suffix(f".{secrets.token_hex(4)}")
-    try:
-        own.mkdir(parents=True)
-    except OSError as error:
-        raise CompilerError(
-            f"the cache of compiled forms {kept.parent} cannot be written ({error.strerror}); "
-            "name another folder in the variable XDG_CACHE_HOME"
-        ) from error
-    return own
+    key = repr([what, ffcx.__version__, dolfinx.__version__, *python])
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"
+    return cache / hashlib.sha256(key.encode()).hexdigest()[:24]
 
 
 def _is_whole(kept: Path) -> bool:
     """Return True if the folder of a form is there, unchanged since it was compiled."""
     try:
-        return files.read(kept / _DIGEST, 100) == _digest(kept, kept.name)
+        return files.read(kept / "digest", 100) == _digest(kept, kept.name)
     except OSError:
         return False
 
 
 def _digest(folder: Path, name: str) -> bytes:
-    """Digest of all files in a folder, and of the name that the folder has or will have."""
+    """Digest of all files in a folder but its own, and of the name that the folder has or will have."""
     digest = hashlib.sha256(name.encode())
-    for path in sorted(folder.iterdir()):
-        if path.name != _DIGEST:
-            content = hashlib.sha256(files.read(path)).hexdigest()
-            digest.update(f"{path.name} {content} ".encode(errors="surrogateescape"))
+    for path in sorted(path for path in folder.iterdir() if path.name != "digest"):
+        content = hashlib.sha256(files.read(path)).hexdigest()
+        digest.update(f"{path.name} {content} ".encode(errors="surrogateescape"))
     return digest.hexdigest().encode()
 
 
-def _keep(own: Path, kept: Path) -> None:
-    """Move a compiled form to its place in the cache; a file system that refuses is no fault."""
-    with suppress(OSError):
-        files.write(own / _DIGEST, _digest(own, kept.name))
-        if not _is_whole(kept):  # there may be another's by now
-            shutil.rmtree(kept, ignore_errors=True) if kept.is_dir() else kept.unlink(missing_ok=True)
-            own.rename(kept)
-
-
-def _why(error: Exception) -> str:
+def _why(error: Exception, cache: Path) -> str:
     compiler = (sysconfig.get_config_var("CC") or "cc").split()[0]
-    if shutil.which(compiler) is None:
-        return f"there is no C compiler, expected {compiler}; install gcc and libc6-dev"
-    return f"{error}"
-
-
-def _cache() -> Path:
-    """Folder of compiled forms."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"
+    if isinstance(error, OSError) and not os.access(cache, os.W_OK):
+        return (
+            f"the cache of compiled forms {cache} cannot be written ({error.strerror}); name another "
+            "folder in the variable XDG_CACHE_HOME"
+        )
+    missing = f"there is no C compiler, expected {compiler}; install gcc and libc6-dev"
+    return f"compiling a form failed: {error if shutil.which(compiler) else missing}"

@@ -8,7 +8,8 @@ from support import areas, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.fields import InteriorGradients, KeptValues, sample
+from galinx.solvers.fem.export import sample
+from galinx.solvers.fem.fields import InteriorGradients, KeptValues
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 

@@ -184,7 +184,9 @@ class PunchLevel:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
 
         In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
-        under a flat punch all the same.
+        under a flat punch all the same. Stresses are relative to those of the states themselves: beside
+        a flat punch's sharp edges they are large, beside free ends they are not, and their rounding is
+        as large.
         """
         if not self.task.response.mirrored:
             states = self.punch.states(g, flat=True)
@@ -193,16 +195,21 @@ class PunchLevel:
             # Over layers they differ, and what a solve leaves of its forces stands for rounding.
             layered = self.task.body.layered
             of_edges = self.factor.largest_residual if layered else np.abs(K_left / K_right - 1.0).max()
-            stresses = self._gauges.rounding(g, states.weights, pressure.σ_YY(self.task.places.X))
+            stresses = self._gauges.rounding(g, *self._on_surface(g))
             return [float(of_edges), *stresses]
-        both = []
+        both, size = [], self._gauges.size(g, *self._on_surface(g))
         for sign in (1.0, -1.0):
             states = self.punch.states(sign * g, flat=True)
             pressure = self.pressure(states)
             σ_YY = pressure.σ_YY(self.task.places.X)
-            gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY)
+            gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY, size)
             both.append([error.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
         return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
+
+    def _on_surface(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Weights (states, fields) of states, and their σ_YY on the surface, (states, n)."""
+        states = self.contact(g)
+        return states.weights, self.pressure(states).σ_YY(self.task.places.X)
 
     def release(self) -> None:
         self.punch.release()
@@ -447,6 +454,10 @@ class FreeLevel(PunchLevel):
     def _over_flat(self, part: Part, local: EdgeExponents) -> JacobiPressure:
         """Pressure of a part over a flat punch's weight."""
         return from_moments(part.tested(self.recovery.moments), local.α, local.β)
+
+    def _on_surface(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        states = self.states(g)
+        return states.contact.weights, states.pressure.σ_YY(self.task.places.X)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         states = self.states(g, load)

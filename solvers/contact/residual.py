@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.potentials import DATUM
+from ..solids.half_plane import DATUM
 from ..solids.solid import Response
 from .closed_form import Weighted
 
@@ -154,7 +154,7 @@ def of_contact(
 
 
 class _LineLoads:
-    """Φ of line loads on the surface, see :class:`galinx.solvers.solids.solid.Potential`.
+    """Φ of line loads on the surface, see :class:`galinx.solvers.solids.half_plane.Potential`.
 
     Args:
         t: positions, (n,).

@@ -20,7 +20,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from ..solids.solid import Far, Response
+from ..solids.solid import Response
 from .linear import times
 from .space import Space
 
@@ -66,7 +66,6 @@ class FarBoundary:
         self.fields: list[PETSc.Vec] = []
         moved = np.empty((2 * len(space.far_nodes), 0))
         if space.terms:
-            assert isinstance(response, Far)
             X, Y = space.contracted(response).to_physical(space.coordinates[space.far_nodes]).T
             by_moment = response.far(X, Y, space.terms)  # (moments, 2, component, nodes)
             size = np.abs(by_moment).max(axis=(1, 2, 3), initial=0.0)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 
 
 def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
@@ -315,10 +315,8 @@ def model_cells(
     Returns:
         Vertices of models, (m, 4, 3), and the numbers of this rank's cells like each.
     """
-    kinds, graded = np.zeros(len(corners), dtype=np.int64), np.zeros(len(corners), dtype=bool)
-    if isinstance(response, ByCells):
-        kinds = response.solids(corners[..., 1].mean(axis=1))
-        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])[kinds]
+    kinds = response.solids(corners[..., 1].mean(axis=1))
+    graded = np.array([len(rows) > 1 for rows in response.constants(constants)])[kinds]
     even = np.flatnonzero(~graded)
     models, like = congruent_cells(corners[even], kinds[even], gather)
     members = np.split(even[np.argsort(like, kind="stable")], np.cumsum(np.bincount(like))[:-1])

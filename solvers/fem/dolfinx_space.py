@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from ..approximation import interpolation
 from ..contact.edges import EdgeTraction
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import image
 from .element import size_of_cells
@@ -86,15 +86,12 @@ class DolfinxSpace(Space):
             constant.value = value
         points, corners = versions.quadrature_points(self._quadrature), self._all_corners
         Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
+        solids = response.solids(corners[..., 1].mean(axis=1))
+        tables = response.constants(self.form.constants)
         values = np.empty((*Y.shape, len(self.form.constants)))
-        if isinstance(response, ByCells):
-            solids = response.solids(corners[..., 1].mean(axis=1))
-            tables = response.constants(self.form.constants)
-            for i in np.unique(solids).tolist():
-                cells = solids == i
-                values[cells] = interpolation(response.share(i, Y[cells]), len(tables[i])) @ tables[i]
-        else:
-            values[:] = [float(getattr(response, name)) for name in self.form.constants]
+        for i in np.unique(solids).tolist():
+            cells = solids == i
+            values[cells] = interpolation(response.share(i, Y[cells]), len(tables[i])) @ tables[i]
         for k, function in enumerate(self._constants):
             function.x.array[versions.cell_nodes(function.function_space)[: len(Y)]] = values[..., k]
         return self._form

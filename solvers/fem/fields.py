@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
 from ..errors import MeshError
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from .cells import (
     gradients_in_plane,
     lagrange,
@@ -242,11 +242,10 @@ class _Batch:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
         cell, point, t = _located(self._vertices, self._chart.from_physical(points))
+        of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
+        of_points = response.solids(points[:, 1], side)
         order = np.argsort(cell, kind="stable")
-        if isinstance(response, ByCells):
-            of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
-            of_points = response.solids(points[:, 1], side)
-            order = order[(of_cells[cell] == of_points[point])[order]]
+        order = order[(of_cells[cell] == of_points[point])[order]]
         self._point, self._t = point[order].astype(np.int32), t[order]
         self.cells, self._first = np.unique(cell[order], return_index=True)
         count = self._comm.allreduce(np.bincount(self._point, minlength=len(points)))

@@ -20,7 +20,7 @@ from galinx.clock import Clock
 
 from ..approximation import interpolation
 from ..errors import MeshError
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import Chart, Contracted, lagrange, model_cells
 from .element import CellMatrices
@@ -467,10 +467,10 @@ class Space:
 
         Arrays (4, 4) or (5, 5), (cells, 4, 4), (cells, 4, 4, points, points).
         """
-        if not isinstance(response, ByCells):
-            return self.form.density(response)
-        solid = response.solids(corners[..., 1].mean(axis=1))
         by_solid = [self.form.densities(rows) for rows in response.constants(self.form.constants)]
+        if len(by_solid) == 1:
+            return np.asarray(by_solid[0][0])
+        solid = response.solids(corners[..., 1].mean(axis=1))
         if all(len(by_solid[i]) == 1 for i in np.unique(solid)):
             return np.array([by_solid[i][0] for i in solid])
         heights = self.kernel.heights(corners)

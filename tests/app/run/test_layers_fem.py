@@ -14,10 +14,9 @@ from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.solvers.contact import stresses
-from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.potentials import DATUM, line_loads
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers import COAT, GRADED, scene
@@ -146,12 +145,12 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
     """What is left of the expansion falls with the distance's square."""
     solid = Isotropic(2.5, 0.25, 1.0)
     stack = Layered((Layer(0.7, solid), Layer(0.5, solid)), solid)
-    response = LayersInCells(stack, V / solid.c_s, 1.0)
+    response = stack.response(V / solid.c_s)
 
     def left(R):
         X, Y = R * np.array([1.0, -1.0, 0.3, -0.7]), np.array([-0.4, -1.0, -R, -0.8 * R])
-        datum = DATUM * max(1.0, response.far_field.length)
-        exact = line_loads(solid.response(response.c), X, Y, datum=datum)
+        datum = DATUM * max(1.0, response.far_length)
+        exact = solid.response(response.c).far(X, Y, datum=datum)
         return np.abs(response.far(X, Y, 1) - exact).max()
 
     near, far = left(50.0), left(100.0)

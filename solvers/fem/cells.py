@@ -15,6 +15,7 @@ one matrix each kind, not one each cell (:func:`model_cells`).
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -39,8 +40,14 @@ def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
         Two arrays (n, p+1).
     """
     p, x = len(nodes) - 1, 2.0 * np.asarray(t, dtype=float) - 1.0
-    coefficients = np.linalg.inv(legvander(2.0 * np.asarray(nodes) - 1.0, p))
+    coefficients = _in_legendre(tuple(np.asarray(nodes).tolist()))
     return legvander(x, p) @ coefficients, 2.0 * legvander(x, p - 1) @ legder(coefficients)
+
+
+@lru_cache
+def _in_legendre(nodes: tuple[float, ...]) -> NDArray[np.float64]:
+    """Legendre coefficients of the polynomials of :func:`lagrange`, (p+1, p+1)."""
+    return np.asarray(np.linalg.inv(legvander(2.0 * np.array(nodes) - 1.0, len(nodes) - 1)), np.float64)
 
 
 class Chart(Protocol):

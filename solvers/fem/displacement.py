@@ -81,7 +81,7 @@ class Displacement:
     def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
         response = self._task.response
-        return InteriorGradients(self._space, response, self._fields, points, self._values, side)
+        return InteriorGradients(self._space, response, self._values, points, side)
 
     def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""

@@ -452,9 +452,7 @@ def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
     return pressure
 
 
-def _error(
-    exact: Loaded, points: NDArray, stresses: NDArray
-) -> NDArray[np.float64]:
+def _error(exact: Loaded, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)
     X, Y = points[inside].T

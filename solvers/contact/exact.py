@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from .closed_form import FlatPunch
 from .edges import Exponents
-from .free_ends import turns_at_knots
+from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .residual import of_contact, of_field
-from .solution import Surface, Task, Turns
+from .solution import Between, Surface, Task, Turns
 from .uniform import Contacts, Group, contacts, prescribed, sharp
 from .yielding import Strength
 
@@ -166,7 +166,27 @@ class ExactSolution:
         if not X.shape[1]:
             return None
         on_surface = self.contacts.stresses(np.nan_to_num(X), np.zeros_like(X))
-        return Turns(X, np.where(np.isnan(X), np.nan, on_surface))
+        return Turns(X, np.where(np.isnan(X), np.nan, on_surface), self._between_kinks())
+
+    def _between_kinks(self) -> Between | None:
+        """Stresses between ends and kinks of contacts that have kinks; None where none has."""
+        each: list[tuple[NDArray[np.int64], Between]] = []
+        for group in self.contacts.groups:
+            kinks = () if group.pressure.tips else group.pressure.kinks
+            if len(kinks):
+                _, between = at_and_between(
+                    np.array([-1.0, *sorted(kinks), 1.0]), len(group.rows),
+                    lambda r: self.contacts.surface_of(group, r)[0],  # noqa: B023
+                )  # fmt: skip
+                each.append((group.rows, between))
+        if not each:
+            return None
+        most, x = max(between.X.shape[1] for _, between in each), each[0][1].x
+        X, σ_XX = np.full((2, len(self.g), most, len(x)), np.nan)
+        for rows, between in each:
+            intervals = slice(between.X.shape[1])
+            X[rows, intervals], σ_XX[rows, intervals] = between.X, between.σ_XX
+        return Between(X, x, σ_XX)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

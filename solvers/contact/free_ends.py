@@ -471,25 +471,42 @@ def turns_at_knots(
         σ_XX: function of positions on the surface over a, (n,), that gives the in-plane stress over
             N/(2a), (states, n).
     """
-    X = np.column_stack([pressure.knots[:-1], _between_knots(pressure, _COARSE)]).ravel()
-    each = σ_XX(np.append(X, 1.0))
-    each[:, [0, -1]] = np.where(pressure.values[[0, -1]] != 0.0, np.nan, each[:, [0, -1]])
-    per = 1 + len(_COARSE)
-    σ = each[:, ::per]
+    jumps_at_ends = pressure.values[[0, -1]] != 0.0
+    σ, between = at_and_between(pressure.knots, len(g), σ_XX, jumps_at_ends)
     σ_YY = np.where(np.isnan(σ), np.nan, pressure.values)
     knots = np.where(np.isnan(σ), np.nan, pressure.knots)
-    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
-    # A knot belongs to the intervals on both sides of it.
-    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
-    intervals = intervals[(intervals >= 0) & (intervals < len(pressure.knots) - 1)]
-    graded = _between_knots(pressure, _GRADED)[intervals]
-    between = Between(graded, _GRADED, σ_XX(graded.ravel()).reshape(len(g), *graded.shape))
     return Turns(knots, np.array([σ, σ_YY, g[:, None] * σ_YY]), between)
 
 
-def _between_knots(pressure: LinearPressure, x: NDArray) -> NDArray[np.float64]:
-    """Positions over a between neighbouring knots from x = log(d/d'), see ``_COARSE``, (intervals, n)."""
-    X_left, width = pressure.knots[:-1, None], np.diff(pressure.knots)[:, None]
+def at_and_between(
+    places: NDArray,
+    states: int,
+    σ_XX: Callable[[NDArray], NDArray[np.float64]],
+    infinite: NDArray | tuple[bool, bool] = (False, False),
+) -> tuple[NDArray[np.float64], Between]:
+    """In-plane stress over N/(2a) at places where its slope is infinite, (states, places), and between.
+
+    Args:
+        places: rising positions over a from -1 to 1, (places,).
+        states: number of the states.
+        σ_XX: function of positions over a, (n,), that gives the stress, (states, n).
+        infinite: True where the stress is infinite at the first and the last place, which gives NaN.
+    """
+    X = np.column_stack([places[:-1], _between(places, _COARSE)]).ravel()
+    each = σ_XX(np.append(X, 1.0))
+    each[:, [0, -1]] = np.where(infinite, np.nan, each[:, [0, -1]])
+    per = 1 + len(_COARSE)
+    tops = np.unique(np.concatenate([_tops(each), _tops(-each)]))
+    # A place belongs to the intervals on both sides of it.
+    intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
+    intervals = intervals[(intervals >= 0) & (intervals < len(places) - 1)]
+    graded = np.tile(_between(places, _GRADED)[intervals], (states, 1, 1))
+    return each[:, ::per], Between(graded, _GRADED, σ_XX(graded[0].ravel()).reshape(graded.shape))
+
+
+def _between(places: NDArray, x: NDArray) -> NDArray[np.float64]:
+    """Positions over a between neighbouring places from x = log(d/d'), see ``_COARSE``, (intervals, n)."""
+    X_left, width = places[:-1, None], np.diff(places)[:, None]
     return np.asarray(X_left + width / (1.0 + np.exp(-x)))
 
 
@@ -561,9 +578,10 @@ def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float6
     between = surface.turns and surface.turns.between
     if not between:
         return sign * np.maximum(best, _largest(u, values, pieces))
-    best = np.maximum(best, _largest(u, np.where(np.abs(X) < 1.0, -np.inf, values), pieces))
-    for i, X in enumerate(between.X):
-        values = np.where(_finite(X, infinite), sign * between.σ_XX[:, i], -np.inf)
+    graded = np.isfinite(between.X).any(axis=(1, 2))[:, None]
+    best = np.maximum(best, _largest(u, np.where(graded & (np.abs(X) < 1.0), -np.inf, values), pieces))
+    for X, σ in zip(np.moveaxis(between.X, 1, 0), np.moveaxis(between.σ_XX, 1, 0)):
+        values = np.where(np.isfinite(σ) & _finite(X, infinite), sign * σ, -np.inf)
         best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
     return sign * best
 
@@ -621,14 +639,14 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
         usable &= top[rows[:, 0], column]
         if usable.any():
             rows_of_top = usable.nonzero()[0]
-            refined = _between(
+            refined = _vertex(
                 u, values[rows_of_top[:, None], window[rows_of_top]], window[rows_of_top], i[rows_of_top]
             )
             best[rows_of_top] = np.maximum(best[rows_of_top], refined)
     return best
 
 
-def _between(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray[np.float64]:
+def _vertex(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray[np.float64]:
     """Largest value of polynomials between the neighbours of the samples ``i``, (m,)."""
     nodes = u[window]
     low, high = (np.clip(u[np.clip(i + k, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for k in (-1, 1))

@@ -242,7 +242,7 @@ class Turns:
     def of(self, rows: NDArray) -> "Turns":
         """Turns of the states with these numbers, which may repeat."""
         between = self.between and Between(
-            self.between.X, self.between.x, self.between.σ_XX[rows]
+            self.between.X[rows], self.between.x, self.between.σ_XX[rows]
         )  # fmt: skip
         return Turns(self.X[rows], self.σ[:, rows], between)
 
@@ -257,10 +257,10 @@ class Between:
     """In-plane stress between neighbouring kinks, near both of which it has a logarithm of the distance.
 
     Attributes:
-        X: positions over a, in intervals between kinks, (intervals, n).
+        X: positions over a, in intervals between kinks, NaN for none, (states, intervals, n).
         x: logarithm of the ratio of a position's distances from both kinks, in which stresses are
             smooth, (n,).
-        σ_XX: in-plane stress over N/(2a) at these positions, (states, intervals, n).
+        σ_XX: in-plane stress over N/(2a) at these positions, NaN for none, (states, intervals, n).
     """
 
     X: NDArray[np.float64]
@@ -279,11 +279,29 @@ def together(each: list[Turns]) -> Turns | None:
     """
     if not each:
         return None
-    most = max(turns.X.shape[1] for turns in each)
-    X, σ = np.full((len(each), most), np.nan), np.full((3, len(each), most), np.nan)
-    for i, turns in enumerate(each):
-        X[i, : turns.X.shape[1]], σ[:, i, : turns.X.shape[1]] = turns.X[0], turns.σ[:, 0]
-    return Turns(X, σ)
+    given = [turns.between for turns in each if turns.between]
+    between = None
+    if given:
+        empty = np.empty((1, 0, len(given[0].x)))
+        none = Between(empty, given[0].x, empty)
+        betweens = [turns.between or none for turns in each]
+        X, σ_XX = (
+            _padded([getattr(of_state, name) for of_state in betweens], 1) for name in ("X", "σ_XX")
+        )
+        between = Between(X, none.x, σ_XX)
+    σ = np.array([_padded([turns.σ[i] for turns in each], 1) for i in range(3)])
+    return Turns(_padded([turns.X for turns in each], 1), σ, between)
+
+
+def _padded(each: list[NDArray], axis: int) -> NDArray[np.float64]:
+    """Arrays one after the other, padded with NaN along an axis of which their sizes differ."""
+    most = max(values.shape[axis] for values in each)
+
+    def whole(values: NDArray) -> NDArray[np.float64]:
+        widths = [(0, (most - values.shape[axis]) * (i == axis)) for i in range(values.ndim)]
+        return np.pad(np.asarray(values, dtype=float), widths, constant_values=np.nan)
+
+    return np.concatenate([whole(values) for values in each])
 
 
 @dataclass(frozen=True)

@@ -123,11 +123,11 @@ class Contacts:
 
     def on_surface(self, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_XX and σ_YY, 0 beside the contact, on the whole surface, off the ends, (states, points)."""
-        each = {id(group): self._on_surface(group, r) for group in self.groups}
+        each = {id(group): self.surface_of(group, r) for group in self.groups}
         σ_XX, σ_YY = (self.joined(lambda group: each[id(group)][i]) for i in (0, 1))  # noqa: B023
         return σ_XX, σ_YY
 
-    def _on_surface(self, group: Group, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def surface_of(self, group: Group, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (rows, points) each."""
         r, g = group.off_tips(r), self.g[group.rows, None]
         σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
@@ -157,7 +157,7 @@ class Contacts:
         for group in self.groups if len(columns) else ():
             of_each = group.rows if len(X) > 1 else np.zeros(1, dtype=int)
             places = np.ix_(group.rows, columns)
-            σ_XX, σ_YY = self._on_surface(group, X[np.ix_(of_each, columns)])
+            σ_XX, σ_YY = self.surface_of(group, X[np.ix_(of_each, columns)])
             surface = np.array([σ_XX, σ_YY, self.g[group.rows, None] * σ_YY])
             below = stresses[:, places[0], places[1]]
             stresses[:, places[0], places[1]] = np.where(on[np.ix_(of_each, columns)], surface, below)

@@ -142,7 +142,6 @@ def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypa
     assert result.verdict == verdict, result.data["states/fem/residual"]
 
 
-
 def test_a_graded_layer_whose_faces_are_alike_is_uniform():
     same = COAT + 'to = { E = "7.5 GPa" }\n'
     found = [

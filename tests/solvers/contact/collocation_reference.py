@@ -1,6 +1,6 @@
 """Expansion and collocation of the singular integral equation of a uniform half-plane (Eqs 38-41, 52-53).
 
-    (n/π) ⨍ σ_YY(t)/(t - r) dt - q g σ_YY(r) = μ v,X(r),   ∫ σ_YY dr = -2.
+(n/π) ⨍ σ_YY(t)/(t - r) dt - q g σ_YY(r) = μ v,X(r),   ∫ σ_YY dr = -2.
 """
 
 import numpy as np

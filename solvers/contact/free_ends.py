@@ -662,19 +662,18 @@ class KinkedPressure:
         exponent: power of the distance d with which the pressure departs from its value at a kink; 1 for
             d log d; 0 where the pressure is smooth enough for the cells, or infinite.
         tolerance: relative error allowed for the limit at a kink.
+        infinite: the pressure is infinite at its kinks.
     """
 
+    #: Both ends are free.
+    K_I = np.zeros((1, 2))
+
     def __init__(
-        self,
-        s: NDArray,
-        degree: int,
-        chart: Any,
-        forces: NDArray,
-        kinks: NDArray,
-        exponents: tuple[float, float],
-        exponent: float = 0.0,
-        tolerance: float = 1e-6,
-    ) -> None:
+        self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
+        exponents: tuple[float, float], exponent: float = 0.0, tolerance: float = 1e-6,
+        infinite: bool = False,
+    ) -> None:  # fmt: skip
+        self._infinite = infinite
         facets = facets_of(s, degree)
         self._chart, self.kinks, self._exponents, self._exponent = chart, kinks, exponents, exponent
         self._farthest = farthest_at_kink(tolerance)
@@ -700,7 +699,7 @@ class KinkedPressure:
         return np.asarray(np.maximum(lengths[i], lengths[i + 1]))
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at positions over a, (n,); NaN beside the contact."""
+        """Contact stress over N/(2a) at positions over a, (1, n); NaN beside the contact."""
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
         ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, self._exponents)
@@ -713,20 +712,27 @@ class KinkedPressure:
                 near = (d >= 0.0) & (d < series.samples.min())
                 if near.any():
                     σ[near] = series.through(self._piecewise(at + side * series.samples))(d[near])
-        return σ
+        return σ[None]
 
-    def largest(self) -> tuple[float, float]:
-        """Largest pressure over N/(2a), and its place X over a, by refinement around the best nodes."""
+    @property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
+
+        It is refined around the best nodes.
+        """
+        if self._infinite:
+            return np.full(1, np.nan), np.full(1, np.nan)
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         r = r[under_punch(r)]
-        p = -self.σ_YY(r)
+        p = -self.σ_YY(r)[0]
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
         peaks = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
         if self._exponent:
             peaks += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
-        return max(peaks)
+        value, place = np.array(max(peaks))[:, None]
+        return value, place
 
     def _nearer(self, low: float, high: float) -> tuple[float, float]:
         """Largest pressure over N/(2a) between two positions over a, and its place over a."""
@@ -735,7 +741,7 @@ class KinkedPressure:
             # At a kink the pressure may have a cusp, which no grid meets.
             r = np.linspace(low, high, _PLACES_AT_A_TIME)
             r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
-            p = -self.σ_YY(r)
+            p = -self.σ_YY(r)[0]
             i, step = int(p.argmax()), (high - low) / (_PLACES_AT_A_TIME - 1)
             low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
         return float(p[i]), float(r[i])

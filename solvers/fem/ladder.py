@@ -19,7 +19,7 @@ from galinx.meshes.kind import DEGREES
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stresses
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import FemPlan, levels
-from ..contact.recovery import JacobiPressure, StretchedPressure
+from ..contact.recovery import Pressure
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
@@ -58,7 +58,7 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
-def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: Pressure, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
@@ -68,9 +68,7 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) 
     """
     factor = pressure.factor(_ACROSS)
     values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
-    unresolved = pressure.unresolved
-    if isinstance(pressure, StretchedPressure):
-        unresolved = unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
+    unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
     return Gauge(
         INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
     )
@@ -103,40 +101,39 @@ class StressGauges:
     """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
     Args:
-        work: has the words of the requested stresses.
+        words: words of output.quantities that request stresses.
         task: the speed, and the places.
         displaced: makes the displacement at a task's places.
+
+    Attributes:
+        task: the task at fewer points inside, where these are many.
+        displacement: displacement at its places.
     """
 
     def __init__(
-        self, work: Discretisation, task: Task, displaced: Callable[[Task], Displacement]
+        self, words: frozenset[str], task: Task, displaced: Callable[[Task], Displacement]
     ) -> None:
-        self._words, self._task = work.stresses, gauged(task)
-        self._displacement = displaced(self._task)
-        self._displacement.prepare(self._words)
-
-    @property
-    def any_stress(self) -> bool:
-        """True where stresses are requested."""
-        return bool(self._words)
+        self._words, self.task = words, gauged(task)
+        self.displacement = displaced(self.task)
+        self.displacement.prepare(self._words)
 
     @property
     def slopes(self) -> Any:
         """Slopes of the fields on the surface, None where no stress is requested."""
-        return self._displacement.slopes if self._words else None
+        return self.displacement.slopes if self._words else None
 
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""
-        gauges, places = [], self._task.places
+        gauges, places = [], self.task.places
         if ON_SURFACE in self._words:
-            surface = self._displacement.surface(g, weights, σ_YY)
+            surface = self.displacement.surface(g, weights, σ_YY)
             gauges.append(of_in_plane(surface.σ_XX, places.X))
         if BELOW in self._words:
-            gauges.append(of_inside(self._displacement.inside(weights), places.points))
+            gauges.append(of_inside(self.displacement.inside(weights), places.points))
         if YIELD in self._words:
-            gauges.append(of_inside(self._displacement.around(weights), places.around, YIELD))
+            gauges.append(of_inside(self.displacement.around(weights), places.around, YIELD))
         if AT_INTERFACES in self._words:
-            gauges.append(of_interfaces(self._displacement.interfaces(weights)))
+            gauges.append(of_interfaces(self.displacement.interfaces(weights)))
         return gauges
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
@@ -146,16 +143,16 @@ class StressGauges:
         """
         if not self._words:
             return []  # no derivative is taken that is not requested
-        surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
-        return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
+        surface = self.displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
+        return [replace(of_in_plane(surface, self.task.places.X), word=word) for word in self._words]
 
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
         """Effect of rounding of the fields on stresses, relative: that on the surface for every word."""
         if not self._words:
             return []
-        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
-        noise = self._displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self._task.places.X)
-        solved = _SOLVED / self._task.response.margin**0.5
+        σ_XX = self.displacement.surface(g, weights, σ_YY).σ_XX
+        noise = self.displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self.task.places.X)
+        solved = _SOLVED / self.task.response.margin**0.5
         return [solved * float(noise.max())] * len(self._words)
 
 

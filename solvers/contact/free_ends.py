@@ -398,17 +398,23 @@ def farthest_at_kink(tolerance: float) -> float:
     return float(np.clip((0.1 * tolerance / _LEFT_OUT) ** (1.0 / 3.0), *_FARTHEST_AT_KINK))
 
 
-def error_at_kink(usual: NDArray, farther: NDArray) -> float:
+def error_at_kink(usual: NDArray, farther: NDArray, in_cells: float | None = None) -> float:
     """Error of the limits from the left and the right of a kink, in their unit.
 
     One part is the truncation error, which grows with the distance like the first term that the series
     lack. The other is half of the difference of both limits, which should be equal.
 
+    Samples in the innermost cells have the error of these, which hardly falls with the degree. Changes to
+    values that have more of it, or less, then show it whole.
+
     Args:
         usual: both limits, (2,), from series sampled up to the usual distance.
         farther: both limits, (2,), from series sampled up to ``FARTHER`` times that distance.
+        in_cells: value of the innermost cells at the kink; None where all samples are beyond these cells.
     """
     left_out = np.abs(farther - usual).max() / (FARTHER**_TERMS_OF_EACH - 1.0)
+    if in_cells is not None:
+        left_out = np.abs([farther - usual, in_cells - usual]).max()
     return float(SAFETY * left_out + np.ptp(usual) / 2.0)
 
 
@@ -693,10 +699,14 @@ class KinkedPressure:
 
     def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
         """Length over a of the longer of the two facets that meet at each end or kink, (n,)."""
+        return np.asarray(self._facets_beside(places).max(axis=0))
+
+    def _facets_beside(self, places: NDArray) -> NDArray[np.float64]:
+        """Lengths over a of the facets to the left and to the right of each end or kink, (2, n)."""
         edges = np.concatenate([[-1.0], self.breaks, [1.0]])
         lengths = np.pad(np.diff(edges), 1)
         i = np.abs(edges[:, None] - places).argmin(axis=0)
-        return np.asarray(np.maximum(lengths[i], lengths[i + 1]))
+        return lengths[[i, i + 1]]
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at positions over a, (1, n); NaN beside the contact."""
@@ -769,10 +779,15 @@ class KinkedPressure:
         """Largest error over N/(2a) of the limits at kinks, measured on limits from both sides."""
         if not self._exponent:
             return 0.0
-        return max(
-            error_at_kink(*(self._limits(i, self._piecewise, by) for by in (1.0, FARTHER)))
-            for i in range(len(self.kinks))
-        )
+        return max(self._left_at(i) for i in range(len(self.kinks)))
+
+    def _left_at(self, number: int) -> float:
+        """Error over N/(2a) of the limits at a kink."""
+        kink = self.kinks[[number]]
+        nearest = [self._series(number, side).samples.min() for side in (-1.0, 1.0)]
+        in_cells = bool((nearest < self._facets_beside(kink)[:, 0]).any())
+        usual, farther = (self._limits(number, self._piecewise, by) for by in (1.0, FARTHER))
+        return error_at_kink(usual, farther, self._piecewise(kink)[0] if in_cells else None)
 
     def _limits(
         self, number: int, values: Callable[[NDArray], NDArray], farther: float = 1.0

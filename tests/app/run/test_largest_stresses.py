@@ -9,6 +9,8 @@ from galinx.app.scene.read import parse
 from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.kinked import Ends, places_of_kinks
 from galinx.solvers.profiles import cusp
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
@@ -46,9 +48,9 @@ def random_scene(seed, profile, methods, strokes):
         )
     load, mu = 10.0 ** rng.uniform(4.0, 5.5), rng.uniform(0.0, 0.9, len(strokes)).tolist()
     share = rng.choice([0.0, rng.uniform(0.05, 0.9)])
-    punch = PUNCHES[profile](np.random.default_rng(seed))
+    punches = np.random.default_rng(seed)
 
-    def at(c):
+    def at(c, punch):
         return parse(
             f"[solid]\n{solid}\nyield_strength = 3e8\n"
             f"[punch]\nload = {load}\nprofile = '{profile}'\n{punch}\n"
@@ -58,7 +60,23 @@ def random_scene(seed, profile, methods, strokes):
             f"[solve]\nmethods = {methods}\n[output]\nquantities = ['sif', 'surface', 'yield']\n"
         )
 
-    return at(share * at(0.0).solid.limit())
+    while True:
+        punch = PUNCHES[profile](punches)
+        scene = at(share * at(0.0, punch).solid.limit(), punch)
+        if methods != BOTH or not refused(scene, share, np.array(mu)):
+            return scene
+
+
+def refused(scene, share, mu):
+    """True where finite elements refuse a kink for being next to an end, in either direction."""
+    response = scene.solid.response(share * scene.solid.limit())
+    solved = contacts(response, np.append(mu, -mu), scene.body.profile, scene.body.compression)
+    try:
+        for centre, half_width in zip(solved.of("centre"), solved.of("half_width")):
+            places_of_kinks(scene.body, Ends(centre, half_width, 0.0))
+    except SolveError:
+        return True
+    return False
 
 
 def samples(rng, measure, X, Y, around, rounds=5):

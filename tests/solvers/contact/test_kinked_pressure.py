@@ -1,0 +1,59 @@
+"""Pressure at kinks, from the nodal forces of a pressure that is given."""
+
+from itertools import pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.free_ends import KinkedPressure
+from galinx.solvers.contact.recovery import lagrange
+
+#: A chart in which surface coordinates are positions.
+AS_DRAWN = SimpleNamespace(
+    surface_position=lambda s: s, surface_coordinate=lambda r: r, surface_stretch=np.ones_like
+)
+
+
+def facets(kink, rings):
+    """Ends of facets graded towards a kink and both ends of the contact."""
+    towards = 0.3 ** np.arange(rings)
+    halves = [(at, (low + high) / 2.0) for low, high in pairwise([-1.0, kink, 1.0]) for at in (low, high)]
+    return np.unique(
+        [-1.0, kink, 1.0, *(x for at, middle in halves for x in at + (middle - at) * towards)]
+    )
+
+
+def nodes_and_forces(ends, degree, σ_YY):
+    """Nodes on facets between ``ends``, and consistent forces there."""
+    t, w = np.polynomial.legendre.leggauss(60)
+    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)
+    sizes = np.diff(ends)
+    s = np.append((ends[:-1, None] + sizes[:, None] * np.arange(degree) / degree).ravel(), 1.0)
+    forces = np.zeros(len(s))
+    for i, (start, size) in enumerate(zip(ends, sizes)):
+        nodes = slice(i * degree, (i + 1) * degree + 1)
+        forces[nodes] += basis.T @ (σ_YY(start + size * (t + 1.0) / 2.0) * w) * size / 2.0
+    return s, forces
+
+
+@pytest.mark.parametrize("degree", [6, 9])
+@pytest.mark.parametrize("rings", [4, 5, 6])
+@pytest.mark.parametrize("kink", [0.0, -0.55, 0.8])
+@pytest.mark.parametrize("lean", [0.0, 1.0])
+def test_the_error_of_innermost_cells_is_in_that_of_limits_at_kinks(kink, rings, degree, lean):
+    """It hardly falls with the degree, and may be of one sign on both sides of the kink."""
+
+    def σ_YY(r):
+        d = np.abs(r - kink)
+        side = (1.0 - lean) + lean * np.sign(r - kink)
+        return np.sqrt(1.0 - r**2) * (side * d * np.log(np.maximum(d, 1e-300)) - 2.0)
+
+    s, forces = nodes_and_forces(facets(kink, rings), degree, σ_YY)
+    pressure = KinkedPressure(s, degree, AS_DRAWN, forces, np.array([kink]), (0.5, 0.5), 1.0, 1e-3)
+    exact = -2.0 * np.sqrt(1.0 - kink**2)
+    beside = pressure.σ_YY(kink + np.array([-1e-12, 0.0, 1e-12]))
+    error = max(np.abs(beside - exact).max(), abs(pressure.at_kink(0) - exact))
+    cell = pressure.cells_beside(pressure.kinks)[0]
+    # Not more than a tenth of what the pressure changes by over such a cell.
+    assert 1e-8 < error <= pressure.left_at_kinks <= 0.1 * cell * np.abs(np.log(cell))

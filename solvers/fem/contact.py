@@ -278,6 +278,8 @@ class PunchLevel:
         ends: ends of the contacts; by the plan if None.
 
     Attributes:
+        plan: plan of the finite elements.
+        stresses: words of output.quantities that request stresses.
         ends: ends of the contacts.
         g: values of σ_XY/σ_YY, as given.
         factor: of the linear system, with numbers of its work.
@@ -288,7 +290,7 @@ class PunchLevel:
         fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
         ends: Ends | None = None,
     ) -> None:  # fmt: skip
-        self.task, self.space, self.plan, self._words = task, space, work.plan, work.stresses
+        self.task, self.space, self.plan, self.stresses = task, space, work.plan, work.stresses
         self.ends = ends or ends_of(task.body, work.plan)
         self._fitted, self._only = fitted, None
         self._field: Any = None
@@ -346,7 +348,7 @@ class PunchLevel:
 
     @cached_property
     def _gauges(self) -> StressGauges:
-        return StressGauges(self._words, self.ends.task(self.task), self.displacement_at)
+        return StressGauges(self, self.ends.task(self.task), self.displacement_at)
 
     @property
     def slopes(self) -> Any:
@@ -401,7 +403,7 @@ class PunchLevel:
     def gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
         gauges, contact = [self.ends.gauge(self, states)], states.contact
-        if self._words:
+        if self.stresses:
             gauges += self._gauges.of(contact.g, contact.weights, self._on_surface(states.pressure))
         return gauges
 

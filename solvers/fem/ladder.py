@@ -101,39 +101,37 @@ class StressGauges:
     """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
     Args:
-        words: words of output.quantities that request stresses.
+        work: has the words of the requested stresses, as ``stresses``.
         task: the speed, and the places.
         displaced: makes the displacement at a task's places.
-
-    Attributes:
-        task: the task at fewer points inside, where these are many.
-        displacement: displacement at its places.
     """
 
-    def __init__(
-        self, words: frozenset[str], task: Task, displaced: Callable[[Task], Displacement]
-    ) -> None:
-        self._words, self.task = words, gauged(task)
-        self.displacement = displaced(self.task)
-        self.displacement.prepare(self._words)
+    def __init__(self, work: Any, task: Task, displaced: Callable[[Task], Displacement]) -> None:
+        self._words, self._task = work.stresses, gauged(task)
+        self._displacement = displaced(self._task)
+        self._displacement.prepare(self._words)
+
+    def displacement(self, task: Task) -> Displacement | None:
+        """Displacement at all places of the task; None where errors are measured at fewer places."""
+        return self._displacement if self._task is task else None
 
     @property
     def slopes(self) -> Any:
         """Slopes of the fields on the surface, None where no stress is requested."""
-        return self.displacement.slopes if self._words else None
+        return self._displacement.slopes if self._words else None
 
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""
-        gauges, places = [], self.task.places
+        gauges, places = [], self._task.places
         if ON_SURFACE in self._words:
-            surface = self.displacement.surface(g, weights, σ_YY)
+            surface = self._displacement.surface(g, weights, σ_YY)
             gauges.append(of_in_plane(surface.σ_XX, places.X))
         if BELOW in self._words:
-            gauges.append(of_inside(self.displacement.inside(weights), places.points))
+            gauges.append(of_inside(self._displacement.inside(weights), places.points))
         if YIELD in self._words:
-            gauges.append(of_inside(self.displacement.around(weights), places.around, YIELD))
+            gauges.append(of_inside(self._displacement.around(weights), places.around, YIELD))
         if AT_INTERFACES in self._words:
-            gauges.append(of_interfaces(self.displacement.interfaces(weights)))
+            gauges.append(of_interfaces(self._displacement.interfaces(weights)))
         return gauges
 
     def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
@@ -143,16 +141,16 @@ class StressGauges:
         """
         if not self._words:
             return []  # no derivative is taken that is not requested
-        surface = self.displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
-        return [replace(of_in_plane(surface, self.task.places.X), word=word) for word in self._words]
+        surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
+        return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
 
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
         """Effect of rounding of the fields on stresses, relative: that on the surface for every word."""
         if not self._words:
             return []
-        σ_XX = self.displacement.surface(g, weights, σ_YY).σ_XX
-        noise = self.displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self.task.places.X)
-        solved = _SOLVED / self.task.response.margin**0.5
+        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+        noise = self._displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self._task.places.X)
+        solved = _SOLVED / self._task.response.margin**0.5
         return [solved * float(noise.max())] * len(self._words)
 
 

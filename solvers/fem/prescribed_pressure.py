@@ -69,7 +69,7 @@ class LoadsLevel:
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         self.task, self.space, self.g = task, space, g
         self._solve()
-        self._gauges = StressGauges(work.stresses, task, self.displacement_at)
+        self._gauges = StressGauges(work, task, self.displacement_at)
 
     def _solve(self) -> None:
         """Solve for the fields of all loads."""
@@ -82,8 +82,7 @@ class LoadsLevel:
     @cached_property
     def displacement(self) -> Displacement:
         """Displacement, for stresses at all places."""
-        gauges = self._gauges
-        return gauges.displacement if gauges.task is self.task else self.displacement_at(self.task)
+        return self._gauges.displacement(self.task) or self.displacement_at(self.task)
 
     @property
     def prescribed(self) -> LinearPressure:

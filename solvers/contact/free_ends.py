@@ -35,8 +35,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..errors import SolveError
 from ..profiles import check_reach, jumps, kinks
+from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
@@ -58,12 +58,8 @@ SHAPES = 3
 #: kink and towards an end.
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
 
-#: First half-width tried [m]; most doublings of the half-width, and of the middle over it; halvings of
-#: the middle's interval.
-_FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
-#: Steps of Newton's method, largest step of m/h and of log h, difference for derivatives; residual at
-#: which it stops, and largest residual that rounding leaves.
-_STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11
+#: First half-width tried [m].
+_FIRST = 1e-3
 
 
 def heights_of_shapes(s: NDArray, count: int = SHAPES) -> NDArray[np.float64]:
@@ -152,92 +148,16 @@ class FreeEnds:
         Raises:
             SolveError: no contact satisfies the conditions, or it reaches beyond the given profile.
         """
-        point = self._first(profile, unit) if start is None else np.array(start) / [start[1], 1.0]
-        point[1] = np.log(point[1])
-        value = self._residual(profile, unit, point)
-        for _ in range(_STEPS):
-            size = np.abs(value).max()
-            if size <= _MET:
-                break
-            step = self._newton(profile, unit, point, value)
-            moved = point + step
-            after = self._residual(profile, unit, moved)
-            while not np.abs(after).max() < size and np.abs(step).max() > _MET:
-                step /= 2.0
-                moved = point + step
-                after = self._residual(profile, unit, moved)
-            if not np.abs(after).max() < size:
-                break
-            point, value = moved, after
-        if not np.abs(value).max() <= _ROUNDING:
-            if start is not None:
-                return self.found(profile, unit)
-            raise SolveError(
-                f"finite elements did not find the ends of the contact of a {profile.words()}: its "
-                f"conditions are off by {np.abs(value).max():.3g}, expected at most {_ROUNDING:g}"
-            )
-        h = float(np.exp(point[1]))
-        X_left, X_right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
-        check_reach(profile, X_left, X_right, "finite elements found a contact")
-        return float(point[0]) * h, h
+        m, h = start or (None, _FIRST)
+        m, h = ends.free_ends(ends.Punch(profile, 1.0, 2.0 * unit), lambda _: self._rule, h, m)
+        check_reach(profile, m - h, m + h, "finite elements found a contact")
+        return m, h
 
-    def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
-        """Newton's step of m/h and log h from a point, (2,); wider by a tenth where it is not defined."""
-        J = np.empty((2, 2))
-        for i, d in enumerate(np.eye(2) * _ε):
-            after, before = (self._residual(profile, unit, point + sign * d) for sign in (1.0, -1.0))
-            J[:, i] = (after - before) / (2.0 * _ε)
-        if not np.all(np.isfinite(J)) or abs(np.linalg.det(J)) < 1e-12:
-            return np.array([0.0, 0.1])
-        step = np.linalg.solve(J, -value)
-        return step / max(1.0, np.abs(step).max() / _LARGEST)
-
-    def _residual(self, profile: Any, unit: float, point: NDArray) -> NDArray[np.float64]:
-        """Residuals of both conditions at m/h and log h, (2,); infinite where no load is carried."""
-        lifted, carried = self._conditions(profile, unit, float(point[0]), float(np.exp(point[1])))
-        return np.array([lifted, np.log(carried) if carried > 0.0 else np.inf])
-
-    def _conditions(self, profile: Any, unit: float, lean: float, h: float) -> tuple[float, float]:
-        """Imbalance of the ends over its largest value, and the carried load over the prescribed load."""
-        at = np.array(kinks(profile), dtype=float) / h - lean
-        s, weights = _rule(at[np.abs(at) < 1.0], self.α, self.β)
-        slope = np.asarray(profile.slope(h * (lean + s)), dtype=float)
-        factors = np.polynomial.chebyshev.chebval(s, self.factors.T)
-        lifted, carried = (factors * weights) @ slope
-        whole = (factors[0] * weights) @ np.abs(slope)
-        return float(lifted / whole) if whole > 0.0 else 0.0, float(h * carried / unit)
-
-    def _first(self, profile: Any, unit: float) -> NDArray[np.float64]:
-        """Middle over half-width, and half-width [m] of a contact that carries about the load, (2,)."""
-        h, narrow, wide = _FIRST, 0.0, np.inf
-        for _ in range(_DOUBLINGS):
-            lean = self._lean(profile, unit, h)
-            carried = self._conditions(profile, unit, lean, h)[1]
-            if 0.2 < carried < 5.0:
-                return np.array([lean, h])
-            narrow, wide = (h, wide) if carried < 1.0 else (narrow, h)
-            h = 2.0 * narrow if np.isinf(wide) else wide / 2.0 if not narrow else np.sqrt(narrow * wide)
-        raise SolveError(
-            f"no contact of a {profile.words()} carries the load: half-widths up to {h:.3g} m were "
-            "tried; the profile has to be convex"
-        )
-
-    def _lean(self, profile: Any, unit: float, h: float) -> float:
-        """Rough m/h at which the ends are in balance; the centre of these where they are an interval."""
-        far = 1.0
-        while far < 2.0**_FARTHER and not (
-            self._conditions(profile, unit, -far, h)[0] < 0.0 < self._conditions(profile, unit, far, h)[0]
-        ):
-            far *= 2.0
-        edges = []
-        for below in (np.less, np.less_equal):
-            low, high = -far, far
-            for _ in range(_HALVINGS):
-                middle = (low + high) / 2.0
-                below_it = below(self._conditions(profile, unit, middle, h)[0], 0.0)
-                low, high = (middle, high) if below_it else (low, middle)
-            edges.append((low + high) / 2.0)
-        return float(np.mean(edges))
+    def _rule(self, kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        """Quadrature of both conditions, see :data:`.ends.Rule`."""
+        s, weights = _rule(kinks, self.α, self.β)
+        lifting, carrying = np.polynomial.chebyshev.chebval(s, self.factors.T) * weights
+        return s, lifting, 2.0 * carrying
 
 
 @lru_cache(maxsize=64)
@@ -254,7 +174,8 @@ def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray
     return t, np.append(weights.ravel(), of_inner * (size / 2.0) ** (exponent + 1.0))
 
 
-def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+@lru_cache(maxsize=8)
+def _rule(at: tuple[float, ...], α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points and weights, (n,) each, of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between places ``at``."""
     places = np.concatenate([[-1.0], np.unique(at), [1.0]])
     last, s, weights = len(places) - 2, [], []

@@ -61,13 +61,13 @@ class Polynomials:
         """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
         return np.zeros(len(c))
 
-    def moved_edges(self, pressure: "Pressure", r: NDArray, length: float) -> NDArray[np.float64]:
+    def moved_edges(self, pressure: "RecoveredPressure", r: NDArray, _: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
         return np.zeros((len(pressure.c), len(r)))
 
 
 @dataclass(frozen=True)
-class Pressure:
+class RecoveredPressure:
     """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r), r = X/a.
 
     Attributes:
@@ -161,7 +161,7 @@ def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
 
 def from_moments(
     moments: NDArray, α: NDArray, β: NDArray, functions: "Polynomials | Stretch" = Polynomials()
-) -> Pressure:
+) -> RecoveredPressure:
     """Pressure with given moments.
 
     Args:
@@ -170,7 +170,7 @@ def from_moments(
             sharp edges, α + β = -1.
         functions: functions f_k, which represent the smooth factor.
     """
-    return Pressure(α, β, functions.coefficients(moments, α, β), functions)
+    return RecoveredPressure(α, β, functions.coefficients(moments, α, β), functions)
 
 
 @lru_cache(maxsize=4)
@@ -459,7 +459,7 @@ class Stretch:
         share = added.max(axis=1) / np.abs(c @ f.T).max(axis=1)
         return np.asarray((_TAIL if self.graded else 1.0) * share)
 
-    def moved_edges(self, pressure: Pressure, r: NDArray, length: float) -> NDArray[np.float64]:
+    def moved_edges(self, pressure: RecoveredPressure, r: NDArray, length: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced by a length, (states, points).
 
         The pressure is stretched from the opposite edge. Its moments change like the functions over the

@@ -19,7 +19,7 @@ from galinx.meshes.kind import DEGREES
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stresses
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import FemPlan, levels
-from ..contact.recovery import Pressure
+from ..contact.recovery import RecoveredPressure
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
@@ -58,7 +58,7 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
-def of_pressure(pressure: Pressure, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: RecoveredPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:

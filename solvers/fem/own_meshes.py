@@ -49,7 +49,7 @@ from ..contact.free_ends import (
     turns_at_ends,
 )
 from ..contact.free_ends import FreeEnds as Conditions
-from ..contact.recovery import Pressure
+from ..contact.recovery import RecoveredPressure
 from ..contact.solution import Body, Places, Surface, Task, Turns
 from ..contact.stresses import NEAR_TIP, off_tips
 from ..errors import SolveError
@@ -325,7 +325,7 @@ class BalancedEnds(Ends):
         contact = combined(g, parts, amplitudes[None])
         return SolvedEnds(contact, np.array([half_width]), np.array([centre]), _FREE)
 
-    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Pressure:
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> RecoveredPressure:
         return replace(level.over_flat(ends.contact, ends.contact.g, 1.0), free=_FREE)
 
     def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:

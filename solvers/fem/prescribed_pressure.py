@@ -98,11 +98,16 @@ class LoadsLevel:
         """Number of the load of each state, (states,)."""
         return np.zeros(len(g), dtype=np.int64)
 
-    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m]."""
+    def weights(self, g: NDArray) -> NDArray[np.float64]:
+        """Weights of the fields, (states, fields): 1 of σ_YY alone, g of an equal σ_XY."""
         weights = np.zeros((len(g), 2 * len(self.resultants)))
         of_load, rows = self.load_of(g), np.arange(len(g))
         weights[rows, 2 * of_load], weights[rows, 2 * of_load + 1] = 1.0, g
+        return weights
+
+    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
+        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m]."""
+        weights = self.weights(g)
         # The first field of a load has a normal resultant, the second an equal tangential one.
         units = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
         forces = np.asarray(np.kron(self.resultants[:, None, None], units), dtype=np.float64)
@@ -123,12 +128,11 @@ class LoadsLevel:
         return lambda surface: turns_at_knots(self.prescribed, g, σ_XX)
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        return self.gauges(self.states(g, load))
+        return self._gauges.of(g, self.weights(g), self.pressure(g).σ_YY(self.task.places.X))
 
     def gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of requested stresses."""
-        σ_YY = states.pressure.σ_YY(self.task.places.X)
-        return self._gauges.of(states.contact.g, states.contact.weights, σ_YY)
+        return self.measured(states.contact.g)
 
     @property
     def mirrored(self) -> bool:
@@ -218,9 +222,7 @@ class WholeLevel(FieldsLevel):
 
     def rounding(self, g: NDArray) -> list[float]:
         """Effect of rounding of the fields on each gauge of stresses, relative."""
-        states = self.states(g)
-        σ_YY = states.pressure.σ_YY(self.task.places.X)
-        return self._gauges.rounding(g, states.contact.weights, σ_YY)
+        return self._gauges.rounding(g, self.weights(g), self.pressure(g).σ_YY(self.task.places.X))
 
 
 class PiecesLevel(LoadsLevel):

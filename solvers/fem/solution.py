@@ -31,7 +31,8 @@ class SolvedStates:
         task: the speed, and places of stresses.
         body: the sliding contact, under the load of each state.
         contact: nodal forces, and weights of the displacement fields.
-        pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.Pressure` or similar.
+        pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.RecoveredPressure`
+            or similar.
         displacement: stresses by the fields.
         half_width, centre: half-width and middle of each contact [m], (states,).
         free: True where the left and the right end are free, (states, 2).

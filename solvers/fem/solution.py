@@ -183,14 +183,14 @@ class Solution:
     def surface(self) -> Surface:
         """Stresses on the surface, and their limits at free ends, kinks and knots."""
         each = [states.on_surface for states in self.solved]
-        σ_YY, σ_XX, raw, v_X = (
-            None if getattr(each[0], name) is None
-            else np.concatenate([getattr(surface, name) for surface in each])[self.rows]
-            for name in ("σ_YY", "σ_XX", "raw", "v_X")
-        )  # fmt: skip
-        turns = [surface.turns for surface in each if surface.turns]
-        joined = turns[0] if len(turns) == 1 else together(turns)
-        return Surface(self.task.places, σ_YY, σ_XX, raw, v_X, joined and joined.of(self.rows))  # type: ignore[arg-type]
+        if len(each) == 1:
+            return each[0].of(self.rows)
+        σ_YY, σ_XX, v_X = (
+            np.concatenate([getattr(surface, name) for surface in each])
+            for name in ("σ_YY", "σ_XX", "v_X")
+        )
+        turns = together([surface.turns for surface in each if surface.turns])
+        return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

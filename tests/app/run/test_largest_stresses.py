@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from galinx.solvers.fem.kinked import Ends, places_of_kinks
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from support import THOROUGH, computed
 
 import galinx
@@ -73,7 +73,7 @@ def refused(scene, share, mu):
     solved = contacts(response, np.append(mu, -mu), scene.body.profile, scene.body.compression)
     try:
         for centre, half_width in zip(solved.of("centre"), solved.of("half_width")):
-            places_of_kinks(scene.body, Ends(centre, half_width, 0.0))
+            EndsBetweenKinks(scene.body, (centre, half_width), scene.solve.tolerance)
     except SolveError:
         return True
     return False

@@ -133,9 +133,10 @@ _SQUARE, _SHARE = 0.5, 0.5
 #: grows by; measured, with a factor of 2. The last is the share of the tolerance for each.
 #: What moves the substrate strains layers that are stiffer and thick by so much more stress: the first is
 #: larger by that, and the second less small; measured with layers of 0.3 to 100 times the substrate's
-#: modulus, 0.2 to 5 a thick. Their length over their depth, alike; and how thick a layer is for that.
+#: modulus, 0.2 to 8 a thick, with boundaries at up to 20 lengths of the layers. Their length over their
+#: depth, alike; how thick a layer is for that; and how much longer is long where a layer is thicker.
 _MOMENT, _CUBED, _LONG, _OF_FAR = 0.5, 0.1, 30.0, 0.1
-_ALIKE, _THICK = 2.0, 2.0
+_ALIKE, _THICK, _LONGER = 2.0, 2.0, 6.0
 #: Factor by which that share is smaller for stresses.
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
@@ -204,7 +205,7 @@ class OnLayers(MeshKind):
     @property
     def _cubed(self) -> float:
         at_rest = self.left * self.far_length
-        long = _LONG * max(1.0, 2.0 * (self.depths[-1] / _THICK) ** 2)
+        long = _LONG * max(1.0, _LONGER * (self.depths[-1] / _THICK) ** 2)
         return _CUBED * min(1.0, long / at_rest) / self.left**0.5
 
     @property

@@ -392,10 +392,28 @@ def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that
 
 
-def _depth(data: dict[str, Any], _: float) -> float | None:
-    fem, exact = (data[row.path] for row in to.DEPTH.values())
-    off = np.abs(fem - exact)
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None
+def _depth(data: dict[str, Any], load: Any) -> float | None:
+    """Largest relative error of the stresses that depths d of yield stand for.
+
+    At sharp edges they are a power of d. Elsewhere, with the load N₁ of first yield, the logarithm of the
+    stress over the strength falls from ln(N/N₁) at the place of the largest to 0 at d. Where N₁ is not
+    known, the square of the difference of d stands for it, as next to that place.
+    """
+    exact, fem = (data[to.DEPTH[method].path] for method in (CLOSED_FORM, FEM))
+    deep = np.maximum(np.maximum(fem, exact), _NO_REACH)
+    off = np.abs(fem - exact) / deep
+    if to.REACH_LEFT[FEM].path in data:
+        power = -np.minimum(data[of.ALPHA.path], data[of.BETA.path])
+        off = np.abs((np.maximum(fem, _NO_REACH) / np.maximum(exact, _NO_REACH)) ** power - 1.0)
+    elif to.FIRST_LOAD[CLOSED_FORM].path in data:
+        first, top = (data[row[CLOSED_FORM].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))
+        below = np.maximum(deep + top, _NO_REACH)  # the place of the largest stress, Y < 0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.minimum(np.abs(fem - exact) / below, 1.0)
+            off = np.where(first > 0.0, np.maximum(np.log(load / first), 0.0) * share, off)
+    else:
+        off = off**2
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that
 
 
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
@@ -506,8 +524,8 @@ RULES: Registry[Rule] = Registry(
             tolerances=1.0,
         ),
         "depth of yield": Rule(
-            "depth of the yielded zone, over a",
-            (*to.DEPTH.values(),), _depth, own_pressure=True,
+            "depth of the yielded zone, as a stress, relative",
+            (*to.DEPTH.values(),), _depth, tolerances=1.0, own_pressure=True,
         ),
         "estimate of yield": Rule(
             "estimated error of stresses from which yield is computed, relative", (to.ESTIMATE_YIELD,),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
-from .compare import RULES, Rule
+from .compare import RULES, Rule, largest_of
 from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
@@ -90,8 +90,8 @@ def _squares(α: float, β: float, count: int) -> NDArray[np.float64]:
     return np.concatenate([[first], rest])
 
 
-#: Names of rules: for both methods, and for finite elements.
-BOTH, OF_FEM = "over time", "estimate over time"
+#: Names of rules: for both methods, for finite elements, and for the integral equation alone.
+BOTH, OF_FEM, OF_SIE = "over time", "estimate over time", "residual over time"
 
 #: Least centre of the pressure over a to which differences are relative.
 _NO_LEAN = 1e-2
@@ -163,6 +163,13 @@ RULES.register(
     OF_FEM,
     Rule("estimated error over time, over the largest", (rows.ESTIMATE,), _estimate, tolerances=1.0),
 )
+RULES.register(
+    OF_SIE,
+    Rule(
+        "residual of the integral equation and of the load over time, relative",
+        (rows.RESIDUAL,), largest_of(rows.RESIDUAL), tolerances=1.0,
+    ),
+)  # fmt: skip
 
 
 #: Largest relative change of distance times time, over the second half of a motion, that counts as an

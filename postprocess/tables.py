@@ -341,7 +341,7 @@ def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
     c, g, steady = (
         data[row.path][:LIMIT] for row in (over_time.SPEED, over_time.RATIO, over_time.STEADY_CENTRE)
     )
-    ways = ["-+"[way > 0.0] + "X" for way in data[over_time.DIRECTION.path][:LIMIT, -1]]
+    ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:LIMIT, -1]]
     by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
     last = [data[row[method].path][:LIMIT, -1] for row in by_method]
     off, near = data[over_time.OFF[method].path], data[over_time.WITHIN[method].path][:, 1]

@@ -115,6 +115,8 @@ def clean_environment():
         "OMPI_MCA_hwloc_base_binding_policy": "none",
         "PRTE_MCA_hwloc_default_binding_policy": "none",
         "PYTHONPATH": str(HOME),
+        # What one process compiles is there for the next, whatever the shell says.
+        "PYTHONDONTWRITEBYTECODE": "",
     }
 
 

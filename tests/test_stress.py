@@ -25,7 +25,8 @@ def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(
         matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
     )
-    monkeypatch.setattr(matrix, "all_kinds", lambda seed, _: all_kinds.all_kinds(seed, 1))
+    # The first scene of this seed is solved in a moment.
+    monkeypatch.setattr(matrix, "all_kinds", lambda *_: all_kinds.all_kinds(2, 1))
     assert matrix.stress(Folder(tmp_path), scenes=4)
     printed = capsys.readouterr().out
     assert "verdict: PASS" in printed and "FAILS" not in printed

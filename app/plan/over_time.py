@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
-from galinx.postprocess.over_time import BOTH, OF_FEM
+from galinx.postprocess.over_time import BOTH, OF_FEM, OF_SIE
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.postprocess.surface_over_time import ALONG, AT_ENDS, BALANCE, WORKS
 from galinx.postprocess.surface_over_time import OF_FEM as OF_SURFACE
@@ -492,9 +492,9 @@ class Starts:
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which results of finite elements are checked."""
+        """Names of the rules by which results are checked."""
         if FEM not in self.methods:
-            return frozenset()
+            return frozenset({OF_SIE})
         return rules(SIE in self.methods, self.steady, bool(self.every), self.sharp)
 
     def words(self, solid: Solid) -> list[str]:

@@ -30,8 +30,6 @@ from galinx.postprocess.quantities import (
 )
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
 from galinx.postprocess.tables import Scaling, Sheet, as_archived, parameters, solved_speeds, starts_sheet
-from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.contact.stresses import NEAR
 from galinx.texts import counted
 
 from ..console import program
@@ -51,6 +49,7 @@ _PREFIXES, _MIDDLE = "pnµm kMGT", 4
 
 
 #: By method.
+_LOWEST = stresses.LOWEST | layers.LOWEST
 _K_I_LEFT, _K_I_RIGHT = states.K_I_LEFT | layers.K_I_LEFT, states.K_I_RIGHT | layers.K_I_RIGHT
 
 
@@ -117,18 +116,14 @@ def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
         middle = int(np.abs(X).argmin())
         pressure = -stress[:, 0] * data[row.path][:, middle]
         yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
-    away = from_edge(X) >= NEAR
-    for row in _either(data, stresses.IN_PLANE | layers.IN_PLANE):
-        σ, places = stress * data[row.path][:, away], X[away]
-        beyond = f"further than {NEAR:g} a from the edges"
-        for name, at in (("tension", σ.argmax()), ("compression", σ.argmin())):
-            state, point = np.unravel_index(int(at), σ.shape)
-            if (σ[state, point] > 0.0) == (name == "tension"):
-                yield Answer(
-                    f"Largest in-plane {name} σ_XX on the surface, {beyond}",
-                    _engineering(abs(float(σ[state, point])), "Pa"),
-                    f"state {state}, X/a = {places[point]:.4g}",
-                )
+    beyond = "" if scene.body.finite else ", further than 0.01 a from sharp edges and 0.02 a from tips"
+    ends = (("tension", 1.0, stresses.HIGHEST | layers.HIGHEST), ("compression", -1.0, _LOWEST))
+    for name, sign, rows in ends:
+        for row in _either(data, rows):
+            σ = sign * stress[:, 0] * data[row.path]
+            if (largest := float(σ.max())) > 0.0:
+                what = f"Largest in-plane {name} σ_XX on the surface{beyond}"
+                yield Answer(what, _engineering(largest, "Pa"), f"state {int(σ.argmax())}")
 
 
 def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
@@ -136,22 +131,27 @@ def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
     if method is None:
         return
-    stress, X = stress_of_states(data, scene), data[layers.ALONG_X.path]
-    YY, XY, above, below = (stress[..., None] * data[row.path] for row in layers.INTERFACES[method])
+    stress, rows = stress_of_states(data, scene), layers.INTERFACE_EXTREMES[method]
+    # Of σ_YY, σ_XY and σ_XX above and below: the largest value, its place, the smallest and its place.
+    normal, shear, above, below = (rows[first : first + 4] for first in range(0, 16, 4))
+    parts = (
+        ("shear |σ_XY| at", ((1.0, *shear[:2]), (-1.0, *shear[2:]))),
+        ("tension σ_YY at", ((1.0, *normal[:2]),)),
+        ("in-plane tension σ_XX just above", ((1.0, *above[:2]),)),
+        ("in-plane tension σ_XX just below", ((1.0, *below[:2]),)),
+    )
     depths = np.cumsum([layer.thickness for layer in scene.layers])
     for i, depth in enumerate(depths.tolist()):
-        parts = {
-            "shear |σ_XY| at": np.abs(XY), "tension σ_YY at": YY,
-            "in-plane tension σ_XX just above": above, "in-plane tension σ_XX just below": below,
-        }  # fmt: skip
         where = f"the interface {_engineering(depth, 'm')} deep"
-        for name, σ in parts.items():
-            state, point = np.unravel_index(int(σ[:, i].argmax()), σ[:, i].shape)
-            if (largest := float(σ[state, i, point])) > 0.0:
+        for name, ends in parts:
+            σ = np.array([sign * stress[:, 0] * data[row.path][:, i] for sign, row, _ in ends])
+            end, state = np.unravel_index(int(σ.argmax()), σ.shape)
+            if (largest := float(σ[end, state])) > 0.0:
+                X = data[ends[end][2].path][state, i]
                 yield Answer(
                     f"Largest {name} {where}",
                     _engineering(largest, "Pa"),
-                    f"state {state}, X/a = {X[point]:.4g}",
+                    f"state {state}, X/a = {X:.4g}",
                 )
 
 

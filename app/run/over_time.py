@@ -166,9 +166,9 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     finer = int(np.ceil(first.duration / first.steps / largest - 1e-9))
     terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
     with clock("integral equation in time"):
-        steps, whole = first.steps * finer, bool(starts.every)
+        steps, whole, alone = first.steps * finer, bool(starts.every), starts.methods == (SIE,)
         punches = {
-            way: StartingPunch(response, solid.limit(), first.duration, steps, terms, whole, way)
+            way: StartingPunch(response, solid.limit(), first.duration, steps, terms, whole, way, alone)
             for way in {drive.way for drive in starts.drives[c]}
         }
         motions = []
@@ -193,6 +193,8 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
                 path: _until_the_end(value[finer - 1 :: finer], starts)
                 for path, value in datasets.items()
             }
+            if alone:
+                datasets[rows.RESIDUAL.path] = np.array(course.residual)
             if starts.every:
                 datasets |= surface_over_time.stress_datasets(
                     SIE, _along_surface(course, finer, response, drive, starts)

@@ -92,6 +92,12 @@ ESTIMATE = _row(
     "estimated error over time of v0, centre times load, and K_I, over the largest of each",
     (START,), _NOT_NEGATIVE, method=FEM, accuracy=True,
 )  # fmt: skip
+RESIDUAL = _row(
+    "sie/residual", "1",
+    "residual of the integral equation over time where it is the only method, by steps and tests of its "
+    "own, over the largest indentation, or of the pressure's resultant, over the largest load",
+    (START,), _NOT_NEGATIVE, method=SIE, accuracy=True,
+)  # fmt: skip
 
 
 #: Shares of steady motion within which a start is reported to be.

@@ -68,8 +68,9 @@ def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> Pr
     """Moments that recover the pressure over layers; None on a solid without layers."""
     if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
         return None
-    graded = graded_from_the_surface(solid)
-    return PressureMoments(Stretch(kind.length, graded), kind.moments(required) + _MORE_GRADED * graded)
+    graded, top = graded_from_the_surface(solid), solid.layers[0]
+    stretch = Stretch(kind.length, graded, graded and top.bottom.μ > top.solid.μ)  # type: ignore[union-attr]
+    return PressureMoments(stretch, kind.moments(required) + _MORE_GRADED * graded)
 
 
 def required_of_free_ends_on_layers(required: Requirements) -> Requirements:

@@ -228,6 +228,8 @@ _RANGE_AT_END, _SAMPLES, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
 #: of the farthest sample; and the truncation error of the series over the cube of that distance, which
 #: may be a tenth of the tolerance.
 _NEAREST_AT_KINK, _FARTHEST_AT_KINK, _LEFT_OUT = 0.015, (5e-3, 2e-2), 7e-4
+#: Least distance of the farthest sample over the length of the innermost cell.
+_CELLS_SAMPLED = 2.0
 #: Distance of the farthest sample over the usual one, to measure the truncation error of the series.
 FARTHER = 2.0
 #: Distance over a from an end within which stresses outside the contact give the limit at the end;
@@ -722,9 +724,13 @@ class KinkedPressure:
 
     def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
         """Continuation of the pressure to a kink from one side."""
-        ends = np.concatenate([[-1.0], self.kinks, [1.0]])
-        gap = side * (ends[number + (0 if side < 0.0 else 2)] - self.kinks[number])
-        return towards_kink(float(gap), self._exponent, self._farthest, farther)
+        gaps = np.diff(np.concatenate([[-1.0], self.kinks, [1.0]]))[number : number + 2]
+        right = int(side > 0.0)
+        # Either side's series are smooth as far as the nearer neighbour, whichever side that is on; but
+        # samples that all lie in the innermost cell would show nothing of its error.
+        cell = float(self._facets_beside(self.kinks[[number]])[right, 0])
+        gap = min(float(gaps[right]), max(float(gaps.min()), _CELLS_SAMPLED * cell / self._farthest))
+        return towards_kink(gap, self._exponent, self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""

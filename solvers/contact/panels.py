@@ -38,6 +38,9 @@ _NEAR = 2.4
 #: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
 _FAR, _CLOSE = 200.0, 0.1
 
+#: Kernels at once: these and what becomes of them stay in a core's cache.
+_AT_ONCE = 20_000
+
 #: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
 _AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
 
@@ -115,24 +118,26 @@ class Panels:
             f: values at :attr:`t`, (n,), or (points, n) if f differs from y to y.
             y: (points,).
         """
-        return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, False)
+        return self._transform(f, y, False)
 
     def derivative(self, f: NDArray, y: NDArray) -> NDArray[np.complex128]:
         """Derivative dT/dy off the real axis, (points,), for f at :attr:`t`, (n,)."""
-        return self._transform(np.broadcast_to(f, (len(y), f.shape[-1])), y, True)
+        return self._transform(f, y, True)
 
     def _transform(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-        values = f[:, :-2].reshape(len(y), *self.x.shape)
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
         near = np.abs(ζ + root) < _NEAR
-        kernel = _kernels(self.b, self.x, y, derived)
-        by_panel = ((values * kernel) @ _w) * self.half
-        integral = np.where(near, 0.0, by_panel).sum(axis=1)
+        rule = f[..., :-2] * (np.exp(self.b * self.x) * self.half[:, None] * _w).ravel()
+        integral = np.concatenate([
+            _sums(self.b, self.x, y[of], near[of], rule if f.ndim == 1 else rule[of], derived)
+            for of in _blocks(len(y), self.x.size)
+        ])  # fmt: skip
         point, panel = np.nonzero(near)
         ξ = self.x[panel] - y[point][:, None]
         simple, double = _smooth(self.b, ξ, derived)
-        of_panel = values[point, panel]
+        values = f[..., :-2].reshape(*f.shape[:-1], *self.x.shape)
+        of_panel = values[panel] if f.ndim == 1 else values[point, panel]
         # The distance from the end at which two panels meet is the same number, and logarithms cancel.
         from_start, from_end = (y[point] - self.ends[panel + i] for i in (0, 1))
         Q, Q_derived = _second_kind(ζ[point, panel], from_start, from_end, self.half[panel], derived)
@@ -147,7 +152,7 @@ class Panels:
         """Part of T or -dT/dy beyond the panels, where f is that of the ends: two terms of a series."""
         tails: Any = 0.0
         for value, rate, ξ, sign in (
-            (f[:, -2], self.b, -_REACH - y, 1.0), (f[:, -1], self.a, y - _REACH, -1.0)
+            (f[..., -2], self.b, -_REACH - y, 1.0), (f[..., -1], self.a, y - _REACH, -1.0)
         ):  # fmt: skip
             for k in (rate, rate + 1.0):
                 term = np.exp(k * ξ) / k
@@ -155,22 +160,44 @@ class Panels:
         return tails
 
 
-def _kernels(b: float, x: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-    """Kernel :func:`_kernel` at x - y, (points, panels, nodes), by products of exponentials."""
+def _blocks(points: int, nodes: int) -> list[slice]:
+    """Parts of so many points, at least one, each with about :data:`_AT_ONCE` kernels."""
+    step = max(_AT_ONCE // nodes, 1)
+    return [slice(start, start + step) for start in range(0, max(points, 1), step)]
+
+
+def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derived: bool) -> NDArray[Any]:
+    """Sums of :func:`_kernel` at x - y over the panels that are not near, (points,).
+
+    Args:
+        b: exponent of the kernel.
+        x: Gauss points, (panels, nodes).
+        y: (points,).
+        near: panels that are left out, (points, panels).
+        rule: weights times values times e^(bx), (panels·nodes,) or (points, panels·nodes).
+        derived: True for the kernel's negative derivative.
+    """
     far = np.abs(y.real) > _FAR
-    at = np.where(far, 0.0, y)[:, None, None]
-    E = np.exp(x) * np.exp(-at)
-    rest = 1.0 - E
+    at = np.where(far, 0.0, y)
     with np.errstate(divide="ignore", invalid="ignore"):
-        kernel = np.exp(b * x) * np.exp(-b * at) / rest
-        if derived:
-            kernel *= -(b + E / rest)
-    close = np.abs(rest) < _CLOSE
-    close[far] = True
-    point, *node = np.nonzero(close)
-    ξ = x[tuple(node)] - y[point]
-    kernel[close] = _kernel(b, np.where(ξ == 0.0, 1.0, ξ), derived)
-    return kernel
+        rest = 1.0 - np.exp(x) * np.exp(-at)[:, None, None]
+        factor = 1.0 / rest
+        close = (rest.real**2 + rest.imag**2 < _CLOSE**2) & ~near[..., None]
+        point, *node = np.nonzero(close)
+        factor[close] = _pole(x[tuple(node)] - y[point])
+        # k = e^(bξ) R with R = 1/(1 - e^ξ), and k' = k (b - 1 + R).
+        kernel = factor * (1.0 - b - factor) if derived else factor
+    kernel[far] = _kernel(b, x - y[far, None, None], derived) * np.exp(-b * x)
+    kernel[near] = 0.0
+    of_point = "j" if rule.ndim == 1 else "ij"
+    sums = np.einsum(f"ij,{of_point}->i", kernel.reshape(len(y), x.size), rule)
+    return np.where(far, 1.0, np.exp(-b * at)) * sums
+
+
+def _pole(ξ: NDArray) -> NDArray[Any]:
+    """1/(1 - e^ξ) next to its pole, |ξ| about :data:`_CLOSE` at most: Bernoulli's series."""
+    of = ξ * ξ
+    return 0.5 - 1.0 / ξ - ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
 
 
 def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:

@@ -386,9 +386,11 @@ _FINE = 0.3
 #: Number of last polynomials that measure how well a pressure is resolved, and on graded solids, where
 #: the remainder falls like a power of their number.
 _LAST, _LAST_GRADED = 2, 4
-#: Remainder on graded solids over the part of the last polynomials, measured on layers whose moduli grow
-#: three to a hundred times.
-_TAIL = 4.0
+#: Remainder on graded solids over the part of the last polynomials, where the solid softens and where it
+#: stiffens with depth; measured on layers whose moduli fall to a tenth or grow three to three hundred
+#: times, 0.1 to 1.5 a thick, with 18 to 46 functions. In stiffening ones the pressure changes within less
+#: than h, which no number of functions follows.
+_TAIL, _TAIL_STIFFENING = 4.0, 16.0
 #: Highest power of the distance from an end, with its logarithms, among the functions of an end.
 _POWERS = 3
 #: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
@@ -407,10 +409,12 @@ class Stretch:
     Attributes:
         h: length over a within which the pressure changes next to an end.
         graded: True where the solid is graded from the surface on.
+        stiffens: True where it stiffens with depth from the surface on.
     """
 
     h: float
     graded: bool = False
+    stiffens: bool = False
 
     def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
         """Stretched coordinate ζ in [-1, 1] at r, in the shape of r."""
@@ -457,7 +461,8 @@ class Stretch:
         last, f = _LAST_GRADED if self.graded else _LAST, self.values(np.array([-1.0, 1.0]), c.shape[1])
         added = np.abs(c[:, None, -last:] * f[:, -last:]).sum(axis=2)
         share = added.max(axis=1) / np.abs(c @ f.T).max(axis=1)
-        return np.asarray((_TAIL if self.graded else 1.0) * share)
+        tail = _TAIL_STIFFENING if self.stiffens else _TAIL
+        return np.asarray((tail if self.graded else 1.0) * share)
 
     def moved_edges(self, pressure: RecoveredPressure, r: NDArray, length: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced by a length, (states, points).

@@ -12,7 +12,8 @@ Rings around an edge, each a share of the one outside it, and cells of one size 
 one matrix each kind, not one each cell (:func:`model_cells`).
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -242,54 +243,81 @@ _DIGITS = 3
 _ROUNDINGS = 64.0
 
 
-def congruent_cells(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+#: Parts of every rank, in the order of ranks, from the part of one.
+Gather = Callable[[Any], list[Any]]
+
+
+def congruent_cells(
+    corners: NDArray, kinds: NDArray, gather: Gather = lambda part: [part]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Cells that stand for all cells congruent to them but for size, and the model of each cell.
 
+    The largest cell of each kind is its model, on whichever rank it lies: next to a punch edge small
+    cells have few digits of their shape, so matrices by one of them would depend on which rank has it.
+
     Args:
-        corners: vertices, (n, 4, 2 or 3).
+        corners: vertices of this rank's cells, (n, 4, 2 or 3).
         kinds: whole numbers that differ where cells differ in more than their shape, (n,).
+        gather: collects parts of all ranks; collective where the mesh is shared.
 
     Returns:
-        Arrays (m,) and (n,): numbers of the largest cell of each kind, and a place among these for each
-        cell.
+        Vertices of models, (m, 4, 2 or 3), and a place among these for each cell, (n,).
     """
     n = len(corners)
-    relative = (corners - corners[:, :1]).reshape(n, -1)
+    first, _ = _largest(corners, kinds)
+    corners = np.concatenate([corners, *gather(corners[first])])
+    largest, group = _largest(corners, np.concatenate([kinds, *gather(kinds[first])]))
+    model = largest[group[:n]]
+    shape, size = _shapes(corners)
+    # Vertices of a small cell far from the origin have few digits of its shape.
+    rounding = np.finfo(float).eps * np.abs(corners[:n]).max(axis=(1, 2)) / size[:n]
+    alone = np.abs(shape[:n] - shape[model]).max(axis=1) > _ROUNDINGS * rounding
+    model[alone] = np.flatnonzero(alone)
+    models, like = np.unique(model, return_inverse=True)
+    return corners[models], like
+
+
+def _shapes(corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Vertices relative to the first one over a cell's size, (n, 8 or 12), and the sizes, (n,)."""
+    relative = (corners - corners[:, :1]).reshape(len(corners), math.prod(corners.shape[1:]))
     size = np.abs(relative).max(axis=1)
-    shape = relative / size[:, None]
+    return relative / size[:, None], size
+
+
+def _largest(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers of the largest of the cells that seem congruent, (groups,), and the group of each, (n,)."""
+    shape, size = _shapes(corners)
     key = np.column_stack([kinds, np.round(shape * 10**_DIGITS)])
     _, group = np.unique(key, axis=0, return_inverse=True)
-    by_group = np.lexsort([-size, group])
-    largest = by_group[np.flatnonzero(np.diff(group[by_group], prepend=-1))]
-    model = largest[group]
-    # Vertices of a small cell far from the origin have few digits of its shape.
-    rounding = np.finfo(float).eps * np.abs(corners).reshape(n, -1).max(axis=1) / size
-    alone = np.abs(shape - shape[model]).max(axis=1) > _ROUNDINGS * rounding
-    model[alone] = np.flatnonzero(alone)
-    return np.unique(model, return_inverse=True)
+    # Of equal sizes the same one, in whatever order ranks have them.
+    order = np.lexsort([*corners.reshape(shape.shape).T, -size, group])
+    return order[np.flatnonzero(np.diff(group[order], prepend=-1))], group
 
 
 def model_cells(
-    corners: NDArray, chart: Chart, response: Response, constants: Sequence[str]
-) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
-    """Model cells, whose matrices are those of all cells, and the cells that have the matrix of each.
+    corners: NDArray, response: Response, constants: Sequence[str], gather: Gather = lambda part: [part]
+) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
+    """Model cells, whose matrices are those of all cells in a plane, and the cells that have each matrix.
 
     Args:
-        corners: vertices in the chart, (n, 4, 3).
-        chart: of the mesh.
+        corners: vertices of this rank's cells in the chart, (n, 4, 3).
         response: of the half-plane.
         constants: names of the weak form's constants.
+        gather: as in :func:`congruent_cells`.
+
+    Returns:
+        Vertices of models, (m, 4, 3), and the numbers of this rank's cells like each.
     """
-    each = np.arange(len(corners))
-    if not chart.similar or not len(each):
-        return each, list(each[:, None])
-    kinds = np.zeros_like(each)
+    kinds, graded = np.zeros(len(corners), dtype=np.int64), np.zeros(len(corners), dtype=bool)
     if isinstance(response, ByCells):
-        solid = response.solids(corners[..., 1].mean(axis=1))
-        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])
-        kinds = np.where(graded[solid], len(graded) + each, solid)
-    models, like = congruent_cells(corners, kinds)
-    return models, np.split(np.argsort(like, kind="stable"), np.cumsum(np.bincount(like))[:-1])
+        kinds = response.solids(corners[..., 1].mean(axis=1))
+        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])[kinds]
+    even = np.flatnonzero(~graded)
+    models, like = congruent_cells(corners[even], kinds[even], gather)
+    members = np.split(even[np.argsort(like, kind="stable")], np.cumsum(np.bincount(like))[:-1])
+    # A cell of a graded solid is like no other.
+    own = np.flatnonzero(graded)
+    return np.concatenate([models, corners[own]]), [*members[: len(models)], *own[:, None]]
 
 
 @dataclass(frozen=True)

@@ -424,24 +424,24 @@ class PunchLevel:
 
         In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
         under a flat punch all the same. Over layers they differ, and a single state has no flat punch
-        beside it: what the solve leaves of its forces stands for rounding there.
+        beside it: what the solve leaves of its forces stands for rounding there. Stresses are relative to
+        those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
+        they are not, and their rounding is as large.
         """
-        if self._only:
-            contact, pressure = self._only.contact, self.ends.pressure(self, self._only)
-            stresses = self._gauges.rounding(g, contact.weights, self._on_surface(pressure))
-            return [self.factor.largest_residual, *stresses]
+        states = self.states(g)
+        own = states.contact.g, states.contact.weights, self._on_surface(states.pressure)
         if not self.mirrored:
-            flat = self.punch.states(g, flat=True)
-            pressure = self.over_flat(flat, g)
-            K_left, K_right = pressure.K_I.T
-            layered = self.task.body.layered
-            of_edges = self.factor.largest_residual if layered else np.abs(K_left / K_right - 1.0).max()
-            return [float(of_edges), *self._gauges.rounding(g, flat.weights, self._on_surface(pressure))]
-        both = []
+            of_edges = self.factor.largest_residual
+            if not (self.ends.single or self.task.body.layered):
+                K_left, K_right = self.over_flat(self.punch.states(g, flat=True), g).K_I.T
+                of_edges = float(np.abs(K_left / K_right - 1.0).max())
+            return [of_edges, *self._gauges.rounding(*own)]
+        both, size = [], self._gauges.size(*own)
         for sign in (1.0, -1.0):
             flat = self.punch.states(sign * g, flat=True)
             pressure = self.over_flat(flat, sign * g)
-            gauges = self._gauges.mirrored(sign, sign * g, flat.weights, self._on_surface(pressure))
+            σ_YY = self._on_surface(pressure)
+            gauges = self._gauges.mirrored(sign, sign * g, flat.weights, σ_YY, size)
             both.append([ladder.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
         return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
 

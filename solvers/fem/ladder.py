@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from galinx.meshes.kind import DEGREES
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stresses
+from ..contact.edges import from_edge
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import FemPlan, levels
 from ..contact.recovery import RecoveredPressure
@@ -97,6 +98,10 @@ def of_interfaces(σ: NDArray) -> Gauge:
     return Gauge(AT_INTERFACES, values, of)
 
 
+#: Words of output.quantities that request stresses, in the order of their gauges.
+_STRESSES = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
+
+
 class StressGauges:
     """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
@@ -107,7 +112,8 @@ class StressGauges:
     """
 
     def __init__(self, work: Any, task: Task, displaced: Callable[[Task], Displacement]) -> None:
-        self._words, self._task = work.stresses, gauged(task)
+        self._words = [word for word in _STRESSES if word in work.stresses]
+        self._task = gauged(task)
         self._displacement = displaced(self._task)
         self._displacement.prepare(self._words)
 
@@ -134,24 +140,55 @@ class StressGauges:
             gauges.append(of_interfaces(self._displacement.interfaces(weights)))
         return gauges
 
-    def mirrored(self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
+    def mirrored(
+        self, sign: float, g: NDArray, weights: NDArray, σ_YY: NDArray, size: NDArray | None
+    ) -> list[Gauge]:
         """Gauges of states, of their mirror images where the sign is negative.
 
-        Points inside have no mirror image, those on the surface have: σ_XX there stands for both.
+        Points inside have no mirror image, those on the surface have: σ_XX there stands for both, no
+        nearer to an edge than the points are.
+
+        Args:
+            sign: 1, or -1 for the mirror images.
+            g, weights, σ_YY: as of :meth:`of`.
+            size: sizes to which changes are relative, (states, n), of :meth:`size`.
         """
-        if not self._words:
+        if size is None:
             return []  # no derivative is taken that is not requested
         surface = self._displacement.surface(g, weights, σ_YY).σ_XX[:, :: int(sign)]
-        return [replace(of_in_plane(surface, self._task.places.X), word=word) for word in self._words]
+        kept = [(word, self._as_near(word)) for word in self._words]
+        return [Gauge(word, surface[:, near], size[:, near]) for word, near in kept]
+
+    def size(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64] | None:
+        """Sizes of σ_XX on the surface, (states, n), None where no stress is requested."""
+        if not self._words:
+            return None
+        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+        return stresses.of_in_plane(σ_XX, self._task.places.X)
 
     def rounding(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[float]:
-        """Effect of rounding of the fields on stresses, relative: that on the surface for every word."""
-        if not self._words:
+        """Effect of rounding of the fields on stresses, relative, by word.
+
+        It is that on the surface, no nearer to an edge than the word's points are.
+        """
+        size = self.size(g, weights, σ_YY)
+        if size is None:
             return []
-        σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
-        noise = self._displacement.rounding(weights) / stresses.of_in_plane(σ_XX, self._task.places.X)
+        noise = self._displacement.rounding(weights) / size
         solved = _SOLVED / self._task.response.margin**0.5
-        return [solved * float(noise.max())] * len(self._words)
+        return [solved * float(noise[:, self._as_near(word)].max()) for word in self._words]
+
+    def _as_near(self, word: str) -> NDArray[np.bool_]:
+        """Mask of the places on the surface no nearer to an edge than the places of a word, (n,)."""
+        places = self._task.places
+        X, Y = places.X, np.zeros(1)
+        if word in (BELOW, YIELD):
+            X, Y = (places.points if word == BELOW else places.around).T
+        elif word == AT_INTERFACES:
+            X, Y = places.along, places.interfaces[:, None]
+        on_surface = from_edge(places.X)
+        nearest = np.hypot(from_edge(X), Y).min(initial=np.inf)
+        return np.asarray(on_surface >= min(nearest, on_surface.max()))
 
 
 def gauged(task: Task) -> Task:
@@ -312,6 +349,12 @@ PROBES = 9
 #: to the highest degree exceeds the tolerance by this factor.
 _DECAY, _DOUBT = 2, 3.0
 
+#: Share of a part of the error at the degree before from which on it is the same at all degrees.
+_LASTS = 0.7
+
+#: Share of a bound on rounding that rounding takes at least, see ``_SOLVED``.
+_CERTAIN = 0.2
+
 
 @contextmanager
 def climbed(
@@ -370,7 +413,7 @@ def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
         loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
     error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
-    while not plan.fixed and ladder.degree < DEGREES[1] and error.excessive:
+    while not plan.fixed and ladder.degree < DEGREES[1] and error.of_degree:
         if _stalls(changes, ladder.degree, share * plan.tolerance):
             break
         ladder.add(g, ladder.degree + 1)
@@ -401,8 +444,12 @@ class MeasuredError:
 
     Attributes:
         changes: largest change of the probes from the degree before, by degree; none at a fixed degree.
-        excessive: True where an error exceeds the tolerance, and a higher degree would make it smaller.
-        of_cells: True where, besides, most of it is neither rounding nor the effect of the outer radius.
+        excessive: True where an error exceeds the tolerance, and most of it is not of the outer radius.
+        of_degree: True where, besides, most of it, or enough for the tolerance, is not of what lasts at
+            any degree, see :meth:`_lasting`.
+        floor: least error that finer cells would leave, of the probes.
+        of_cells: True where, besides, most of it does not last on finer cells either, and the floor is
+            within tolerance.
         worst: largest relative error of the probes.
     """
 
@@ -413,6 +460,7 @@ class MeasuredError:
         gauges = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(gauges)
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
+        self._bounds = dict(self._rounding)
         if not ladder.levels[-1].mirrored:
             # Only what rounding might do is known there; what it does is in the last change, once.
             for word, changes in self._sample.items():
@@ -431,9 +479,14 @@ class MeasuredError:
             name: error > np.maximum(tolerance, 1.1 * unseen[name]) for name, error in errors.items()
         }
         self.excessive = any(bool(states.any()) for states in wrong.values())
-        self.of_cells = not ladder.work.plan.fixed and any(
-            bool((states & (2.0 * (ROUNDING * self._rounding[name] + unseen[name]) < errors[name])).any())
-            for name, states in wrong.items()
+        lasting = self._lasting(gauges, unseen, errors)
+        mended = any(
+            bool((states & (2.0 * lasting[name] < errors[name])).any()) for name, states in wrong.items()
+        )
+        self.floor = self._floor(gauges)
+        self.of_cells = not ladder.work.plan.fixed and mended and self.floor <= tolerance
+        self.of_degree = mended or any(
+            bool((states & (lasting[name] <= tolerance)).any()) for name, states in wrong.items()
         )
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
         self._tolerance = tolerance
@@ -442,10 +495,13 @@ class MeasuredError:
         """This error, after a warning where the tolerance is not reached."""
         ladder = self._ladder
         if self.excessive and not ladder.work.plan.fixed:
+            rest = "and falls too slowly"
+            if self.floor > self._tolerance:
+                rest = f"of which {self.floor:.1e} would remain on any cells"
             ladder.work.warn(
                 f"finite elements at c = {ladder.task.response.c:g} do not reach the tolerance "
                 f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
-                f"{ladder.degree}, and falls too slowly"
+                f"{ladder.degree}, {rest}"
             )
         return self
 
@@ -480,6 +536,43 @@ class MeasuredError:
             + ROUNDING * self._rounding[word]
             for word, changes in _changes(gauges).items()
         }
+
+    def _lasting(
+        self, gauges: list[list[Gauge]], unseen: dict[str, NDArray], errors: dict[str, NDArray]
+    ) -> dict[str, NDArray[np.float64]]:
+        """Parts of errors that remain at any degree and on finer cells, (states,), by word.
+
+        These are the effect of the outer radius, rounding, and what a level shows by itself where the
+        degree before showed hardly more. Changes that a bound on rounding explains, and that are no
+        smaller than those of the degree before, are rounding, and all of the error is.
+        """
+        lasting, own = {}, self._own(gauges)
+        for word in errors:
+            lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own[word]
+            earlier, change = (float(changes.max()) for changes in self._sample[word][-2:])
+            if _LASTS * earlier <= change <= ROUNDING * self._bounds[word]:
+                lasting[word] = np.maximum(lasting[word], errors[word])
+        return lasting
+
+    def _own(self, gauges: list[list[Gauge]]) -> dict[str, Any]:
+        """Errors that a level shows by itself where the level before showed hardly more, by word.
+
+        Over layers these may fall later: with the degree more functions recover the pressure.
+        """
+        if self._ladder.task.body.layered:
+            return {last.word: 0.0 for last in gauges[-1]}
+        return {
+            last.word: np.where(last.unresolved > _LASTS * earlier.unresolved, last.unresolved, 0.0)
+            for earlier, last in zip(*gauges[-2:])
+        }
+
+    def _floor(self, gauges: list[list[Gauge]]) -> float:
+        """Rounding that is certain, and what levels show by themselves; largest of all words."""
+        certain = 1.0 if self._ladder.levels[-1].mirrored else _CERTAIN
+        return max(
+            float(np.max(ROUNDING * certain * self._bounds[word] + own))
+            for word, own in self._own(gauges).items()
+        )
 
     def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:
         """Estimated relative errors by changes from level to level, (states,)."""

@@ -322,13 +322,22 @@ class Space:
         with self.clock("assembly"):
             first, last = self._range
             A = empty_matrix(blocks, first // 2, last // 2, self.comm)
-            models, members = model_cells(self.vertices, self.chart, response, self.form.constants)
-            for batch in self.pieces(len(models)):
-                for S, cells in zip(self.condensed(response, models[batch]), members[batch]):
-                    for rows in blocks[cells]:
-                        A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
+            for S, cells in self._matrices(response):
+                for rows in blocks[cells]:
+                    A.setValuesBlocked(rows, rows, S.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
             A.assemble()
         return A
+
+    def _matrices(self, response: Response) -> Iterator[tuple[NDArray, NDArray]]:
+        """Condensed matrices, and the numbers of this rank's cells that have each; collective."""
+        if not self.chart.similar:
+            cells = np.arange(len(self.vertices))[:, None]
+            for batch in self.pieces(len(cells)):
+                yield from zip(self.condensed(response, batch), cells[batch])
+            return
+        models, members = model_cells(self.vertices, response, self.form.constants, self.comm.allgather)
+        for batch in self.pieces(len(models)):
+            yield from zip(self._cells(self.kernel.condense, response, models[batch]), members[batch])
 
     def fetch(self, fields: Sequence[PETSc.Vec], numbers: NDArray[np.int32]) -> NDArray[np.float64]:
         """Values of fields at nodes, (*numbers.shape, 2, fields), by their first unknowns' numbers.
@@ -373,7 +382,8 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        E = self._kept[1][cells] if self._kept else self._cells(self.kernel.extend, response, cells)
+        kept, corners = self._kept, self.vertices[cells]
+        E = kept[1][cells] if kept else self._cells(self.kernel.extend, response, corners)
         kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
@@ -423,7 +433,7 @@ class Space:
         chunks = list(self.pieces(len(self.outer_numbers))) or [slice(0, 0)]
         with self.clock("assembly"):
             self._kept = tuple(
-                np.concatenate([self._cells(part, response, cells) for cells in chunks])
+                np.concatenate([self._cells(part, response, self.vertices[cells]) for cells in chunks])
                 for part in (self.kernel.condense, self.kernel.extend)
             )
         try:
@@ -438,10 +448,13 @@ class Space:
 
     def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
-        return self._kept[0][cells] if self._kept else self._cells(self.kernel.condense, response, cells)
+        if self._kept:
+            return self._kept[0][cells]
+        return self._cells(self.kernel.condense, response, self.vertices[cells])
 
-    def _cells(self, part: Callable[..., NDArray], response: Response, cells: Any) -> NDArray[np.float64]:
-        corners = self.vertices[cells]
+    def _cells(
+        self, part: Callable[..., NDArray], response: Response, corners: NDArray
+    ) -> NDArray[np.float64]:
         return part(self.densities(response, corners), self.contracted(response), corners)
 
     def surface_facets(self, parts: Sequence[str]) -> SurfaceFacets:

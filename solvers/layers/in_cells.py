@@ -52,7 +52,8 @@ class FarField:
         )
         z = X[:, None, None] * np.eye(2) + below[:, None, None] * self.substrate.G.conj()
         heights, which = np.unique(np.maximum(Y, -self.D), return_inverse=True)
-        more = np.array([self._moved(height) for height in heights.tolist()])[which]
+        moved = [self._moved(height) for height in heights.tolist()]  # none on a rank without far nodes
+        more = np.reshape(moved, (-1, 2, 2))[which]
         w = inverse(z) @ (self._below + more)
         for load, t in zip(displacement, LOADS):
             load += (1j * w @ t).real.T / np.pi

@@ -14,7 +14,7 @@ each s once, whatever the friction, and is smooth in each panel of distances but
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 
@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..solids.solid import Response
 from .line_load import both_sides
 from .march import FrictionInterpolation, Radau, march
+from .residual import Residual
 from .transform import Basis, Transformed, Weighted, divided, response_at
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
@@ -189,6 +190,8 @@ class Course:
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
         surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less the stresses before
             t = 0; None where they are not computed.
+        residual: larger one of that of :class:`.residual.Residual` and of the load's, over its largest,
+            dimensionless; NaN where it is not computed.
     """
 
     t: NDArray[np.float64]
@@ -203,6 +206,7 @@ class Course:
     σ_XX_left: NDArray[np.float64]
     σ_XX_right: NDArray[np.float64]
     surface: NDArray[np.float64] | None = None
+    residual: float = np.nan
 
 
 class StartingPunch:
@@ -216,17 +220,19 @@ class StartingPunch:
         terms: polynomials of the pressure.
         surface: True to compute stresses at ``ON_SURFACE``.
         way: ±1, in which the punch moves along X.
+        checked: True to compute residuals.
     """
 
     def __init__(
         self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24,
-        surface: bool = False, way: int = 1,
+        surface: bool = False, way: int = 1, checked: bool = False,
     ) -> None:  # fmt: skip
         self._response, self._terms = response, terms
         self._scheme = Radau(end, steps)
         s = self._scheme.s
         self._transformed = Transformed(response, rayleigh, s, terms, way=way)
         self._along = AlongSurface(response, rayleigh, s, ON_SURFACE, way) if surface else None
+        self._residual = Residual(response, rayleigh, self._t, terms, way) if checked else None
 
     def course(self, g: float, load: Law) -> Course:
         """Motion where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
@@ -238,7 +244,16 @@ class StartingPunch:
         histories = self._scheme.convolved(np.hstack([answers, dragged[..., 0], strains[..., 0]]), load)
         a, v0, u, u_X = np.split(histories, [n, n + 1, 2 * n + 1], axis=1)
         by_friction = _work(self._t, g * a, u, np.zeros(n))
-        return self._course([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
+        course = self._course([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
+        return self._checked(course, [basis], a, load)
+
+    def _checked(self, course: Course, bases: list[Basis], a: NDArray, load: Law) -> Course:
+        """The motion with its residual, by coefficients in σ_YY, less those before t = 0."""
+        if self._residual is None:
+            return course
+        due = load(course.t)
+        off = np.abs(course.load - due).max() / max(np.abs(due).max(), np.finfo(float).tiny)
+        return replace(course, residual=max(self._residual.of(bases, a, course.v0), float(off)))
 
     def _strains(self, basis: Basis) -> NDArray[np.complex128]:
         """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if any, (s, places, terms)."""
@@ -270,7 +285,8 @@ class StartingPunch:
         under = ON_SURFACE[_UNDER]
         begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
         before = begun, occurring[-1] * begun
-        return self._course(bases, marched.a, marched.v0, load, by_friction, u_X, before)
+        course = self._course(bases, marched.a, marched.v0, load, by_friction, u_X, before)
+        return self._checked(course, between.bases, marched.shares[:, -1] - marched.begun, load)
 
     @property
     def _t(self) -> NDArray[np.float64]:

@@ -5,11 +5,9 @@ import re
 import shlex
 import shutil
 import subprocess
-from concurrent.futures import Future
 from pathlib import Path
-from threading import Lock
 
-from support import HOME, clean_environment
+from support import HOME, clean_environment, here
 
 DOCS = HOME / "docs"
 PAGES = [HOME / "README.md", HOME / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
@@ -22,8 +20,12 @@ _COMMAND = re.compile(r"\s*(\w+=\S+ |for .*; do )*\./run\.sh\b")
 _INDENTED = re.compile(r"(?<=\n\n)(?: {4}.*\n)+")
 _NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
-#: No windows, and no compiled files beside the pages.
-SILENT = {"MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1"}
+#: No windows.
+SILENT = {"MPLBACKEND": "Agg"}
+#: The page whose commands are all started as a user does. Of the others those are that ask for ranks,
+#: bring models, which would stay registered, or need a shell; what is left runs in this process.
+STARTED = "README.md"
+_ON_ITS_OWN = ("-n", "-x")
 
 
 def name_of(page):
@@ -80,41 +82,46 @@ def words_of(command):
 
 
 class Shelf:
-    """Runs commands, from several threads; what ran before on the same files is taken from the shelf."""
+    """Runs commands; what ran before on the same files is taken from the shelf."""
 
     def __init__(self, folder):
-        self._folder, self._known, self._lock = folder, {}, Lock()
+        self._folder, self._known = folder, {}
 
     def run(self, command, cwd):
         """Status and output of a command line of a page in ``cwd``."""
         words = words_of(command) or ["paper", "-o", "results"]
         key = (command.split("./run.sh")[0].strip(), *words, *_digests(words, cwd))
-        with self._lock:
-            mine = key not in self._known
-            done = self._known.setdefault(key, Future())
-            folder = self._folder / str(len(self._known))
-        if mine:
-            try:
-                done.set_result(self._record(command, cwd, folder))
-            except BaseException as error:
-                done.set_exception(error)
-        status, told, files = done.result()
-        if not mine:
+        if key in self._known:
+            status, told, files = self._known[key]
             shutil.copytree(files, cwd, dirs_exist_ok=True)
+        else:
+            kept = self._folder / str(len(self._known))
+            status, told, _ = self._known[key] = self._record(command, cwd, kept)
         return status, told
 
     def _record(self, command, cwd, kept):
         before = _state(cwd)
-        done = subprocess.run(
-            ["bash", "-c", command], cwd=cwd, env=clean_environment() | SILENT, text=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=200,
-        )  # fmt: skip
+        status, told = _run(command, cwd)
         kept.mkdir()
         for path, stamp in _state(cwd).items():
             if before.get(path) != stamp:
                 (kept / path).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(cwd / path, kept / path)
-        return done.returncode, done.stdout, kept
+        return status, told, kept
+
+
+def _run(command, cwd):
+    """Status and output of a command line."""
+    words = words_of(command)
+    of_shell = not command.startswith("./run.sh") or {">", "|"} & set(words)
+    if not of_shell and cwd.name != STARTED and words and words[0] not in _ON_ITS_OWN:
+        done = here(*words, cwd=cwd, **SILENT)
+        return done.returncode, done.stdout + done.stderr
+    done = subprocess.run(
+        ["bash", "-c", command], cwd=cwd, env=clean_environment() | SILENT, text=True,
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=200,
+    )  # fmt: skip
+    return done.returncode, done.stdout
 
 
 def _files(cwd):
@@ -122,7 +129,7 @@ def _files(cwd):
     return [
         path.relative_to(cwd)
         for path in cwd.rglob("*")
-        if path.is_file() and path.relative_to(cwd).parts[0] not in ("scenes", "run.sh")
+        if path.is_file() and path.relative_to(cwd).parts[0] not in ("scenes", "run.sh", "__pycache__")
     ]
 
 

@@ -1,12 +1,10 @@
 """What the pages show is run: commands, Python, scenes, the notebook."""
 
-import os
 import re
 import shutil
 import subprocess
 import tomllib
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+from functools import cache
 
 import h5py
 import pytest
@@ -44,22 +42,15 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def outputs(request, tmp_path_factory, folder):
-    """What the examples print, by page; the pages that are tested run side by side."""
+def outputs(tmp_path_factory, folder):
+    """Runs the examples of a page, once, and returns what they print."""
     shelf = Shelf(tmp_path_factory.mktemp("shelf"))
-    pages = {
-        item.callspec.params["page"]: None
-        for item in request.session.items
-        if "outputs" in getattr(item, "fixturenames", ()) and item.path == Path(__file__)
-    }
-    with ThreadPoolExecutor(min(4, os.cpu_count() or 1)) as pool:
-        yield {page: pool.submit(run_page, page, shelf, folder_for(page, folder)) for page in pages}
-        pool.shutdown(cancel_futures=True)
+    return cache(lambda page: run_page(page, shelf, folder_for(page, folder)))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
-    told = outputs[page].result()
+    told = outputs(page)
     faults = [
         f"{page.name} quotes {found}:\n{piece}"
         for block in quotes(page)
@@ -71,7 +62,7 @@ def test_examples_of_a_page_run_and_print_what_it_quotes(page, outputs):
 
 @pytest.mark.parametrize("page", [page for page in PAGES if commands(page)], ids=name_of)
 def test_no_example_of_a_page_fails_at_its_defaults(page, outputs, folder):
-    outputs[page].result()
+    outputs(page)
     archives = sorted((folder / page.name).rglob("*.h5"))
     verdicts = {path.name: _verdict(path) for path in archives}
     assert "FAIL" not in verdicts.values(), verdicts
@@ -84,7 +75,7 @@ def _verdict(path):
 
 @pytest.mark.parametrize("page", [README], ids=name_of)
 def test_the_first_command_reproduces_the_study(page, outputs, folder):
-    printed = outputs[page].result()
+    printed = outputs(page)
     assert (printed.count(" yes "), printed.count(" NO ")) == (12, 0)
     assert (printed.count(" holds: "), printed.count(" does not: ")) == (17, 3)
     names = [*(f"fig{n}" for n in range(1, 11)), "sinusoidal", "laws", "inside", "mesh"]
@@ -164,7 +155,7 @@ def test_the_notebook_runs(tmp_path):
     done = subprocess.run(
         ["/usr/bin/python3", "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=200,
         stdin=subprocess.DEVNULL,
-        env=clean_environment() | {"PYTHONPATH": str(HOME), "PYTHONDONTWRITEBYTECODE": "1"}
+        env=clean_environment() | {"PYTHONPATH": str(HOME)}
         | {"IPYTHONDIR": str(tmp_path / "ipython"), "JUPYTER_RUNTIME_DIR": str(tmp_path / "runtime")},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]

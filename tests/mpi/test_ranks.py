@@ -9,6 +9,7 @@ from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem import fields
+from galinx.solvers.fem.cells import model_cells
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.fields import InteriorGradients
 from galinx.solvers.fem.punch import SlidingPunch
@@ -86,3 +87,20 @@ def test_dolfinx_assembles_the_same_on_all_ranks_together(form):
         punch.destroy()
     np.testing.assert_allclose(loads[1].normal, loads[0].normal, rtol=1e-9)
     np.testing.assert_allclose(loads[1].v0, loads[0].v0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("mesh", ["box", "graded"])
+def test_a_cell_has_the_matrix_that_it_has_on_one_rank(mesh):
+    """At 1e-11 a from an edge vertices have five digits of a cell's shape: the model matters."""
+    refinement, models = MESHES[mesh].refinement(Requirements(1e-6, 1e-7, 1e5)), []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        space = space_on(mesh, refinement, 2, comm)
+        corners, members = model_cells(space.vertices, MovingFrame(2.0, 0.6), (), comm.allgather)
+        of_rank = [
+            (space.vertices[i].tobytes(), of.tobytes())
+            for of, cells in zip(corners, members)
+            for i in cells
+        ]
+        models.append(dict(pair for part in comm.allgather(of_rank) for pair in part))
+    assert len(set(models[0].values())) < len(models[0])
+    assert models[1] == models[0]

@@ -111,15 +111,6 @@ def test_von_mises_and_shear_are_compared_each(which, wanted):
     assert archive(**rows)["largest stresses"] == pytest.approx(wanted)
 
 
-def test_the_depth_of_yield_is_compared_where_there_is_one():
-    def depth(one, other):
-        rows = zip(METHODS, (one, other))
-        return archive(**{f"states/{method}/yield_depth": np.array([d]) for method, d in rows})
-
-    assert depth(0.5, 0.75)["depth of yield"] == 0.25
-    assert "depth of yield" not in depth(np.nan, np.nan)
-
-
 @pytest.mark.parametrize(
     "normal, tangential, wanted", [(-8.0, -4.0, 0.0), (-9.0, -4.0, 0.1), (-8.0, -3.0, 0.1)]
 )
@@ -134,3 +125,26 @@ def test_nodal_forces_are_compared_with_the_resultant_of_a_pressure_that_is_put_
         }
     )
     assert found["resultant"] == pytest.approx(wanted)
+
+
+def depths(exact, fem, **others):
+    data = {f"states/{by}/yield_depth": np.array([d]) for by, d in (("closed_form", exact), ("fem", fem))}
+    others = {f"states/{path}": np.array([value]) for path, value in others.items()}
+    figures = compare.comparisons(data | others, 10.0, ["depth of yield"])
+    return figures[0].value if figures else None
+
+
+def test_a_depth_of_yield_is_judged_as_a_stress():
+    assert compare.RULES["depth of yield"].allowed(1e-3) == 1e-3
+    # Stresses fall like the root of the distance from both edges.
+    edges = {"fem/yield_reach_left": 0.1, "alpha": -0.5, "beta": -0.5}
+    assert depths(0.04, 0.04 * 1.02, **edges) == pytest.approx(1.02**0.5 - 1.0)
+    # σ = 1.2 - 0.8 (d - 0.5)² at depths d passes 1 at d = 1.
+    below = {"closed_form/first_yield_load": 10.0 / 1.2, "closed_form/von_mises_Y_over_a": -0.5}
+    assert 0.002 < depths(1.0, 1.01, **below) < 0.008
+    assert depths(0.0, 0.0, **below) == 0.0
+    # By one method it just does not yield: what is off is the stress above the strength, not the depth.
+    below["closed_form/first_yield_load"] = 10.0 / 1.0001
+    assert depths(0.5, 0.0, **below) == pytest.approx(1e-4, rel=1e-3)
+    assert depths(np.nan, np.nan) is None
+    assert depths(1.0, 1.02) == pytest.approx((0.02 / 1.02) ** 2)

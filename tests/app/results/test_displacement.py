@@ -21,6 +21,8 @@ def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
     from dolfinx.mesh import locate_entities_boundary, meshtags
 
     changes = {"motion.c": c, "solve.mesh": mesh, "solve.tolerance": tolerance}
+    # So fine a tolerance of stresses along the surface would ask for more than this needs.
+    changes |= {"output.quantities": ["sif"]} if tolerance < 1e-6 else {}
     result = computed("tables4_5", ALONE | changes)
     assert result.data["states/f"][0] == 0.0
     u, solid = result.displacement(), result.scene.solid

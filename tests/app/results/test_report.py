@@ -16,6 +16,7 @@ from galinx import compute, template
 from galinx.app.results import report
 from galinx.app.results.report import curves, states_table
 from galinx.app.results.si import scaling
+from galinx.app.scene.read import parse
 from galinx.postprocess.page import markup
 
 CHROMIUM = shutil.which("chromium")
@@ -273,3 +274,41 @@ def test_in_si_curves_are_in_megapascals(surface_run):
 @pytest.fixture(scope="module")
 def surface_run():
     return computed("tables4_5", {"solve.methods": ["closed_form"]})
+
+
+def in_pascals(text):
+    number, unit = text.split()
+    return float(number) * {"k": 1e3, "M": 1e6, "G": 1e9}[unit[0]]
+
+
+def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
+    """A cylinder of steel, f = 0.15, slowly: 2 f p₀ by friction, and more by Poisson's ratio."""
+    text = (
+        "[solid]\nE = 2.1e11\nnu = 0.3\nrho = 7850\nplane = 'strain'\n"
+        "[punch]\nprofile = 'parabolic'\nradius = 0.005\nload = 1e5\n"
+        "[friction]\nmodel = 'coulomb'\nmu_c = 0.15\n[motion]\nspeed = 1.0\nstrokes = ['forward']\n"
+        "X_over_L = [1.0]\n[solve]\nmethods = ['closed_form']\n[output]\nquantities = ['surface']\n"
+    )
+    scene = parse(text)
+    result = compute(scene)
+    shown = {answer.name: answer for answer in report.answers(result.data, scene)}
+    tension = in_pascals(shown["Largest in-plane tension σ_XX on the surface"].value)
+    p0 = in_pascals(shown["Largest contact pressure"].value)
+    # The surface's own stress next to the end, where it is largest.
+    X, σ = (result.data[f"surface/{path}"] for path in ("X_over_a", "closed_form/sigma_XX"))
+    beside = (
+        p0 * σ[0, np.abs(X + 1.000001).argmin()] / result.data["states/closed_form/largest_pressure"][0]
+    )
+    assert tension == pytest.approx(beside, rel=5e-3) and tension > 2.0 * 0.15 * p0
+
+
+def test_the_largest_shear_at_an_interface_is_that_of_either_sign():
+    scene = template("coating", {"solve.methods": ["sie"], "output.quantities": ["interfaces"]})
+    result = compute(scene)
+    shown = {answer.name: answer for answer in report.answers(result.data, scene)}
+    for name, path in (("shear |σ_XY| at", "sigma_XY"), ("tension σ_YY at", "sigma_YY")):
+        σ = np.nan_to_num(result.data[f"interfaces/sie/{path}"][:, 0])
+        largest = np.abs(σ).max() if "shear" in name else σ.max()
+        unit = scene.body.stress
+        answer = next((shown[key] for key in shown if name in key), None)
+        assert answer and in_pascals(answer.value) == pytest.approx(unit * largest, rel=1e-2)

@@ -63,7 +63,7 @@ def test_states_at_once_are_the_states_one_by_one(tables_run):
 )
 def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
     changes = {"motion.c": c, "solve.tolerance": tolerance, "friction.mu_c": 1.0}
-    data = computed("tables4_5", changes).data
+    data = computed("tables4_5", changes | {"output.quantities": ["sif"]}).data
     true, estimate = data["states/fem/true_error"].max(), data["states/fem/estimate"].max()
     assert true <= tolerance and estimate <= tolerance
     assert true <= estimate
@@ -77,7 +77,7 @@ def test_high_speed():
     assert result.verdict == "PASS"
 
 
-@pytest.mark.parametrize("nu", [-0.9, 0.49, 0.4999, 0.5])
+@pytest.mark.parametrize("nu", [-0.9, 0.4999, 0.5])
 def test_no_solid_locks(nu):
     result = computed("tables4_5", {"solid.nu": nu})
     found = disagreement(result)
@@ -170,7 +170,11 @@ def test_next_to_the_rayleigh_speed_the_measured_error_decides(ν):
 
 @pytest.mark.parametrize(
     ("ν", "c", "g", "tolerance"),
-    [(-0.5, 0.6, 1.1, 3e-3), (0.234, 0.0, 0.65, 8e-3), (0.4, 0.0, 1.0, 5e-3), (-0.8, 0.0, 1.2, 5e-3)],
+    [
+        (-0.5, 0.6, 1.1, 3e-3),
+        (0.234, 0.0, 0.65, 8e-3),
+        *([(0.4, 0.0, 1.0, 5e-3), (-0.8, 0.0, 1.2, 5e-3)] if THOROUGH else []),
+    ],
 )
 def test_what_few_moments_leave_at_the_far_boundary_is_in_the_estimate(ν, c, g, tolerance):
     """Cells better than the tolerance leave the boundary's part, which no level sees."""

@@ -11,7 +11,7 @@ from galinx.app.run.flow import Judge, Memory, compute
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.journal import Journal, Part, joined
 
-SPEEDS = 300
+SPEEDS = 170
 MANY = {
     "motion.c": np.linspace(0.0, 0.9, SPEEDS).tolist(),
     "solve.methods": ["closed_form"],

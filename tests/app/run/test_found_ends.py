@@ -27,12 +27,14 @@ FIBRES = (
 
 
 def scene(
-    punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6
-):
+    punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6,
+    X_over_L=(0.1, 0.7),
+):  # fmt: skip
     return parse(
         f"[solid]\n{solid}\n[punch]\nload = 5e4\n{punch}\n"
         f"[friction]\nmu_c = {mu}\nsigma0_over_load = 6e4\n"
-        f"[motion]\nc = {c}\nX_over_L = [0.1, 0.7]\n[solve]\n{solve}\n[output]\nquantities = {output}\n"
+        f"[motion]\nc = {c}\nX_over_L = {list(X_over_L)}\n[solve]\n{solve}\n"
+        f"[output]\nquantities = {output}\n"
     )
 
 
@@ -100,6 +102,22 @@ def test_hertz_and_where_the_solid_yields_below():
         # von Mises grows with the pressure, like the root of the load.
         at_yield = 5e4 * (300e6 / (of["von_mises"] * 5e4 / (2.0 * h0))) ** 2
         assert of["first_yield_load"] == pytest.approx(at_yield, rel=1e-6)
+
+
+def test_a_tolerance_below_the_rounding_at_free_ends_is_given_up_at_once():
+    """Stresses a millionth of the half-width from an end are rounded; those inside keep their digits."""
+    points = "[[1.0009, -0.0024], [0.0446, -0.0018], [2.1, -0.2]]"
+    output = f'["sif", "surface", "interior"]\npoints = {points}'
+    punch = 'profile = "parabolic"\nradius = 0.1'
+    result = galinx.compute(scene(punch, solve="tolerance = 1.3e-9", output=output))
+    data = result.data
+    σ_XX, exact = (data[f"surface/{method}/sigma_XX"] for method in ("fem", "closed_form"))
+    error = np.abs(σ_XX - exact).max() / np.abs(exact).max()
+    assert result.verdict == "FAIL"
+    assert 1.3e-9 < error <= data["states/fem/estimate_sigma_XX"].max() <= 100.0 * error
+    assert data["states/fem/estimate_inside"].max() <= 0.1 * data["states/fem/estimate_sigma_XX"].max()
+    # No finer cells, of which there would be four times as many.
+    assert data["run/fem/cells"].max() < 400
 
 
 def test_a_tilted_punch_through_lift_off():
@@ -294,7 +312,7 @@ def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
 def test_degrees_converge_under_a_wedge_at_any_tolerance(tolerance, solid, c, mu, output):
     """Cells at its tip are smaller than the nearest distance looked at, and rings not too steep."""
     wedge = 'profile = "wedge"\nslope = 0.0065'
-    result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu))
+    result = galinx.compute(scene(wedge, solid, c, f"tolerance = {tolerance}", output, mu, [0.7]))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert result.data["run/fem/degree"].max() <= 9
 

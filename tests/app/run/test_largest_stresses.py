@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from support import THOROUGH, computed
 
 import galinx
@@ -11,6 +10,7 @@ from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.

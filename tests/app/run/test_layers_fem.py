@@ -11,7 +11,7 @@ from support import THOROUGH
 import galinx
 from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
-from galinx.meshes.layered import on_layers
+from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.solvers.contact import stresses
 from galinx.solvers.layers.in_cells import LayersInCells
@@ -156,6 +156,8 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
 
     near, far = left(50.0), left(100.0)
     assert near < 1e-3
+    # A rank may have no node of the far boundary.
+    assert response.far(np.empty(0), np.empty(0), 1).shape == (1, 2, 2, 0)
     assert 3.5 < near / far < 4.5
 
 
@@ -177,3 +179,17 @@ def test_meshes_follow_interfaces(depths):
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]
         assert np.abs(contact[:, 1, 0] - contact[:, 0, 0]).sum() == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "ratio", "f", "R"),
+    [(4.0, 30.0, 0.5, 5e3), (4.0, 100.0, 0.5, 1.6e4), (2.0, 100.0, 0.5, 8e3), (1.0, 30.0, -0.3, 150.0)],
+)
+def test_the_far_boundary_under_stiff_thick_layers_is_in_the_estimate(
+    monkeypatch, thickness, ratio, f, R
+):
+    """Nearer than the tolerance asks for, so that nearly all of the error is its effect."""
+    solid = Layered((Layer(thickness, Isotropic(ratio, 0.25, ratio**0.5)),), Isotropic(1.0, 0.3, 1.0))
+    monkeypatch.setattr(OnLayers, "radius", lambda self, required: R)
+    data = galinx.compute(scene_of(solid, 0.0, f, tolerance=1e-6)).data
+    assert 3e-6 < off(data) <= data["states/fem/estimate"][0] <= 5.0 * off(data)

@@ -15,12 +15,12 @@ G = np.array([-0.5])
 FIRST = 6
 
 
-def level(value, left=0.0, rounding=0.0):
+def level(value, left=0.0, rounding=0.0, mirrored=True):
     """One number that is relative to 1, and what a level knows of itself."""
     return SimpleNamespace(
         space=SimpleNamespace(cells=1, size=1, degree=FIRST),
         factor=SimpleNamespace(solves=1, iterations=0, largest_residual=0.0, condition=0.0),
-        mirrored=True,
+        mirrored=mirrored,
         measured=lambda g, load=None: [
             Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
         ],
@@ -134,6 +134,55 @@ def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
     assert work.said
 
 
+def test_a_ladder_ends_where_only_what_every_level_shows_is_left():
+    """As where few functions represent a pressure, however well they are resolved."""
+    finer = Work(1e-8, lambda p: 0.0)
+    work = Work(1e-6, None, finer)
+
+    def unresolved(space, g):
+        return level(10.0 ** (2.0 - 1.2 * space[1]), left=1e-5)
+
+    with solved_to_tolerance(work, TASK, G, unresolved) as (ladder, error):
+        assert error.excessive and ladder.work is work and not finer.solved
+        assert 1e-5 <= error.worst <= 3e-5
+    assert max(work.solved) <= FIRST + 1 and work.said
+
+
+@pytest.mark.parametrize("mirrored", [True, False])
+def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored):
+    """Also where errors are larger still, and would fall."""
+
+    def slow(space, g):
+        return level(1e-3 * 0.8 ** space[1] * (-1.0) ** space[1], rounding=1e-6, mirrored=mirrored)
+
+    finer = Work(1e-9, None)
+    with solved_to_tolerance(Work(1e-7, None, finer), TASK, G, slow) as (ladder, error):
+        assert error.excessive and ladder.work is not finer and error.floor > 1e-7
+    (text,) = ladder.work.said
+    assert text.endswith(f"of which {error.floor:.1e} would remain on any cells")
+
+
+def test_a_level_that_shows_less_at_every_degree_is_not_given_up():
+    def resolved(space, g):
+        return level(10.0 ** (2.0 - 1.2 * space[1]), left=10.0 ** (2.0 - space[1]))
+
+    ladder = Ladder(Work(1e-6, None), TASK, resolved)
+    assert not climb(ladder, G).excessive and ladder.degree == 9
+
+
+@pytest.mark.parametrize("ratio, ends", [(1.0, True), (0.4, False)])
+def test_changes_that_a_bound_on_rounding_explains_are_rounding_unless_they_fall(ratio, ends):
+    """Without mirror images only a bound on rounding is known."""
+    work = Work(1e-9, None, Work(1e-11, lambda p: 0.0))
+
+    def noisy(space, g):
+        return level(1e-7 * ratio ** space[1] * (-1.0) ** space[1], rounding=1e-7, mirrored=False)
+
+    with solved_to_tolerance(work, TASK, G, noisy) as (ladder, error):
+        assert ladder.work is work and error.excessive == ends
+    assert (work.solved == [FIRST - 2, FIRST - 1, FIRST]) == ends
+
+
 def test_the_pressure_and_its_moments_are_gauged():
     smooth = np.array([[-0.3, 0.1, *[0.0] * (MOMENTS - 2)]])
     pressure = RecoveredPressure(np.array([-0.4]), np.array([-0.6]), smooth)
@@ -168,6 +217,29 @@ def test_stresses_are_no_better_than_the_last_digits_of_displacements():
     gauges = error.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
     (found,) = gauges.rounding(G, np.ones((1, 1)), np.zeros((1, 2)))
     assert found == pytest.approx(100.0 / 0.2 * 2e-13)
+
+
+def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
+    """Next to an edge cells are small, and derivatives lose digits that those farther away keep."""
+    X = np.array([-2.0, -1.001, 1.001, 2.0])
+    noise = np.array([1e-12, 1e-9, 1e-9, 2e-12])
+
+    def surface(g, weights, σ_YY):
+        return SimpleNamespace(σ_XX=4.0 + np.sign(g) * noise[None])
+
+    displacement = SimpleNamespace(
+        prepare=lambda words: None, surface=surface, rounding=lambda weights: noise[None]
+    )
+    places = SimpleNamespace(X=X, points=np.array([[1.0, -0.5], [0.0, -3.0]]), around=np.empty((0, 2)))
+    task = SimpleNamespace(places=places, response=SimpleNamespace(margin=1.0))
+    gauges = error.StressGauges(
+        SimpleNamespace(stresses={"interior", "surface"}), task, lambda _: displacement
+    )
+    states = np.ones((1, 1)), np.zeros((1, 4))
+    assert gauges.rounding(G, *states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
+    one, other = (gauges.mirrored(sign, sign * G, *states, gauges.size(G, *states)) for sign in (1, -1))
+    changes = [float(gauge.change(mirror).max()) for gauge, mirror in zip(one, other)]
+    assert changes == pytest.approx([2e-9 / 4.0, 3e-12 / 4.0], rel=1e-3)
 
 
 def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():

@@ -17,6 +17,7 @@ from galinx.postprocess.compare import RULES
 from galinx.postprocess.over_time import BOTH, OF_FEM
 from galinx.postprocess.surface_over_time import WORKS
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.march import Radau
 
 #: What verdicts say of both methods, and of finite elements.
 OF_BOTH, ESTIMATE = RULES[BOTH].text, RULES[OF_FEM].text
@@ -98,6 +99,20 @@ def test_a_step_may_be_given_and_states_of_one_friction_start_once():
     assert len(data["states/f"]) == 2
     assert data["time/sie/v0"].shape == (1, 12)
     assert "time/fem/v0" not in data
+    # No other method has been asked for: the answer is put into the equation once more.
+    assert 0.0 < data["time/sie/residual"][0] < 1e-3
+    assert result.attributes["verdict"] == "PASS"
+
+
+@pytest.mark.parametrize("friction", ["constant", "law"])
+def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
+    right = Radau.weights if friction == "law" else Radau.convolved
+    monkeypatch.setattr(Radau, right.__name__, lambda *given: 1.03 * right(*given))
+    law = {"friction.model": "dahl", "friction.sigma0_over_load": "600 1/m", "punch.half_width": "1 mm",
+           "friction.pre_sliding": "1 mm", "motion.strokes": ["forward", "forward"],
+           "time.friction": "law"}  # fmt: skip
+    changes = QUICK | {"solve.methods": ["sie"]} | (law if friction == "law" else {})
+    assert computed("start_from_rest", changes).attributes["verdict"] == "FAIL"
 
 
 def test_fibres_start_by_both_methods():

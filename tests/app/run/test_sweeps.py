@@ -214,4 +214,5 @@ def test_all_speeds_of_random_solids(seed):
     c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.95), 32)) * solid.limit()
     tolerance = 10.0 ** rng.uniform(-6.0, -3.0)
     result = galinx.compute(scene(solid, c, tolerance))
-    check(result, galinx.compute(scene(solid, c, tolerance, solve='sweep = "every"')), tolerance)
+    each = c if THOROUGH else c[::-3]
+    check(result, galinx.compute(scene(solid, each, tolerance, solve='sweep = "every"')), tolerance)

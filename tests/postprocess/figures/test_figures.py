@@ -37,7 +37,7 @@ def laws_run():
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def drawings(map_run):
     """Every figure of one result, by name."""
     return {drawing.name: drawing for drawing in map_run.drawings()}

@@ -1,9 +1,19 @@
 """Limits at kinks, from values a little farther away."""
 
+from itertools import pairwise
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from galinx.solvers.contact.free_ends import FARTHER, error_at_kink, farthest_at_kink, towards_kink
+from galinx.solvers.contact.free_ends import (
+    FARTHER,
+    KinkedPressure,
+    error_at_kink,
+    farthest_at_kink,
+    towards_kink,
+)
+from galinx.solvers.contact.recovery import lagrange
 
 GAP = 0.7
 
@@ -38,3 +48,41 @@ def test_what_a_limit_leaves_out_is_in_its_error(exponent, opposite):
     )
     true = np.abs(usual - 3.0).max()
     assert 1e-12 < true <= error_at_kink(usual, farther) <= 30.0 * true
+
+
+KINK = 0.88
+
+
+def under_a_kink_near_an_end(r):
+    """Pressure with two free ends and d log d next to a kink, where it is -2√(1 - KINK²)."""
+    d = np.abs(r - KINK)
+    return -np.sqrt(1.0 - r**2) * (2.0 + (r - KINK) * np.log(np.maximum(d, 1e-300)))
+
+
+def nodal_forces(places, degree):
+    """Nodes of facets graded towards places, and the pressure's consistent forces there."""
+    towards = 0.3 ** np.arange(16)
+    halves = [(a, b, (a + b) / 2.0) for a, b in pairwise(places)]
+    edges = [x for a, b, m in halves for x in (*(a + (m - a) * towards), *(b - (b - m) * towards))]
+    edges = np.unique([*places, *edges])
+    t, w = np.polynomial.legendre.leggauss(40)
+    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)
+    s = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(degree) / degree).ravel(), 1.0)
+    forces = np.zeros(len(s))
+    for i, (low, high) in enumerate(pairwise(edges)):
+        r = (low + high) / 2.0 + (high - low) / 2.0 * t
+        forces[i * degree : (i + 1) * degree + 1] += (
+            basis.T @ (under_a_kink_near_an_end(r) * w) * (high - low) / 2.0
+        )
+    return s, forces
+
+
+def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side():
+    chart = SimpleNamespace(
+        surface_position=lambda s: s, surface_coordinate=lambda r: r, surface_stretch=np.ones_like
+    )
+    s, forces = nodal_forces([-1.0, KINK, 1.0], 8)
+    pressure = KinkedPressure(s, 8, chart, forces, np.array([KINK]), (0.5, 0.5), 1.0, 1e-8)
+    exact = -2.0 * np.sqrt(1.0 - KINK**2)
+    assert pressure.at_kink(0) == pytest.approx(exact, abs=1e-8)
+    assert abs(pressure.at_kink(0) - exact) <= pressure.left_at_kinks <= 1e-8

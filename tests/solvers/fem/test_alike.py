@@ -25,7 +25,7 @@ def cells(*moved):
 def test_cells_that_are_moved_and_scaled_are_alike():
     corners = cells((0.5, 0.0, 0.0), (2.0, 3.0, -1.0), (1e-9, 1.0, 0.0), (1.0, -1e4, 7.0))
     models, like = congruent_cells(corners, np.zeros(4, dtype=int))
-    np.testing.assert_array_equal(models, [1])  # the largest
+    np.testing.assert_array_equal(models, corners[[1]])  # the largest
     np.testing.assert_array_equal(like, [0, 0, 0, 0])
 
 
@@ -46,6 +46,24 @@ def test_digits_that_a_small_cell_cannot_have_are_not_asked_of_it():
         assert len(congruent_cells(corners, np.zeros(2, dtype=int))[0]) == count
 
 
+def test_models_are_the_same_however_cells_are_shared_out():
+    """A rank that has small cells beside an edge alone takes the shape that another's largest has."""
+    corners = cells((2.0, 3.0, -1.0), (2.0, 0.0, 0.0), (1e-10, 1.0, 0.0), (1e-8, 1.0, 0.0))
+    other = cells((1.0, 0.0, 0.0))[:, [1, 0, 3, 2]]  # of no shape that the first rank has
+    corners, kinds = np.concatenate([corners, other]), np.zeros(5, dtype=int)
+    alone, like = congruent_cells(corners, kinds)
+    for parts in ([0, 1], [2, 3, 4]), ([3, 1, 4], [0, 2]), ([2], [4, 3, 1, 0]), ([], [4, 2, 0, 1, 3]):
+        # Ranks collect their largest cells, then the kinds of these.
+        rounds: list[list] = [[], []]
+        for part in parts:
+            to = iter(rounds)
+            congruent_cells(corners[part], kinds[part], lambda own, to=to: [next(to).append(own) or own])
+        for part in parts:
+            each = iter(rounds)
+            models, which = congruent_cells(corners[part], kinds[part], lambda _, each=each: next(each))
+            np.testing.assert_array_equal(models[which], alone[like[part]])
+
+
 STEEL, SOFT = (Isotropic(E, ν, 1.0) for E, ν in ((2.5, 0.25), (1.0, 0.4)))
 TO_SOFT = Layered((Layer(1.0, STEEL, SOFT),), SOFT)
 COATED = Layered((Layer(1.0, SOFT),), STEEL)
@@ -57,12 +75,12 @@ def test_the_matrix_is_that_of_each_cell_by_itself(solid, fewer, monkeypatch):
     response = LayersInCells(solid, 0.2)
     mesh = on_layers((1.0,)).drawn(Requirements(1e-6, nearest=1e-2))
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), 5, solid.form)
-    models, members = model_cells(space.vertices, space.chart, response, space.form.constants)
+    models, members = model_cells(space.vertices, response, space.form.constants)
     assert sorted(np.concatenate(members)) == list(range(space.cells))
     assert space.cells > fewer * len(models)
     A = space.assemble(response)
-    each = np.arange(space.cells)
-    monkeypatch.setattr(spaces, "model_cells", lambda *_: (each, each[:, None]))
+    each = np.arange(space.cells)[:, None]
+    monkeypatch.setattr(spaces, "model_cells", lambda *_: (space.vertices, each))
     B = space.assemble(response)
     size = B.norm()
     B.axpy(-1.0, A)

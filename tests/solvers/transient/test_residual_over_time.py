@@ -1,0 +1,44 @@
+"""A motion's residual falls as its steps do, and shows a wrong number at any time."""
+
+import numpy as np
+import pytest
+
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.march import Radau
+from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.residual import Residual
+from galinx.solvers.transient.transform import Transformed
+
+SOLID, END, TERMS = Isotropic(1.0, 0.25, 1.0), 4.0, 16
+
+
+def load(t):
+    return smooth(t, 3.0)
+
+
+def course(steps, g):
+    punch = StartingPunch(SOLID.response(0.6), SOLID.limit(), END, steps, TERMS, checked=True)
+    if callable(g):
+        return punch.course_along(g, load)
+    return punch.course(g, load)
+
+
+@pytest.mark.parametrize("g", [-0.4, lambda t: -0.5 * np.sin(0.8 * t)], ids=["constant", "changing"])
+def test_it_falls_with_the_steps(g):
+    coarse, fine = (course(steps, g).residual for steps in (10, 20))
+    assert fine < min(coarse / 6.0, 1e-3)
+
+
+@pytest.mark.parametrize("when", [3, 10, 19])
+def test_a_wrong_number_is_shown(when):
+    response, scheme = SOLID.response(0.6), Radau(END, 20)
+    transformed = Transformed(response, SOLID.limit(), scheme.s, TERMS)
+    basis, t = transformed.basis(-0.4), scheme.times[:, -1]
+    (answers,) = transformed.answers(basis)
+    solved = scheme.convolved(answers, load)
+    residual = Residual(response, SOLID.limit(), t, TERMS)
+    right = residual.of([basis], solved[:, :-1], solved[:, -1])
+    for number in (0, 1, 5, -1):  # of the pressure's polynomials, and the indentation
+        wrong = solved.copy()
+        wrong[when, number] += 0.05 * np.abs(solved).max()
+        assert residual.of([basis], wrong[:, :-1], wrong[:, -1]) > 5.0 * right

@@ -281,6 +281,7 @@ class PunchLevel:
         plan: plan of the finite elements.
         stresses: words of output.quantities that request stresses.
         ends: ends of the contacts.
+        only: the single state on a mesh of its own; None on a mesh of all contacts.
         g: values of σ_XY/σ_YY, as given.
         factor: of the linear system, with numbers of its work.
     """
@@ -292,7 +293,8 @@ class PunchLevel:
     ) -> None:  # fmt: skip
         self.task, self.space, self.plan, self.stresses = task, space, work.plan, work.stresses
         self.ends = ends or ends_of(task.body, work.plan)
-        self._fitted, self._only = fitted, None
+        self._fitted = fitted
+        self.only: SolvedEnds | None = None
         self._field: Any = None
         self.g, self._tests = g, tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
@@ -310,7 +312,7 @@ class PunchLevel:
             # The basis is complete before traces are taken, and the same whatever states are still to do.
             solved.prepare(g)
             if single:
-                self._only = self._summed(self.ends.solved(self, g, task.body))
+                self.only = self._summed(self.ends.solved(self, g, task.body))
         finally:
             if single:
                 solved.destroy()
@@ -328,7 +330,7 @@ class PunchLevel:
     @property
     def fields(self) -> Sequence[Any]:
         """Displacements over N/(2μ), whose combinations are the states."""
-        return [self._field] if self._only else self.punch.fields
+        return [self._field] if self.only else self.punch.fields
 
     @cached_property
     def r(self) -> NDArray[np.float64]:
@@ -388,7 +390,7 @@ class PunchLevel:
             SolveError: no contact carries the load.
         """
         body = self.task.body.loaded(load)
-        ends = self._only or self.ends.solved(self, g, body)
+        ends = self.only or self.ends.solved(self, g, body)
         states = SolvedStates(
             self.task, body, ends.contact, self.ends.pressure(self, ends), self.displacement,
             ends.half_width, ends.centre, ends.free, ends.unresolved,
@@ -447,12 +449,12 @@ class PunchLevel:
 
     def release(self) -> None:
         """Free factor and fields; a single state keeps its field."""
-        if not self._only:
+        if not self.only:
             self.punch.release()
 
     def destroy(self) -> None:
         """Free everything."""
-        if self._only:
+        if self.only:
             self._field.destroy()
         else:
             self.punch.destroy()

@@ -276,6 +276,19 @@ def _exponents(task: Task, g: NDArray) -> tuple[float, float]:
 GROWTH = 2.0
 
 
+@dataclass(frozen=True)
+class BalancedContact(SolvedEnds):
+    """Contact without intensities on a mesh drawn for its half-width; see :class:`SolvedEnds`.
+
+    Attributes:
+        off: logarithm of the load that makes a contact of the mesh's half-width, over the task's load.
+        lean: middle of the contact over the mesh's half-width.
+    """
+
+    off: float = 0.0
+    lean: float = 0.0
+
+
 class BalancedEnds(Ends):
     """Ends of one contact over layers, without intensities, on a mesh drawn for its half-width.
 
@@ -293,20 +306,12 @@ class BalancedEnds(Ends):
     def __init__(self, profile: Any, half_width: float, near: float) -> None:
         self._profile, self._half_width, self._near = profile, half_width, near
 
-    def off(self, states: SolvedStates | SolvedEnds) -> float:
-        """Logarithm of the load that makes a contact of the mesh's half-width, over the task's load."""
-        return GROWTH * float(np.log(self._half_width / states.half_width[0]))
-
-    def lean(self, states: SolvedStates | SolvedEnds) -> float:
-        """Middle of the contact over the mesh's half-width."""
-        return float(states.centre[0]) / self._half_width
-
     def heights(self, level: PunchLevel) -> NDArray[np.float64]:
         h, unit = self._half_width, level.task.body.displacement
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> SolvedEnds:
+    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> BalancedContact:
         """Contact without intensities.
 
         Raises:
@@ -321,9 +326,10 @@ class BalancedEnds(Ends):
         _, share, slope = amplitudes.tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
+        off, lean = float(-np.log(share)), self._near / h + slope / share
         contact = combined(g, parts, amplitudes[None])
-        return SolvedEnds(contact, np.array([half_width]), np.array([centre]), _FREE)
+        lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
+        return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
 
     def pressure(self, level: PunchLevel, ends: SolvedEnds) -> RecoveredPressure:
         return replace(level.over_flat(ends.contact, ends.contact.g, 1.0), free=_FREE)
@@ -336,7 +342,8 @@ class BalancedEnds(Ends):
     def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
         """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
         pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
-        σ, lengths = pressure.σ_YY(_ACROSS), np.array([[self.off(states) / GROWTH, self.lean(states)]])
+        balanced: Any = level.only
+        σ, lengths = pressure.σ_YY(_ACROSS), np.array([[balanced.off / GROWTH, balanced.lean]])
         of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(pressure.factor(_ACROSS)).max(axis=1)
@@ -465,26 +472,22 @@ class _Search:
         mesh, ends = self._work.on(sized.plan(self._work.plan, none), none), self._ends(h)
         degree = mesh.plan.degrees[self._task.number]
         space = mesh.space(max(degree - _LOWER, DEGREES[0]) if rough else degree)
-        level = self._level(mesh, sized.scaled, space, ends)
-        states = level.states(self._g)
+        level = PunchLevel(mesh, sized.scaled, space, self._g, ends=ends)
+        self._done.count(level)
         level.destroy()
-        before, self._centre = self._centre, float(states.centre[0])
-        return ends.off(states), (self._centre - before) / h
+        balanced: Any = level.only
+        before, self._centre = self._centre, h * balanced.lean
+        return balanced.off, (self._centre - before) / h
 
     def _ends(self, h: float) -> BalancedEnds:
         return BalancedEnds(self._task.body.profile, h, self._centre)
-
-    def _level(self, mesh: Discretisation, task: Task, space: Space, ends: Ends) -> PunchLevel:
-        level = PunchLevel(mesh, task, space, self._g, ends=ends)
-        self._done.count(level)
-        return level
 
     def solved(self, h: float) -> tuple["OwnState", float]:
         """Contact on a mesh drawn for a half-width [m], solved to the tolerance; its half-width [m]."""
         sized, words, ends = Sized(self._task, h), self._work.stresses, self._ends(h)
         mesh = self._work.on(sized.plan(self._work.plan, words))
         state = own_state(mesh, sized.scaled, self._g, ends, self._done)
-        return state, float(np.exp(self._moved(float(np.log(h)), ends.off(state.states))))
+        return state, float(np.exp(self._moved(float(np.log(h)), state.level.only.off)))  # type: ignore[union-attr]
 
 
 def solved_over_layers(
@@ -509,7 +512,8 @@ def solved_over_layers(
         state.level.destroy()
         drawn = h
         state, h = search.solved(drawn)
-    lean, off = float(state.states.centre[0]) / drawn, abs(h / drawn - 1.0)
+    balanced: Any = state.level.only
+    lean, off = balanced.lean, abs(h / drawn - 1.0)
     check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
     errors = {word: value + off for word, value in state.states.errors().items()}
     states = replace(

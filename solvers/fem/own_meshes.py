@@ -33,11 +33,12 @@ from galinx.meshes.rings import Refinement
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import (
+    NEAR_FREE_END,
     OWN_MESHES_KEPT,
     FemPlan,
     kind_of,
+    no_nearer,
     pressure_moments,
-    required_of_free_ends_on_layers,
     requirements,
 )
 from ..contact.free_ends import (
@@ -394,7 +395,8 @@ class Sized:
         X = places.X if ON_SURFACE in words else np.empty(0)
         requested = Places(X, below, places.around)
         target = requirements(plan.tolerance, requested, plan.sharp, scaled.response.spread)
-        target = required_of_free_ends_on_layers(target)
+        # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
+        target = no_nearer(target, NEAR_FREE_END)
         degree = kind.degree(target, scaled.response.margin)
         return replace(
             plan, kind=kind, wanted=target, drawn=kind.drawn(target),

@@ -84,7 +84,7 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
     return coefficients
 
 
-def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[FreeEnds]":
+def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[EndConditions]":
     """Conditions on both free ends of a contact, for each state's friction.
 
     Args:
@@ -96,12 +96,13 @@ def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "li
     share = K[..., :1] / N[:, None, :1]
     moments, constants = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
     return [
-        FreeEnds(*condition) for condition in zip(local.α.tolist(), local.β.tolist(), moments, constants)
+        EndConditions(*condition)
+        for condition in zip(local.α.tolist(), local.β.tolist(), moments, constants)
     ]
 
 
 @dataclass(frozen=True)
-class FreeEnds:
+class EndConditions:
     """Conditions on both free ends of a contact at one friction and one speed.
 
     Attributes:
@@ -135,7 +136,7 @@ class FreeEnds:
         """Relative size of the coefficients beyond the first two, which are 0 for a half-plane."""
         return float((np.abs(self.factors[:, 2:]).sum(axis=1) / np.abs(self.factors).max(axis=1)).max())
 
-    def found(
+    def solve(
         self, profile: Any, unit: float, start: tuple[float, float] | None = None
     ) -> tuple[float, float]:
         """Middle and half-width of the contact [m], at which both conditions are satisfied.

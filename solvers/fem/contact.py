@@ -225,7 +225,7 @@ def _smooth(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _So
     conditions, near = free_ends(local, K[..., few], loads[:, few]), None
     ends, slopes = [], []
     for condition, unit in zip(conditions, units):
-        near = condition.found(punch, unit, near)
+        near = condition.solve(punch, unit, near)
         ends.append(near)
         slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
     (m, h), size, count = np.transpose(ends), np.abs(slopes), loads.shape[1] - 1

@@ -43,13 +43,13 @@ from ..contact.fem_plan import (
 )
 from ..contact.free_ends import (
     SHAPES,
+    EndConditions,
     KinkedPressure,
     free_ends,
     gaps_of,
     slopes_towards_ends,
     turns_at_ends,
 )
-from ..contact.free_ends import FreeEnds as Conditions
 from ..contact.recovery import RecoveredPressure
 from ..contact.solution import Body, Places, Surface, Task, Turns
 from ..contact.stresses import NEAR_TIP, off_tips
@@ -87,11 +87,11 @@ class EndsLevel(PunchLevel):
     ) -> None:
         super().__init__(work, task, space, g, ends=FreeEnds(SHAPES))
         self._near = near
-        self._conditions: dict[float, Conditions] = {}
+        self._conditions: dict[float, EndConditions] = {}
         self._lengths: dict[State, Lengths] = {}
 
-    def conditions(self, g: NDArray) -> list[Conditions]:
-        """Conditions at free ends of every friction."""
+    def conditions(self, g: NDArray) -> list[EndConditions]:
+        """EndConditions at free ends of every friction."""
         missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
         if len(missing):
             parts, local = self.punch.parts(missing), EdgeExponents(self.task.response, missing)
@@ -113,7 +113,7 @@ class EndsLevel(PunchLevel):
             if state not in self._lengths:
                 unit = body.loaded(state[1]).displacement
                 start = self._near.get(state, last)
-                self._lengths[state] = self._near[state] = condition.found(body.profile, unit, start)
+                self._lengths[state] = self._near[state] = condition.solve(body.profile, unit, start)
             last = self._lengths[state]
         return [self._lengths[state] for state in states]
 

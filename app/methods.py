@@ -109,8 +109,8 @@ def _fem_layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> st
         )
     if quantity is None:
         return ""
-    if quantity is states.RESIDUAL[FEM]:
-        return "the equation of layers is a method of its own, sie"
+    if quantity is states.RESIDUAL[FEM] and body.pressure:
+        return "the pressure is prescribed"
     if quantity is states.INDENTATION:
         return "the far boundary moves with the load"
     if body.found and quantity is stresses.RAW_PRESSURE:

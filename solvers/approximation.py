@@ -10,7 +10,7 @@ set of weights serves many functions: their denominator is that of the set-value
 IMA J. Numer. Anal. 42, 2022).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -157,3 +157,27 @@ def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
     with np.errstate(divide="ignore"):
         logs = np.log(np.where(steps > _EQUAL, steps, 0.0)).sum(axis=1)
     return int(logs.argmax()) if logs.max() > -np.inf else None
+
+
+#: Halvings of an interval at most: more than digits.
+_CLOSE = 60
+
+
+def bisected(
+    holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 0.0
+) -> float:
+    """Highest number up to which a condition holds, from ``low``, where it does, up to ``high``.
+
+    Args:
+        holds: the condition.
+        high, low: ends of the interval.
+        accuracy: relative; 0 for the last digit.
+    """
+    if holds(high):
+        return high
+    for _ in range(_CLOSE):
+        middle = (low + high) / 2.0
+        if high - low <= accuracy * high or not low < middle < high:
+            break
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low

@@ -25,7 +25,6 @@ from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, MET
 from galinx.postprocess.quantities.states import FRICTION, POSITION
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.layers.layered import Layered
 
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, by_method, has_quantities, require_one_of
@@ -272,7 +271,7 @@ class Fields:
         body, solid = self._scene.body, self._scene.solid
         if body.found:  # over every state's own half-width they are elsewhere
             return ()
-        return tuple((solid.depths / body.half_width).tolist()) if isinstance(solid, Layered) else ()
+        return tuple((solid.depths / body.half_width).tolist())
 
     def grid(self) -> tuple[NDArray, NDArray]:
         """Positions over a along both axes."""

@@ -34,7 +34,6 @@ from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.solution import Body, Places, Task
 from galinx.solvers.contact.stresses import NEAR
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.layered import Layered
 
 from ..errors import BadInput
 from ..plan.plan import interface_grid, surface_grid
@@ -436,11 +435,10 @@ def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
 
 def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Figure over the thickness of the top layer, under the steepest friction at the fastest speed."""
-    assert isinstance(scene.solid, Layered)
     g = data[states.RATIO.path]
     steepest = float(g[np.argmax(np.abs(g))])
     c = float(data[states.SPEED.path].max())
-    top, a = scene.solid.layers[0].thickness, scene.body.half_width
+    top, a = scene.layers[0].thickness, scene.body.half_width
     H = np.geomspace(max(_FIRST * top, _THINNEST * a), _LAST * top, _COUNT)
     numbers = np.full((_COUNT, len(_SHOWN)), np.nan)
     for row, thickness in zip(numbers, H.tolist()):
@@ -465,10 +463,9 @@ def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
 
 
 def _with_top(body: Body, thickness: float) -> Body:
-    solid = body.solid
-    assert isinstance(solid, Layered)
-    top, *others = solid.layers
-    return replace(body, solid=replace(solid, layers=(replace(top, thickness=thickness), *others)))
+    top, *others = body.solid.layers
+    layers = (replace(top, thickness=thickness), *others)
+    return replace(body, solid=replace(body.solid, layers=layers))  # type: ignore[type-var]
 
 
 def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:

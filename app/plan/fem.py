@@ -35,7 +35,6 @@ from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.solution import Places
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR
 from galinx.solvers.solids.solid import Response
@@ -66,7 +65,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     mode = _mode(scene)
-    if isinstance(scene.solid, Layered):
+    if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
         knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
         kind, name = kind_of(depths, responses, knots), "layered"
@@ -108,7 +107,7 @@ def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements
             return no_nearer(required, NEAR_FREE_END)
         if solve.own_pressure:
             return no_nearer(required, NEAR)  # next to knots stresses are continued
-        return required_over_layers(required, scene.solid)  # type: ignore[arg-type]
+        return required_over_layers(required, scene.solid)
     if scene.body.free:
         required = required_of_free_ends(required)
         # Kinks have meshes of their own; at sharp corners the singularity sets the degree.

@@ -23,11 +23,9 @@ from galinx.postprocess.surface_over_time import ALONG, AT_ENDS, BALANCE, WORKS
 from galinx.postprocess.surface_over_time import OF_FEM as OF_SURFACE
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import follow
-from galinx.solvers.layers.in_cells import LayersInCells
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.solids.solid import Response, Solid
-from galinx.solvers.transient.admittance import InPlane
+from galinx.solvers.solids.half_plane import HalfPlane
+from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.line_load import fastest
 from galinx.solvers.transient.punch import smooth
 from galinx.texts import counted
@@ -294,10 +292,8 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append(
             f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
         )
-    if isinstance(solid, Layered):
-        faults += _of_layers(scene, solid)
-    elif not isinstance(solid.response(0.0), InPlane):
-        faults.append("a start from rest is computed for galinx's own solids, not for your own")
+    if scene.layers:
+        faults += _of_layers(scene)
     if solid.nearly_incompressible:
         faults.append(
             "a start from rest is computed where ν is not near 1/2: pressure waves are too fast"
@@ -312,19 +308,17 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
         raise BadInput("time: " + "; ".join(faults))
 
 
-def _of_layers(scene: Scene, solid: Layered) -> list[str]:
+def _of_layers(scene: Scene) -> list[str]:
     """Reasons why motions in time over these layers cannot be computed."""
     faults = []
-    if any(layer.bottom for layer in solid.layers):
+    if any(layer.bottom for layer in scene.layers):
         faults.append("layers: found a graded one, expected uniform ones for motions in time")
-    thinnest = min(layer.thickness for layer in solid.layers) / scene.body.half_width
+    thinnest = min(layer.thickness for layer in scene.layers) / scene.body.half_width
     if thinnest < _THINNEST:
         faults.append(
             f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a, the "
             "punch's half-width, for motions in time"
         )
-    if not all(isinstance(part.response(0.0), InPlane) for part in solid.solids):
-        faults.append("layers: found a solid of your own, expected galinx's for motions in time")
     if scene.time and scene.time.steady:
         faults.append('time.start: found "steady" over layers, expected "rest"')
     return faults
@@ -532,9 +526,9 @@ class Starts:
                 total += _SYMBOL * max(3.0 * self.ways[0].duration, self.ways[0].steps)
         return total
 
-    def response(self, solid: Solid, c: float) -> Response:
-        """Response of the solid at a speed over c_s; of layers with lengths over a."""
-        return LayersInCells(solid, c, self.a) if isinstance(solid, Layered) else solid.response(c)
+    def response(self, solid: Solid, c: float) -> HalfPlane:
+        """HalfPlane of the solid at a speed over c_s; of layers with lengths over a."""
+        return solid.response(c, self.a)
 
     def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
         """Two levels: a coarser one, which measures the error, and the one that is archived.
@@ -544,7 +538,8 @@ class Starts:
         """
         digits, gap = -log10(self.tolerance), solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        degree += (gap < _SHORT or isinstance(solid, Layered)) and degree < _HIGHEST
+        depths = tuple((solid.depths / self.a).tolist())
+        degree += (gap < _SHORT or bool(depths)) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         slow = min(1.0, gap / _SLOW) ** 0.5
         long = _LONG + _LONGER * max(digits - 3.0, 0.0)
@@ -554,9 +549,7 @@ class Starts:
         beyond = _HELD / self.tolerance if self.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO
         width, depth = self._reach(fastest(self.response(solid, c)), c)
-        depths: tuple[float, ...] = ()
-        if isinstance(solid, Layered):
-            depths = tuple((solid.depths / self.a).tolist())
+        if depths:
             size = min(size * min(1.0, solid.slowest / solid.c_s), _OF_LAYER * depths[0])
         coarse, fine = (
             Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths)

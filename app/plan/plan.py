@@ -39,7 +39,6 @@ from galinx.solvers.contact.fem_plan import (
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import Body, Places
 from galinx.solvers.contact.yielding import places as yield_places
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
 
@@ -190,7 +189,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     Raises:
         BadInput: they cannot; the message lists all reasons.
     """
-    if not body.layered:
+    if not scene.layers:
         return
     computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
     faults = [
@@ -229,7 +228,7 @@ def check_pressure(scene: Scene, body: Body) -> None:
     """
     if body.pressure is None:
         return
-    if body.layered:
+    if scene.layers:
         _check_knots(body.pressure.knots)
         return
     kind = MESHES[scene.solve.mesh]
@@ -432,13 +431,13 @@ def _in_time(plan: Plan) -> float:
 
 def _equations(plan: Plan) -> float:
     """Seconds of contacts over layers whose integral equations are solved one by one."""
-    body = plan.body
-    if not (body.found and isinstance(body.solid, Layered) and SIE in plan.methods):
+    body, layers = plan.body, plan.body.solid.layers
+    if not (body.found and layers and SIE in plan.methods):
         return 0.0
     kinked = bool(len(kinks(body.profile)))
     if not kinked and body.free:
         return 0.0  # solved for a few frictions, between which others are interpolated
-    graded = body.solid.layers[0].bottom is not None
+    graded = layers[0].bottom is not None
     return cost.seconds_of_equations(plan.states, kinked, graded)
 
 
@@ -569,7 +568,7 @@ def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[st
     """Warnings about methods that the scene names and that do not solve it."""
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
-        if name not in methods and (body.layered or not kind.of_layers):
+        if name not in methods and (scene.layers or not kind.of_layers):
             yield f"solve.methods: {name} does not solve this: {kind.refusal(scene, body, None)}"
 
 
@@ -614,7 +613,7 @@ def _skipped(
     skipped = [
         f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"
         for name, kind in METHODS.items()
-        if name not in methods and (body.layered or not kind.of_layers)
+        if name not in methods and (scene.layers or not kind.of_layers)
     ]
     if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
         skipped.append("gmsh: an earlier run made the same mesh")
@@ -649,7 +648,7 @@ def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
     Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
     the punch is among them.
     """
-    if not isinstance(body.solid, Layered):
+    if not body.solid.layers:
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()

@@ -250,7 +250,7 @@ def _is_place(path: str) -> bool:
 def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
     """Differences of finite elements from the closed form, even if the scene asks for none."""
     data, fem, body = archive.data, plan.fem, plan.body
-    if not fem or body.layered:
+    if not fem or scene.layers:
         return
     selected = _spread(plan.states, _most(plan))
     yield from _of_invariants(archive, plan, selected)

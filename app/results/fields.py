@@ -173,7 +173,7 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
     (state,) = select_states(scene, [number], [degree], extent)
     body, response = state.task.body, state.task.response
     with closing(solve_states([state])) as states:
-        from galinx.solvers.fem.fields import in_physical_plane
+        from galinx.solvers.fem.export import in_physical_plane
 
         solution = next(states)
         half_width = body.half_width
@@ -400,7 +400,7 @@ def _piece(solution: Solved, extent: float) -> StateField:
 
 def _sampled(found: Solved, extent: float) -> Any:
     """This rank's piece of the state's field over a, N/(2μ) and N/(2a)."""
-    from galinx.solvers.fem.fields import sample
+    from galinx.solvers.fem.export import sample
 
     state = found.state
     return sample(

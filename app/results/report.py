@@ -135,10 +135,10 @@ def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     # Of σ_YY, σ_XY and σ_XX above and below: the largest value, its place, the smallest and its place.
     normal, shear, above, below = (rows[first : first + 4] for first in range(0, 16, 4))
     parts = (
-        ("shear |σ_XY| at", ((1.0, *shear[:2]), (-1.0, *shear[2:]))),
-        ("tension σ_YY at", ((1.0, *normal[:2]),)),
-        ("in-plane tension σ_XX just above", ((1.0, *above[:2]),)),
-        ("in-plane tension σ_XX just below", ((1.0, *below[:2]),)),
+        ("shear |σ_XY| at", ((1.0, shear[0], shear[1]), (-1.0, shear[2], shear[3]))),
+        ("tension σ_YY at", ((1.0, normal[0], normal[1]),)),
+        ("in-plane tension σ_XX just above", ((1.0, above[0], above[1]),)),
+        ("in-plane tension σ_XX just below", ((1.0, below[0], below[1]),)),
     )
     depths = np.cumsum([layer.thickness for layer in scene.layers])
     for i, depth in enumerate(depths.tolist()):

@@ -29,7 +29,6 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids import SOLIDS, Solid
-from galinx.solvers.transient.admittance import InPlane
 from galinx.solvers.transient.late_time import approach
 
 from .. import ranks
@@ -190,8 +189,6 @@ def _steady(scene: Scene) -> Steady | None:
     solid = scene.solid
     if scene.layers or not isinstance(scene.punch.profile, Flat):
         return None
-    if not isinstance(solid.response(0.0), InPlane):
-        return None  # a user's own
 
     def within(c: float, g: float) -> float:
         return approach(solid, c, g).within(0.01) if c < solid.limit() else inf

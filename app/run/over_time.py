@@ -19,8 +19,6 @@ from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import ContactsAtSpeed, Pressure
-from galinx.solvers.layers.in_cells import LayersInCells
-from galinx.solvers.layers.layered import Layered
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
@@ -52,8 +50,8 @@ class QuasiSteady:
     def centres(self, ratios: NDArray) -> NDArray[np.float64]:
         """Centre of the pressure over a at frictions σ_XY/σ_YY, (n,)."""
         different, which = np.unique(ratios, return_inverse=True)
-        response = self.starts.response(self.solid, self.c)
-        if isinstance(response, LayersInCells):
+        response: Any = self.starts.response(self.solid, self.c)
+        if len(response.depths):
             stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
             nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
             return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
@@ -63,7 +61,7 @@ class QuasiSteady:
     def K_I(self, ratio: float) -> float:
         """K_I of both ends as :attr:`FlatPunch.K_I`, dimensionless; NaN over layers: they differ."""
         response = self.starts.response(self.solid, self.c)
-        return np.nan if isinstance(response, LayersInCells) else FlatPunch(response, ratio).K_I
+        return np.nan if len(response.depths) else FlatPunch(response, ratio).K_I
 
 
 def _centre(pressure: Pressure) -> NDArray[np.float64]:
@@ -156,7 +154,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
 
 def _within(solid: Solid, c: float, g: float) -> float:
     """Time over a/c_s from which on a start is within 1 % of steady motion; NaN over layers."""
-    return np.nan if isinstance(solid, Layered) else approach(solid, c, g).within(0.01)
+    return np.nan if len(solid.depths) else approach(solid, c, g).within(0.01)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:

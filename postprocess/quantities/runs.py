@@ -73,8 +73,8 @@ RECORD = {
         "back_substitutions": "back-substitutions",
         "iterations": "most steps of conjugate gradients in a solve; 0: direct solver",
         "largest_residual": "largest |b - Ax|/|b| of a back-substitution",
-        "largest_condition": "largest condition number of a matrix, estimated by MUMPS; 0 if all were "
-        "too large",
+        "largest_condition": "largest lower bound of a matrix's condition number in the maximum norm, by "
+        "its solutions; 0: conjugate gradients",
     }.items()
 }
 CHANGES = Quantity(

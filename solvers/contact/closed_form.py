@@ -174,7 +174,7 @@ class Weighted:
         return np.where(np.abs(r) > _FAR, self._far(np.where(np.abs(r) > _FAR, r, np.inf)), near)
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         far = np.abs(z) > _FAR
         near = (self._X(z) * (self.A + self.B * z) - self._polynomial(z)) / self._sin
         return np.where(far, self._far(np.where(far, z, np.inf)), near)

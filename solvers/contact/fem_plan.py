@@ -16,7 +16,6 @@ from galinx.meshes import MeshKind, Requirements
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 
-from ..layers.layered import Layered, LayeredResponse
 from ..rays import NEAR
 from ..solids import Solid
 from ..solids.solid import Response
@@ -66,7 +65,7 @@ class PressureMoments:
 
 def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments | None:
     """Moments that recover the pressure over layers; None on a solid without layers."""
-    if not isinstance(kind, OnLayers) or not isinstance(solid, Layered):
+    if not isinstance(kind, OnLayers):
         return None
     graded, top = graded_from_the_surface(solid), solid.layers[0]
     stretch = Stretch(kind.length, graded, graded and top.bottom.μ > top.solid.μ)  # type: ignore[union-attr]
@@ -80,12 +79,12 @@ def no_nearer(required: Requirements, distance: float) -> Requirements:
     return replace(required, nearest=max(required.nearest, distance))
 
 
-def graded_from_the_surface(solid: Layered) -> bool:
+def graded_from_the_surface(solid: Solid) -> bool:
     """True where constants change within the uppermost layer."""
-    return solid.layers[0].bottom not in (None, solid.layers[0].solid)
+    return any(layer.bottom not in (None, layer.solid) for layer in solid.layers[:1])
 
 
-def required_over_layers(required: Requirements, solid: Layered) -> Requirements:
+def required_over_layers(required: Requirements, solid: Solid) -> Requirements:
     """Requirements on a mesh for sharp edges over layers; tighter where the uppermost is graded."""
     if not graded_from_the_surface(solid):
         return required
@@ -107,7 +106,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
         depths.tolist(),
         drawn_together=float(np.min(roots)),
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
-        far_length=max(response.far_field.length for response in responses),
+        far_length=max(response.far_length for response in responses),
         left=max(min(response.left_below for response in responses), _LEAST_LEFT),
         roots=_roots(responses),
         changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
@@ -118,7 +117,7 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
 def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
     """p of every solid at the lowest and at the highest speed, where they are farthest apart."""
     by_speed = sorted(responses, key=lambda response: response.c)
-    each = [response.roots for response in (by_speed[0], by_speed[-1])]
+    each = [response.roots_of_solids for response in (by_speed[0], by_speed[-1])]
     return tuple(slow + fast for slow, fast in zip(*each))
 
 
@@ -175,7 +174,7 @@ def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
     Along layers waves of all lengths run, each with a speed of its own from the limit on: the limit is no
     pole but the end of a branch cut, which the logarithm of the distance from it sends to infinity.
     """
-    if isinstance(responses[0], LayeredResponse):
+    if len(responses[0].depths):
         return np.array([-np.log(response.margin) for response in responses])
     square = np.array([response.c**2 for response in responses])
     inverse = np.array([1.0 / response.contraction.imag for response in responses])

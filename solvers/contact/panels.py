@@ -317,7 +317,7 @@ class FreeEnds:
         return transform
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         flat = np.ravel(z).astype(complex)
         value = self._phase * self.panels.transform(self.f, _logarithm(flat))
         return value.reshape(np.shape(z))

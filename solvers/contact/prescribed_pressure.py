@@ -57,7 +57,7 @@ class LinearPressure:
         return np.where(infinite, np.nan, self._sum(piece.at() for piece in self._pieces(r)))
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.solid.Potential`."""
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return self._sum(piece.at() for piece in self._pieces(z))
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:

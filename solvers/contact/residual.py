@@ -21,7 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.potentials import DATUM
+from ..layers.kernel import Kernel, Scaled
+from ..solids.half_plane import DATUM
 from ..solids.solid import Response
 from .closed_form import Weighted
 
@@ -41,6 +42,9 @@ _NEXT_TO_END = 1e-7
 _INSIDE, _ALONG = 6, 64
 #: Least depth over a of a point at which line loads are summed.
 _DEEP = 1e-3
+
+#: Relative error of the kernel of layers.
+_OF_KERNEL = 1e-10
 
 #: σ_YY over N/(2a) at positions (n,) of all states: (states, n).
 Pressure = Callable[[NDArray], NDArray]
@@ -92,6 +96,7 @@ def of_pressure(
     pressure: Pressure,
     kinks: Sequence[float] | NDArray = (),
     breaks: Sequence[float] | NDArray = (),
+    layers: Sequence[Scaled] = (),
 ) -> NDArray[np.float64]:
     """Residual of a pressure in the integral equation, over N̂ times the largest pressure, (states,).
 
@@ -103,11 +108,14 @@ def of_pressure(
         pressure: contact stress over N/(2a).
         kinks: places at which the pressure is not smooth.
         breaks: ends of pieces in which the pressure is a polynomial; none for other pressures.
+        layers: kernel of the layers for each state, lengths over its half-width; none without layers.
     """
-    α, β = exponents
-    sizes = np.append(np.full(len(kinks), _SHORTEST), np.full(len(breaks), 1.0))
-    rule, kinks = Rule(np.append(kinks, breaks), sizes), np.asarray(kinks, dtype=float)
+    (α, β), kinks = exponents, np.asarray(kinks, dtype=float)
     s = _AT[np.abs(_AT[:, None] - kinks).min(axis=1, initial=1.0) > _OFF_KINKS]
+    # Where a kernel has a logarithm, it has it at the places themselves.
+    rough = s if layers and layers[0].rough else np.empty(0)
+    sizes = np.append(np.full(len(kinks) + len(rough), _SHORTEST), np.full(len(breaks), 1.0))
+    rule = Rule(np.concatenate([kinks, rough, breaks]), sizes)
     p, at = rule.smooth(pressure, α, β), _smooth(pressure, s, α, β)
     order = np.round(α + β).astype(int)
     H = np.empty_like(at)
@@ -122,6 +130,10 @@ def of_pressure(
     σ = pressure(s)
     own = (response.n + g * response.n12)[:, None]
     defect = own * H - (g * response.q)[:, None] * σ - slope(s)
+    loads = rule.weights(α, β) * p
+    for i, kernel in enumerate(layers):
+        by_kernel = kernel(s[:, None] - rule.t)
+        defect[i] += (by_kernel[..., 3] + g[i] * by_kernel[..., 2]) @ loads[i]
     return np.asarray(np.abs(defect).max(axis=1) / (own[:, 0] * np.abs(σ).max(axis=1)))
 
 
@@ -142,6 +154,8 @@ def of_contact(
         local: exponents α and β, (states,).
         body: punch and half-plane, under the load of each state.
         lengths: middle and half-width of each contact [m], (states,), with free ends.
+
+    Of a half-plane with layers it is the residual in the equation with their kernel.
     """
     m, h = lengths or (np.zeros(len(g)), np.full(len(g), body.half_width))
     unit = np.broadcast_to(h / body.displacement, g.shape)
@@ -150,11 +164,19 @@ def of_contact(
         X = m[:, None] + h[:, None] * s
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
-    return of_pressure(response, g, (local.α, local.β), slope, pressure, kinks, breaks)
+    layers = _kernels(response, h) if len(response.depths) else []
+    return of_pressure(response, g, (local.α, local.β), slope, pressure, kinks, breaks, layers)
+
+
+def _kernels(response: Any, half_widths: NDArray) -> list[Scaled]:
+    """Kernel of the layers for each contact, lengths over its half-width [m], from one for the widest."""
+    widest = float(half_widths.max())
+    kernel = Kernel(response.stack(widest), _OF_KERNEL)
+    return [Scaled(kernel, h / widest) for h in half_widths.tolist()]
 
 
 class _LineLoads:
-    """Φ of line loads on the surface, see :class:`galinx.solvers.solids.solid.Potential`.
+    """Φ of line loads on the surface, see :class:`galinx.solvers.solids.half_plane.Potential`.
 
     Args:
         t: positions, (n,).

@@ -13,8 +13,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..layers.in_cells import LayersInCells
-from ..layers.layered import Layered
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps
 from ..solids import Solid
 from ..solids.solid import Response
@@ -77,9 +75,7 @@ class Body:
         Raises:
             ValueError: a wave in the half-plane is not faster than this speed.
         """
-        if isinstance(self.solid, Layered):
-            return LayersInCells(self.solid, self.solid.response(c).c, self.half_width)
-        return self.solid.response(c)
+        return self.solid.response(c, self._length)
 
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
@@ -88,18 +84,17 @@ class Body:
             σ: σ_XX, σ_YY, σ_XY, (3, ..., n).
             Y: heights over a, not above 0, (n,).
         """
-        if not isinstance(self.solid, Layered):
-            return self.solid.σ_ZZ(*σ)
-        values = np.empty(σ.shape[1:])
-        for height in np.unique(Y).tolist():
-            at = height == Y
-            values[..., at] = self.solid.at(-height * self.half_width).σ_ZZ(*σ[..., at])
-        return values
+        return self.solid.σ_ZZ_at(-Y * self._length, σ)
 
     @property
     def layered(self) -> bool:
         """True if the half-plane has layers."""
-        return isinstance(self.solid, Layered)
+        return len(self.solid.depths) > 0
+
+    @property
+    def _length(self) -> Any:
+        """Unit of length of the half-plane [m]: a where it has layers, and any where it has no length."""
+        return self.half_width if self.layered else 1.0
 
     @cached_property
     def free(self) -> bool:
@@ -140,7 +135,7 @@ class Body:
         if np.ndim(self.load) and self.alike:
             first = self.loaded(float(self.load[0]))
             return first.half_width * first.growth(self.load)
-        if isinstance(self.solid, Layered):
+        if self.layered:
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
         from .free_contact import contacts
@@ -154,8 +149,8 @@ class Body:
         from .free_on_layers import half_width_at_rest
 
         profile: Any = self.profile
-        assert isinstance(self.solid, Layered)
-        return half_width_at_rest(self.solid, profile, load / self.solid.μ)
+        solid: Any = self.solid
+        return half_width_at_rest(solid, profile, load / solid.μ)
 
     @property
     def compression(self) -> Any:

@@ -1,7 +1,6 @@
 """Displacements that are held, and the far boundary, which moves as in an infinite solid.
 
-The contact and the far boundary are held; the forces that this needs are :func:`forces_of_profile` and
-:func:`forces_of_far`.
+The contact and the far boundary are held; the forces that this needs are :func:`held_forces`.
 
 Far away a displacement is determined by moments of the forces at the contact, Mₙ = ∫ (X/a)ⁿ σ d(X/a): for
 each of the first ones there is a field, of a far boundary that moves as under it. The solution under
@@ -21,53 +20,28 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from ..solids.solid import Far, Response
+from ..solids.solid import Response
+from .linear import times
 from .space import Space
 
 
-def forces_of_profile(A: PETSc.Mat, space: Space, height: NDArray[np.float64]) -> PETSc.Vec:
-    """Nodal forces of a contact held at the profile's height; at held unknowns, the height itself."""
-    held = A.createVecRight()
-    held.setValues(space.contact.dofs(1), height[space.contact.owned])
-    return _forces(A, space, held)
+def held_forces(
+    A: PETSc.Mat, space: Space, dofs: NDArray[np.int32], displacements: NDArray
+) -> NDArray[np.float64]:
+    """Nodal forces of held displacements, and these themselves where unknowns are held: (rows, k).
 
-
-def forces_of_far(A: PETSc.Mat, space: Space, displacement: NDArray[np.float64]) -> PETSc.Vec:
-    """Nodal forces of a far boundary moved by (2, nodes); at held unknowns, the displacement itself."""
-    held, numbers = A.createVecRight(), space.numbers[space.far_nodes]
-    for i in (0, 1):
-        held.setValues(numbers + i, displacement[i])
-    return _forces(A, space, held)
-
-
-def _forces(A: PETSc.Mat, space: Space, held: PETSc.Vec) -> PETSc.Vec:
-    """Nodal forces of held displacements, and these themselves where they are held; frees ``held``."""
-    held.assemble()
-    b = product(A, held)
-    b.scale(-1.0)
-    set_zero(b, space.held_dofs)
-    b.axpy(1.0, held)
-    held.destroy()
-    return b
-
-
-def ones(A: PETSc.Mat, dofs: NDArray[np.int32]) -> PETSc.Vec:
-    """A vector that is 1 at this rank's ``dofs`` and 0 elsewhere."""
-    x = A.createVecRight()
-    x.setValues(dofs, np.ones(len(dofs)))
-    x.assemble()
-    return x
-
-
-def product(A: PETSc.Mat, x: PETSc.Vec) -> PETSc.Vec:
-    y = A.createVecLeft()
-    A.mult(x, y)
-    return y
-
-
-def set_zero(x: PETSc.Vec, dofs: NDArray[np.int32]) -> None:
-    x.setValues(dofs, np.zeros(len(dofs)))
-    x.assemble()
+    Args:
+        A: the matrix, nothing held.
+        space: the finite element space.
+        dofs: owned unknowns that are moved, (n,).
+        displacements: of each, (n, k).
+    """
+    first = A.getOwnershipRange()[0]
+    held = np.zeros((A.getLocalSize()[0], displacements.shape[1]))
+    held[dofs - first] = displacements
+    b = -times(A, held)
+    b[space.held_dofs - first] = 0.0
+    return b + held
 
 
 #: Displacement at the far boundary over that of line loads, below which a moment is not followed: its
@@ -84,38 +58,32 @@ class FarBoundary:
         A: the matrix, nothing held.
 
     Attributes:
-        loads: nodal forces of each of the fields, by moments of σ_YY and σ_XY in turn.
+        loads: nodal forces of each of the fields, by moments of σ_YY and σ_XY in turn, (rows, fields).
         fields: displacements, once they are solved for.
     """
 
     def __init__(self, space: Space, response: Response, A: PETSc.Mat) -> None:
         self.fields: list[PETSc.Vec] = []
-        self.loads: list[PETSc.Vec] = []
+        moved = np.empty((2 * len(space.far_nodes), 0))
         if space.terms:
-            assert isinstance(response, Far)
             X, Y = space.contracted(response).to_physical(space.coordinates[space.far_nodes]).T
-            moved = response.far(X, Y, space.terms)
-            size = np.abs(moved).max(axis=(1, 2, 3), initial=0.0)
+            by_moment = response.far(X, Y, space.terms)  # (moments, 2, component, nodes)
+            size = np.abs(by_moment).max(axis=(1, 2, 3), initial=0.0)
             space.comm.Allreduce(MPI.IN_PLACE, size, MPI.MAX)
-            followed = moved[size > _NEGLIGIBLE * size[0]]
+            followed = by_moment[size > _NEGLIGIBLE * size[0]]
             # A rank may have no node of the far boundary, and takes part all the same.
-            self.loads = [
-                forces_of_far(A, space, displacement) for pair in followed for displacement in pair
-            ]
+            moved = followed.reshape(2 * len(followed), -1).T
+        self.loads = held_forces(A, space, space.far_dofs, moved)
 
     def tests(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
         """Powers of positions X over a that forces are tested with, (moments, n)."""
-        return np.vander(X, len(self.loads) // 2, increasing=True).T
+        return np.vander(X, self.loads.shape[1] // 2, increasing=True).T
 
-    def set_fields(self, fields: Sequence[PETSc.Vec]) -> None:
-        """Take the fields, and free the loads."""
-        self.fields = list(fields)
-        for load in self.loads:
-            load.destroy()
-
-    def take(self, X: NDArray[np.float64], forces: Sequence[NDArray[np.float64]]) -> None:
-        """Take the forces (2, n) of each field at contact nodes at X over a."""
-        self._tests, self._forces = self.tests(X), np.array(forces)
+    def take(
+        self, fields: Sequence[PETSc.Vec], X: NDArray[np.float64], forces: NDArray[np.float64]
+    ) -> None:
+        """Take the fields and the forces (2, n) of each at contact nodes at X over a."""
+        self.fields, self._tests, self._forces = list(fields), self.tests(X), forces
         own = np.array([self._moments(force) for force in forces]).T
         self._all = np.linalg.inv(np.eye(len(own)) - own)
 
@@ -123,16 +91,18 @@ class FarBoundary:
         """Moments of forces (2, n) that the boundary follows, of σ_YY and σ_XY in turn, (moments,)."""
         return np.asarray((self._tests @ forces[::-1].T).ravel())
 
-    def follow(self, field: PETSc.Vec, forces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Let the far boundary of a field move, in place, not be held; returns the field's forces.
+    def follow(self, forces: NDArray, field: PETSc.Vec | None = None) -> NDArray[np.float64]:
+        """Forces (2, n) at the contact nodes once the far boundary moves that was held.
 
         Args:
-            field, forces: displacement, and forces (2, n) at the contact nodes.
+            forces: those under the held boundary.
+            field: displacement that causes them; it is moved in place.
         """
         if not self.fields:
             return forces
         amplitudes = self._all @ self._moments(forces)
-        field.maxpy(amplitudes.tolist(), self.fields)
+        if field is not None:
+            field.maxpy(amplitudes.tolist(), self.fields)
         return np.asarray(forces + np.tensordot(amplitudes, self._forces, 1))
 
     def destroy(self) -> None:

@@ -15,13 +15,14 @@ one matrix each kind, not one each cell (:func:`model_cells`).
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 
 
 def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
@@ -39,8 +40,14 @@ def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
         Two arrays (n, p+1).
     """
     p, x = len(nodes) - 1, 2.0 * np.asarray(t, dtype=float) - 1.0
-    coefficients = np.linalg.inv(legvander(2.0 * np.asarray(nodes) - 1.0, p))
+    coefficients = _in_legendre(tuple(np.asarray(nodes).tolist()))
     return legvander(x, p) @ coefficients, 2.0 * legvander(x, p - 1) @ legder(coefficients)
+
+
+@lru_cache
+def _in_legendre(nodes: tuple[float, ...]) -> NDArray[np.float64]:
+    """Legendre coefficients of the polynomials of :func:`lagrange`, (p+1, p+1)."""
+    return np.asarray(np.linalg.inv(legvander(2.0 * np.array(nodes) - 1.0, len(nodes) - 1)), np.float64)
 
 
 class Chart(Protocol):
@@ -308,10 +315,8 @@ def model_cells(
     Returns:
         Vertices of models, (m, 4, 3), and the numbers of this rank's cells like each.
     """
-    kinds, graded = np.zeros(len(corners), dtype=np.int64), np.zeros(len(corners), dtype=bool)
-    if isinstance(response, ByCells):
-        kinds = response.solids(corners[..., 1].mean(axis=1))
-        graded = np.array([len(rows) > 1 for rows in response.constants(constants)])[kinds]
+    kinds = response.solids(corners[..., 1].mean(axis=1))
+    graded = np.array([len(rows) > 1 for rows in response.constants(constants)])[kinds]
     even = np.flatnonzero(~graded)
     models, like = congruent_cells(corners[even], kinds[even], gather)
     members = np.split(even[np.argsort(like, kind="stable")], np.cumsum(np.bincount(like))[:-1])

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.solution import Surface, Task
-from ..solids.solid import ByCells
 from .fields import InteriorGradients, KeptValues, SurfaceSlopes
 from .punch import FittedSlopes
 from .space import Space
@@ -93,15 +92,11 @@ class Displacement:
     def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
         response = self._task.response
-        return InteriorGradients(self._space, response, self._fields, points, self._values, side)
+        return InteriorGradients(self._space, response, self._values, points, side)
 
     def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""
-        response = self._task.response
-        if not isinstance(response, ByCells):
-            return response.stresses(gradients)
-        Y = points[:, 1]
-        return response.stresses_at(response.solids(Y, side), Y, gradients)
+        return self._task.response.stresses_at(points[:, 1], gradients, side)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """Stresses on the surface, by weights (states, fields) and σ_YY, NaN beside the punch."""

@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from ..approximation import interpolation
 from ..contact.edges import EdgeTraction
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import image
 from .element import size_of_cells
@@ -41,7 +41,7 @@ class DolfinxSpace(Space):
     @cached_property
     def _pressures(self) -> Any:
         """Discontinuous pressures, two degrees below the displacement."""
-        return versions.function_space(self.mesh, versions.pressure_element(self.degree - 2))
+        return versions.space(self.mesh, versions.pressure_element(self.degree - 2))
 
     @cached_property
     def _plane(self) -> tuple[Any, Any]:
@@ -50,19 +50,14 @@ class DolfinxSpace(Space):
 
     @cached_property
     def _constants(self) -> list[Any]:
-        """The weak form's constants: one number each for all cells."""
-        return [fem.Constant(self.mesh, 0.0) for _ in self.form.constants]
-
-    @cached_property
-    def _varying(self) -> list[Any]:
-        """The weak form's constants where they change with depth: values at the points of quadrature."""
-        Q = versions.function_space(self.mesh, versions.quadrature_element(self._quadrature))
+        """The weak form's constants, which may change with depth: values at the points of quadrature."""
+        Q = versions.space(self.mesh, versions.quadrature_element(self._quadrature))
         return [fem.Function(Q) for _ in self.form.constants]
 
     @cached_property
     def _sizes(self) -> Any:
         """Sizes of cells, by which pressures are divided: small cells' weigh as much as large ones'."""
-        D = versions.function_space(self.mesh, versions.pressure_element(0))
+        D = versions.space(self.mesh, versions.pressure_element(0))
         sizes, corners = fem.Function(D), self._all_corners
         sizes.x.array[versions.cell_nodes(D)[: len(corners), 0]] = size_of_cells(corners)
         return sizes
@@ -74,33 +69,21 @@ class DolfinxSpace(Space):
         return versions.vertices(self.mesh, cells.size_local + cells.num_ghosts)
 
     @cached_property
-    def _forms(self) -> dict[bool, Any]:
-        """Compiled weak forms, by whether their constants vary; blocks where there are pressures."""
-        return {}
+    def _form(self) -> Any:
+        """The compiled weak form; blocks where there are pressures."""
+        spaces = [self.V, self._pressures] if self.mixed else [self.V]
+        forms = weak_form(
+            self.form, spaces, self.chart, self._plane, self._constants,
+            self._sizes if self.mixed else None, self._quadrature,
+        )  # fmt: skip
+        compiled = [[self._compiled(form) for form in row] for row in forms]
+        return compiled if self.mixed else compiled[0][0]
 
-    def _form(self, response: Response) -> Any:
+    def _form_of(self, response: Response) -> Any:
         """The compiled weak form with the constants of a response."""
-        varies, p = isinstance(response, ByCells), self.contracted(response).p
+        p = self.contracted(response).p
         for constant, value in zip(self._plane, (p.real, p.imag)):
             constant.value = value
-        if isinstance(response, ByCells):
-            self._set_varying(response)
-        else:
-            for constant, name in zip(self._constants, self.form.constants):
-                constant.value = float(getattr(response, name))
-        if varies not in self._forms:
-            spaces = [self.V, self._pressures] if self.mixed else [self.V]
-            forms = weak_form(
-                self.form, spaces, self.chart, self._plane,
-                self._varying if varies else self._constants, self._sizes if self.mixed else None,
-                self._quadrature,
-            )  # fmt: skip
-            compiled = [[self._compiled(form) for form in row] for row in forms]
-            self._forms[varies] = compiled if self.mixed else compiled[0][0]
-        return self._forms[varies]
-
-    def _set_varying(self, response: ByCells) -> None:
-        """Set constants at the points of quadrature of all cells."""
         points, corners = versions.quadrature_points(self._quadrature), self._all_corners
         Y = image(corners[:, None, :, :2], points)[..., 1].reshape(len(corners), len(points))
         solids = response.solids(corners[..., 1].mean(axis=1))
@@ -109,8 +92,9 @@ class DolfinxSpace(Space):
         for i in np.unique(solids).tolist():
             cells = solids == i
             values[cells] = interpolation(response.share(i, Y[cells]), len(tables[i])) @ tables[i]
-        for k, function in enumerate(self._varying):
+        for k, function in enumerate(self._constants):
             function.x.array[versions.cell_nodes(function.function_space)[: len(Y)]] = values[..., k]
+        return self._form
 
     def _compiled(self, form: Any) -> Any:
         with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
@@ -118,7 +102,7 @@ class DolfinxSpace(Space):
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions."""
-        form = self._form(response)
+        form = self._form_of(response)
         with self.clock("assembly"):
             return versions.matrix(form, [])
 
@@ -140,7 +124,7 @@ class DolfinxSpace(Space):
             "far": lambda: fem.dirichletbc(zero, far, self.V),
             "contact": lambda: fem.dirichletbc(PETSc.ScalarType(-1.0), contact, v),
         }
-        form = self._form(response)
+        form = self._form_of(response)
         with self.clock("assembly"):
             return versions.matrix(form, [conditions[part]() for part in parts])
 

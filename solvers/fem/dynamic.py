@@ -30,7 +30,7 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import cells, versions
 from .cells import Shapes, lagrange
 from .element import Element
@@ -133,8 +133,6 @@ class Motion:
     def _of_cells(self, name: str) -> NDArray[np.float64]:
         """A constant of each cell over that of the solid at the surface, (cells,)."""
         response, Y = self.response, self.space.vertices[:, :, 1].mean(axis=1)
-        if not isinstance(response, ByCells):
-            return np.ones(len(Y))
         by_solid = np.array([float(rows[0, 0]) for rows in response.constants([name])])
         return by_solid[response.solids(Y)]
 

@@ -52,7 +52,7 @@ class Element:
         value, slope = lagrange(nodes, self._points)
         gradient = [(slope, value), (value, slope)]
         self.size = 2 * len(reference) + pressures**2
-        self._pressures, self._nodes = pressures, len(nodes)
+        self._pressures, self._side = pressures, len(nodes)
         self._blocks = [_Block(3, gradient, gradient)]
         if pressures:
             orders = np.arange(pressures)
@@ -140,7 +140,7 @@ class Element:
 
     def _places(self, grid: NDArray) -> NDArray[np.int64]:
         """Places of the entries of an element matrix among the products, (size, size)."""
-        n, k = self._nodes, self._pressures
+        n, k = self._side, self._pressures
         # Of each unknown: its component, 2 for a pressure, and its function along both directions.
         of_nodes = np.divmod(np.argsort(grid.ravel()), n)
         of_pressures = np.divmod(np.arange(k * k), max(k, 1))
@@ -218,7 +218,7 @@ def _pairs(left: NDArray, right: NDArray) -> NDArray[np.float64]:
 _NUMBERS = 2_000_000
 
 
-class CellMatrices:
+class CellMatrices(Element):
     """Element matrices, inner unknowns eliminated.
 
     Args:
@@ -230,10 +230,10 @@ class CellMatrices:
     """
 
     def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
-        self.nodes, self.inner, self._pressures = len(reference), inner, pressures
-        self._element = Element(reference, pressures)
+        super().__init__(reference, pressures)
+        self.nodes, self.inner = len(reference), inner
         #: Number of cells that are treated at once.
-        self.at_once = max(16, _NUMBERS // self._element.size**2)
+        self.at_once = max(16, _NUMBERS // self.size**2)
 
     @cached_property
     def outer(self) -> NDArray[np.int64]:
@@ -250,11 +250,7 @@ class CellMatrices:
     def inner_dofs(self) -> NDArray[np.int64]:
         """Local unknowns that are eliminated."""
         first = 2 * self.nodes + min(self._pressures, 2)
-        return np.concatenate([_dofs(self.inner), np.arange(first, self._element.size)])
-
-    def heights(self, corners: NDArray) -> NDArray[np.float64]:
-        """Heights of the points of quadrature in the chart, (m, points, points)."""
-        return self._element.heights(corners)
+        return np.concatenate([_dofs(self.inner), np.arange(first, self.size)])
 
     def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
         """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
@@ -279,7 +275,7 @@ class CellMatrices:
     def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
         """Blocks K_bb, K_ib and K_ii of the element matrices, b outer and i inner unknowns."""
         b, i = self.outer_dofs, self.inner_dofs
-        K_bb, K_ib, K_ii = self._element.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
+        K_bb, K_ib, K_ii = self.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
         if self._pressures:
             # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
             unit = 1.0 / size_of_cells(corners)[:, None]

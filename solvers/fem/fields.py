@@ -1,44 +1,23 @@
-"""Displacement fields of the half-plane on its surface, inside it, and for export.
+"""Displacement fields of the half-plane on its surface and inside it.
 
 On the surface Y = 0 displacements are piecewise polynomials, gathered from all ranks. Inside, gradients
 of combinations of fields are evaluated at any points: inner unknowns were condensed, and are recovered
 for the cells that hold a point, and for no other.
-
-All of the half-plane moves with a load, and near the end of a load cells are a billionth of that motion:
-in their displacement the deformation has lost its digits. A field and a small correction together hold
-it, if they are added only after each cell's own motion was subtracted (:func:`shapes`).
-
-For a picture of the solid a combination of condensed fields is sampled over whole cells
-(:class:`SampledField`). Cells of high degree are cut into small quadrilaterals, polygons along the sides
-of a box. Each cell has points of its own, since stresses jump from cell to cell.
-
-For users who go on in dolfinx a displacement is exported as a dolfinx function on a mesh of the physical
-plane (:func:`in_physical_plane`). The program's own meshes are drawn in charts; in the exported mesh
-every cell is curved as the chart bends it, by polynomials of the degree of the displacement, whose nodal
-values stay the same.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from copy import copy
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from dolfinx import fem
-from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
 from ..errors import MeshError
-from ..solids.solid import ByCells, Response
-from . import versions
+from ..solids.solid import Response
 from .cells import (
-    Contracted,
     gradients_in_plane,
-    image,
     lagrange,
     pull_back,
-    reference_values,
     tensor_order,
 )
 from .space import Space
@@ -136,7 +115,7 @@ _SLACK = 1e-9
 TOGETHER = 20_000
 
 
-#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
+#: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields). Collective.
 Values = Callable[[NDArray[np.int64]], NDArray]
 
 
@@ -150,13 +129,13 @@ class KeptValues:
     """
 
     def __init__(self, space: Space, response: Response, fields: Sequence[PETSc.Vec]) -> None:
-        self._new = lambda cells: space.cell_values(fields, response, cells)
+        self._compute = lambda cells: space.cell_values(fields, response, cells)
         self._kept: dict[int, NDArray] = {}
 
     def __call__(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
         """Values at all nodes of cells, (cells, nodes, 2, fields). Collective."""
         new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
-        values = self._new(new)
+        values = self._compute(new)
         self._kept |= dict(zip(new.tolist(), values))
         u = np.empty((len(cells), *values.shape[1:]))
         for i, cell in enumerate(cells.tolist()):
@@ -172,9 +151,8 @@ class InteriorGradients:
     Args:
         space: the finite element space.
         response: that the fields are solutions for.
-        fields: displacements over N/(2μ), condensed.
+        values: of the fields in cells, over N/(2μ), such as :class:`KeptValues`.
         points: positions over a with Y <= 0, (n, 2).
-        values: of the fields in cells, as of :class:`KeptValues`; computed anew if not given.
         side: 1 for the solid above an interface at its points, -1 for that below.
 
     Raises:
@@ -182,27 +160,28 @@ class InteriorGradients:
     """
 
     def __init__(
-        self,
-        space: Space,
-        response: Response,
-        fields: Sequence[PETSc.Vec],
-        points: NDArray,
-        values: Values | None = None,
-        side: int = 1,
+        self, space: Space, response: Response, values: Values, points: NDArray, side: int = 1
     ) -> None:
-        values = values or (lambda cells: space.cell_values(fields, response, cells))
-        self._count, self._fields = len(points), len(fields)
+        self._count = len(points)
         self._batches = [
             _Batch(space, response, points[first : first + TOGETHER], side)
             for first in range(0, max(len(points), 1), TOGETHER)
         ]
-        cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
-        self._nodal = _Nodal(space, cells, values(cells))
+        self._cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
+        grid, self._nodes = tensor_order(space.reference_nodes)
+        #: At the nodes of these cells, (cells, p+1, p+1, 2, fields).
+        self._values = values(self._cells)[:, grid]
         #: Gradients of all fields, where one batch has all points.
         self._basis: NDArray[np.float64] | None = None
         if len(self._batches) == 1:
-            self._basis = self._batches[0].gradients(self._nodal)
-            self._nodal = self._nodal.combined(np.empty((0, 0)))  # no longer needed
+            self._basis = self._gradients(self._batches[0], self._values)
+            self._values = self._values[:0].copy()  # no longer needed
+
+    def of_fields(self) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields), the same on every rank."""
+        if self._basis is not None:
+            return self._basis
+        return np.concatenate([self._gradients(batch, self._values) for batch in self._batches])
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
@@ -216,11 +195,11 @@ class InteriorGradients:
         states, fields = weights.shape
         for i, batch in enumerate(self._batches):
             batch_points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
-            if self._basis is None and states < self._fields:
-                combined = batch.gradients(self._nodal.combined(weights))
+            if self._basis is None and states < self._values.shape[-1]:
+                combined = self._gradients(batch, self._values[..., :fields] @ weights.T)
                 yield batch_points, np.moveaxis(combined, -1, 0)
             else:
-                basis = batch.gradients(self._nodal) if self._basis is None else self._basis
+                basis = self._gradients(batch, self._values) if self._basis is None else self._basis
                 yield batch_points, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
 
     def of_each(self, weights: NDArray) -> NDArray[np.float64]:
@@ -233,58 +212,14 @@ class InteriorGradients:
         Returns:
             Array (states, n/states, 2, 2).
         """
-        basis = self._basis
-        if basis is None:
-            basis = np.concatenate([batch.gradients(self._nodal) for batch in self._batches])
         states, fields = weights.shape
-        each = basis[..., :fields].reshape(states, -1, 2, 2, fields)
+        each = self.of_fields()[..., :fields].reshape(states, -1, 2, 2, fields)
         return np.einsum("snijf,sf->snij", each, weights)
 
-
-def gradients_at(
-    space: Space, response: Response, points: NDArray, values: Values
-) -> NDArray[np.float64]:
-    """Gradients along X and Y at points over a, (n, 2, 2, fields), the same on every rank.
-
-    Args:
-        space: the finite element space.
-        response: that the fields are solutions for.
-        points: with Y <= 0, (n, 2).
-        values: of the fields in cells.
-
-    Raises:
-        MeshError: a point lies outside the mesh.
-    """
-    batch = _Batch(space, response, points)
-    return batch.gradients(_Nodal(space, batch.cells, values(batch.cells)))
-
-
-class _Nodal:
-    """Values of fields at the nodes of some cells.
-
-    Args:
-        space: the finite element space.
-        cells: numbers of this rank's cells, sorted, (m,).
-        values: at their local nodes, (m, nodes, 2, fields).
-
-    Attributes:
-        nodes: places of the nodes along a side of the unit square, (p+1,).
-        values: (m, p+1, p+1, 2, fields).
-    """
-
-    def __init__(self, space: Space, cells: NDArray[np.int64], values: NDArray) -> None:
-        grid, self.nodes = tensor_order(space.reference_nodes)
-        self.cells, self.values = cells, values[:, grid]
-
-    def combined(self, weights: NDArray) -> "_Nodal":
-        """Combinations of the fields with weights (states, fields) as fields."""
-        other = copy(self)
-        other.values = self.values[..., : weights.shape[1]] @ weights.T
-        return other
-
-    def of(self, cell: int) -> NDArray[np.float64]:
-        """Values at the nodes of one of the cells, (p+1, p+1, 2, fields)."""
-        return self.values[np.searchsorted(self.cells, cell)]
+    def _gradients(self, batch: "_Batch", values: NDArray) -> NDArray[np.float64]:
+        """Gradients of fields at a batch's points, from their values at the nodes of all cells."""
+        of_batch = np.searchsorted(self._cells, batch.cells)
+        return batch.gradients(self._nodes, (values[i] for i in of_batch), values.shape[-1])
 
 
 class _Batch:
@@ -303,64 +238,48 @@ class _Batch:
         MeshError: a point lies outside the mesh.
     """
 
-    def __init__(self, space: Space, response: Response, points: NDArray, side: int = 1) -> None:
+    def __init__(self, space: Space, response: Response, points: NDArray, side: int) -> None:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
-        held = _locate(self._vertices, self._chart.from_physical(points))
-        if isinstance(response, ByCells):
-            of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
-            of_points = response.solids(points[:, 1], side)
-            held = held.select(of_cells[held.cell] == of_points[held.point])
-        order = np.argsort(held.cell, kind="stable")
-        self._point, self._t = held.point[order].astype(np.int32), held.t[order]
-        self.cells, self._first = np.unique(held.cell[order], return_index=True)
-        count = self._comm.allreduce(np.bincount(held.point, minlength=len(points)))
+        cell, point, t = _located(self._vertices, self._chart.from_physical(points))
+        of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
+        of_points = response.solids(points[:, 1], side)
+        order = np.argsort(cell, kind="stable")
+        order = order[(of_cells[cell] == of_points[point])[order]]
+        self._point, self._t = point[order].astype(np.int32), t[order]
+        self.cells, self._first = np.unique(cell[order], return_index=True)
+        count = self._comm.allreduce(np.bincount(self._point, minlength=len(points)))
         if not count.all():
             X, Y = points[np.argmin(count)]
             raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
         #: How many cells hold a point, which are many on a border only.
-        self._found = count.astype(np.int16)
+        self._sharing = count.astype(np.int16)
 
-    def gradients(self, nodal: _Nodal) -> NDArray[np.float64]:
-        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective."""
-        result = np.zeros((len(self._points), 2, 2, nodal.values.shape[-1]))
+    def gradients(self, nodes: NDArray, values: Iterable[NDArray], fields: int) -> NDArray[np.float64]:
+        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective.
+
+        Args:
+            nodes: places along a side of the unit square, (p+1,).
+            values: at the nodes of each of the cells, (p+1, p+1, 2, fields).
+            fields: number of fields.
+        """
+        result = np.zeros((len(self._points), 2, 2, fields))
         ends = np.append(self._first[1:], len(self._point))
-        for cell, first, end in zip(self.cells, self._first, ends):
+        for cell, first, end, u in zip(self.cells, self._first, ends, values):
             # A cell holds a point once.
-            result[self._point[first:end]] += gradients_in_plane(
-                self._vertices[cell], nodal.nodes, self._t[first:end], nodal.of(cell)
-            )
+            t = self._t[first:end]
+            result[self._point[first:end]] += gradients_in_plane(self._vertices[cell], nodes, t, u)
         # On the border between cells the gradient jumps; the mean of both is taken.
-        result = self._comm.allreduce(result) / self._found[:, None, None, None]
+        result = self._comm.allreduce(result) / self._sharing[:, None, None, None]
         return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
 
 
-@dataclass(frozen=True)
-class _Held:
-    """Pairs of a point and a cell of this rank that holds it.
+def _located(vertices: NDArray, x: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Pairs of a cell and a point of the chart that it holds, and the point's place in the unit square.
 
-    Attributes:
-        point, cell: their numbers, (n,).
-        t: place of the point in the cell's unit square, (n, 2).
+    Returns:
+        Numbers of cells (m,) and points (m,), places (m, 2).
     """
-
-    point: NDArray[np.int64]
-    cell: NDArray[np.int64]
-    t: NDArray[np.float64]
-
-    def select(self, which: NDArray) -> "_Held":
-        """The pairs with these numbers, or where a mask is true."""
-        return _Held(self.point[which], self.cell[which], self.t[which])
-
-
-def _locate(vertices: NDArray, x: NDArray) -> _Held:
-    cell, point = _near(vertices, x)
-    t = pull_back(vertices[cell], x[point])
-    return _Held(point, cell, t).select(np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1))
-
-
-def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of a cell and a point within the smallest box around it."""
     low, high = vertices.min(axis=1), vertices.max(axis=1)
     slack = _SLACK * (high - low)
     low, high = low - slack, high + slack
@@ -368,271 +287,12 @@ def _near(vertices: NDArray, x: NDArray) -> tuple[NDArray[np.int64], NDArray[np.
     along, across = x[order].T
     first = np.searchsorted(along, low[:, 0], side="left")
     last = np.searchsorted(along, high[:, 0], side="right")
-    cell, point = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    for i in np.flatnonzero(first < last):
+    near = [np.empty((2, 0), dtype=np.int64)]
+    for i in np.flatnonzero(first < last):  # points in the smallest box around the cell
         candidates = slice(first[i], last[i])
         inside = order[candidates][(low[i, 1] <= across[candidates]) & (across[candidates] <= high[i, 1])]
-        cell.append(np.full(len(inside), i))
-        point.append(inside)
-    return np.concatenate(cell), np.concatenate(point)
-
-
-def forces(space: Space, response: Response, field: PETSc.Vec) -> PETSc.Vec:
-    """Nodal forces of a condensed field; collective.
-
-    Equal to the matrix times the field, but without the rounding of the cells' own motion.
-    """
-    result, numbers = field.duplicate(), space.outer_numbers
-    result.zeroEntries()
-    deformed = _deformed(space, [field])
-    for cells in space.pieces(len(numbers)):
-        condensed = space.condensed(response, cells)
-        for rows, S, u in zip(numbers[cells] // 2, condensed, deformed[cells]):
-            result.setValuesBlocked(rows, S @ u.ravel(), addv=PETSc.InsertMode.ADD_VALUES)
-    result.assemble()
-    return result
-
-
-def shapes(
-    space: Space, response: Response, fields: Sequence[PETSc.Vec], corrections: Sequence[PETSc.Vec]
-) -> NDArray[np.float64]:
-    """Values of fields plus corrections in all of this rank's cells, less those of a cell's first node.
-
-    Collective.
-
-    Returns:
-        Array (cells, nodes of a cell, 2, fields).
-    """
-    outer = _deformed(space, fields) + _deformed(space, corrections)
-    pieces = [space.extended(outer[:0], response, np.arange(0))]
-    numbers = np.arange(len(outer))
-    for cells in space.pieces(len(outer)):
-        pieces.append(space.extended(outer[cells], response, numbers[cells]))
-    return np.concatenate(pieces)
-
-
-def _deformed(space: Space, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
-    """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
-    outer = space.fetch(fields, space.outer_numbers)
-    displacement = outer[:, : len(space.kernel.outer)]
-    displacement -= displacement[:, :1].copy()
-    return outer
-
-
-def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
-    """The part of a convex polygon with |X| <= extent and Y >= -extent.
-
-    Args:
-        corners: in turn, over a, (k, 2).
-        extent: over a.
-
-    Returns:
-        Its corners in turn, (n, 2); none where nothing remains.
-    """
-    polygon = corners
-    for axis, bound, sign in ((0, extent, 1.0), (0, -extent, -1.0), (1, -extent, -1.0)):
-        beyond, kept = sign * (polygon[:, axis] - bound), []
-        for i, corner in enumerate(polygon):
-            before, after = beyond[i - 1], beyond[i]
-            if before * after < 0.0:
-                crossing = polygon[i - 1] + before / (before - after) * (corner - polygon[i - 1])
-                crossing[axis] = bound
-                kept.append(crossing)
-            if after <= 0.0:
-                kept.append(corner)
-        polygon = np.reshape(kept, (-1, 2))
-    return polygon
-
-
-def in_quads(count: int) -> NDArray[np.int64]:
-    """Quadrilaterals of a convex polygon of 3 or more corners, (n, 4); a triangle doubles its last."""
-    last = count - 1
-    return np.array([(0, i, min(i + 1, last), min(i + 2, last)) for i in range(1, last, 2)])
-
-
-def in_physical_plane(
-    space: Space,
-    response: Response,
-    fields: Sequence[PETSc.Vec],
-    weights: NDArray,
-    length: float,
-    displacement: float,
-) -> Any:
-    """A combination of displacement fields as a dolfinx function in the physical plane; on one rank only.
-
-    Args:
-        space: the finite element space.
-        response: that the fields are solutions for.
-        fields: displacements over N/(2μ), condensed.
-        weights: of the first of the fields, or of all.
-        length: a, in the unit of the mesh.
-        displacement: N/(2μ), in the unit of the displacement.
-
-    Returns:
-        A dolfinx ``Function`` of two components, named displacement; its space and mesh come with it.
-    """
-    vertices, nodes = space.vertices[..., :2], _evenly(space.reference_nodes)
-    cells = versions.cell_nodes(space.V)
-    places = np.empty((cells.max() + 1, 2))
-    places[cells] = space.contracted(response).to_physical(image(vertices, nodes))
-    mesh = versions.create_mesh(space.comm, cells.astype(np.int64), length * places, space.degree)
-    values = displacement * _nodal(space, response, fields, weights)
-    V = versions.space(mesh, versions.vector_element(space.degree), {})
-    function = fem.Function(V, name="displacement")
-    # dolfinx evaluates it at all nodes of one cell after the other.
-    function.interpolate(lambda x: values[mesh.topology.original_cell_index].reshape(-1, 2).T)
-    function.x.scatter_forward()
-    return function
-
-
-def _evenly(reference: NDArray) -> NDArray[np.float64]:
-    """Places of a cell's nodes, spaced evenly as in all versions of dolfinx's own cells, (nodes, 2)."""
-    _, side = tensor_order(reference)
-    return np.abs(reference[..., None] - side).argmin(axis=-1) / (len(side) - 1.0)
-
-
-def _nodal(
-    space: Space, response: Response, fields: Sequence[PETSc.Vec], weights: NDArray
-) -> NDArray[np.float64]:
-    """Values of a combination of fields at the nodes of every cell, (cells, nodes, 2)."""
-    field = fields[0].duplicate()
-    field.zeroEntries()
-    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
-    numbers = np.arange(len(space.vertices))
-    values = [
-        space.cell_values([field], response, numbers[cells])[..., 0]
-        for cells in space.pieces(len(numbers))
-    ]
-    field.destroy()
-    return np.concatenate(values)
-
-
-#: Share of a cell's largest stretch below which a point is a punch edge; the next point has about 1/n.
-_VANISHING = 1e-6
-
-
-@dataclass(frozen=True)
-class SampledField:
-    """A displacement field at the corners of small quadrilaterals.
-
-    Attributes:
-        points: positions over a, (n, 2).
-        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
-        displacement: over N/(2μ), (n, 2).
-        gradient: μ ∂u_i/∂X_j over N/(2a), (n, 2, 2).
-    """
-
-    points: NDArray[np.float64]
-    quads: NDArray[np.int64]
-    displacement: NDArray[np.float64]
-    gradient: NDArray[np.float64]
-
-    def gathered(self, comm: MPI.Comm) -> "SampledField | None":
-        """The pieces of all ranks in one, on rank 0; None on the others. Collective."""
-        pieces = comm.gather(self)
-        return None if pieces is None else _joined(pieces)
-
-
-def sample(
-    space: Space,
-    response: Response,
-    fields: Sequence[PETSc.Vec],
-    weights: NDArray,
-    extent: float,
-    n: int,
-) -> SampledField:
-    """This rank's piece of a combination of fields, in the part |X|, |Y| <= extent of the solid.
-
-    Collective. Quadrilaterals that reach beyond that part are cut along its sides.
-
-    Args:
-        space: the finite element space.
-        response: that the fields are solutions for.
-        fields: displacements over N/(2μ), condensed.
-        weights: of the first of the fields, or of all.
-        extent: half the width, and the depth, of what is sampled, over a.
-        n: quadrilaterals along each side of a cell, about the degree.
-    """
-    t, corners = _split(n)
-    vertices = space.vertices[..., :2]
-    chart = space.contracted(response)
-    X = chart.to_physical(image(vertices, t))
-    low, high = (bound(X[:, corners], axis=2) for bound in (np.min, np.max))
-    touched = np.all((low < extent) & (high > -extent), axis=2)
-    whole = np.all((low >= -extent) & (high <= extent), axis=2)
-    cells = np.flatnonzero(touched.any(axis=1))
-    field = fields[0].duplicate()
-    field.zeroEntries()
-    field.maxpy(weights.tolist(), list(fields[: len(weights)]))
-    grid, nodes = tensor_order(space.reference_nodes)
-    pieces = []
-    for piece in space.pieces(space.comm.allreduce(len(cells), MPI.MAX)):
-        numbers = cells[piece]
-        for cell, u in zip(numbers, space.cell_values([field], response, numbers)[:, grid]):
-            crossing = corners[touched[cell] & ~whole[cell]]
-            at, cut = _cut(chart, vertices[cell], t, crossing, extent)
-            quads = np.concatenate([corners[whole[cell]], cut])
-            displacement = reference_values(nodes, at, u)[..., 0]
-            gradient = _gradients(chart, vertices[cell], nodes, at, u, n)
-            points = chart.to_physical(image(vertices[cell], at))
-            pieces.append(_without_unused(SampledField(points, quads, displacement, gradient)))
-    field.destroy()
-    return _joined(pieces)
-
-
-def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The unit square cut into n x n: its (n+1)² points, and the corners of each part in turn."""
-    side = np.linspace(0.0, 1.0, n + 1)
-    t = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
-    number = np.arange(len(t)).reshape(n + 1, n + 1)
-    around = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-    return t, np.stack(around, axis=-1).reshape(-1, 4)
-
-
-def _cut(
-    chart: Contracted, vertices: NDArray, t: NDArray, quads: NDArray, extent: float
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A cell's quadrilaterals cut along a box: points of the unit square, new ones last, and quads."""
-    points, cut, count = [t], [np.empty((0, 4), dtype=np.int64)], len(t)
-    for corners in chart.to_physical(image(vertices, t[quads])):  # counterclockwise, as all cells are
-        polygon = clipped(corners, extent)
-        if len(polygon) >= 3:
-            cells = np.broadcast_to(vertices, (len(polygon), 4, 2))
-            points.append(pull_back(cells, chart.from_physical(polygon)))
-            cut.append(count + in_quads(len(polygon)))
-            count += len(polygon)
-    return np.concatenate(points), np.concatenate(cut)
-
-
-def _gradients(
-    chart: Contracted, vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray, n: int
-) -> NDArray[np.float64]:
-    """Physical displacement gradients of one field at places t of a cell, all finite: (m, 2, 2)."""
-    # At a punch edge the chart's stretch is 0 and the stress infinite. What stands there is the stress
-    # in the middle of the small quadrilateral at that corner, the mean a viewer would paint it with.
-    stretch = chart.chart.stretch(image(vertices, t))
-    at_edge = stretch < _VANISHING * stretch.max()
-    t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
-    gradients = gradients_in_plane(vertices, nodes, t, u)
-    return chart.physical_gradients(image(vertices, t), gradients)[..., 0]
-
-
-def _without_unused(field: SampledField) -> SampledField:
-    """The field with only those points that a quadrilateral has."""
-    used, quads = np.unique(field.quads, return_inverse=True)
-    return SampledField(
-        field.points[used], quads.reshape(-1, 4), field.displacement[used], field.gradient[used]
-    )
-
-
-def _joined(pieces: Sequence[SampledField]) -> SampledField:
-    """All pieces in one, in their order."""
-    first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
-    return SampledField(
-        np.concatenate([np.empty((0, 2)), *(piece.points for piece in pieces)]),
-        np.concatenate(
-            [np.empty((0, 4), dtype=np.int64), *(piece.quads + k for piece, k in zip(pieces, first))]
-        ),
-        np.concatenate([np.empty((0, 2)), *(piece.displacement for piece in pieces)]),
-        np.concatenate([np.empty((0, 2, 2)), *(piece.gradient for piece in pieces)]),
-    )
+        near.append(np.stack([np.full(len(inside), i), inside]))
+    cell, point = np.concatenate(near, axis=1)
+    t = pull_back(vertices[cell], x[point])
+    held = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
+    return cell[held], point[held], t[held]

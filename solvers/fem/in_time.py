@@ -40,7 +40,7 @@ from galinx.clock import Clock
 from .cells import lagrange
 from .dynamic import Motion, of_both
 from .fields import SurfaceTrace
-from .linear import UnsymmetricFactor
+from .linear import ArraySolver
 from .space import Traction, consistent_forces
 
 #: On the diagonal, so that one matrix serves all stages.
@@ -74,7 +74,7 @@ class PunchConstraint:
         held[self._Y] = True
         held[2 * motion.far] = held[2 * motion.far + 1] = True
         self._free = np.flatnonzero(~held)
-        self._factor = UnsymmetricFactor(A[self._free][:, self._free].tocsr(), clock)
+        self._factor = ArraySolver(A[self._free][:, self._free].tocsr(), clock)
         self._rows = A[self._Y].tocsr()
         place = np.full(motion.size, -1)
         place[self._free] = np.arange(len(self._free))
@@ -411,7 +411,7 @@ class LoadedInTime:
         held = np.zeros(motion.size, dtype=bool)
         held[2 * motion.far] = held[2 * motion.far + 1] = True
         self._free = np.flatnonzero(~held)
-        self.factor = UnsymmetricFactor(S.tocsr()[self._free][:, self._free].tocsr(), clock)
+        self.factor = ArraySolver(S.tocsr()[self._free][:, self._free].tocsr(), clock)
         space = motion.space
         nodes = np.unique(np.concatenate([space.nodes_on(part) for part in ("contact", "free surface")]))
         self._surface = nodes[np.argsort(space.coordinates[nodes, 0])]
@@ -458,7 +458,7 @@ class LoadedInTime:
         a = np.zeros(len(f))
         if f.any():
             M = kron(self._motion.M, identity(2)).tocsr()
-            factor = UnsymmetricFactor(M[self._free][:, self._free].tocsr(), Clock())
+            factor = ArraySolver(M[self._free][:, self._free].tocsr(), Clock())
             a[self._free] = factor.solve(f[self._free])
             factor.destroy()
         return a

@@ -549,8 +549,9 @@ class MeasuredError:
         lasting, own = {}, self._own(gauges)
         for word in errors:
             lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own[word]
-            earlier, change = (float(changes.max()) for changes in self._sample[word][-2:])
-            if _LASTS * earlier <= change <= ROUNDING * self._bounds[word]:
+            # At a fixed degree there is a single change, and nothing to be mended.
+            *earlier, change = (float(changes.max()) for changes in self._sample[word])
+            if earlier and _LASTS * earlier[-1] <= change <= ROUNDING * self._bounds[word]:
                 lasting[word] = np.maximum(lasting[word], errors[word])
         return lasting
 

@@ -1,15 +1,16 @@
-"""Linear solvers of PETSc: factors of symmetric and unsymmetric matrices, and algebraic multigrid.
+"""Linear systems by PETSc: factors of symmetric and unsymmetric matrices, and algebraic multigrid.
 
-:class:`Factor` is PETSc's direct solver with the checks that PETSc leaves to its caller.
-:class:`Multigrid` runs conjugate gradients with algebraic multigrid, for matrices whose factor does not
-fit into memory. :class:`UnsymmetricFactor` is the direct solver for matrices that are not symmetric, on
-one rank.
+:class:`LinearSolver` keeps a factor, or conjugate gradients with algebraic multigrid for matrices whose
+factor does not fit into memory, with the checks that PETSc leaves to its caller. Both are options of
+PETSc (:data:`METHODS`). :class:`ArraySolver` is the direct solver of a SciPy matrix on one rank.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix
@@ -21,16 +22,45 @@ from ..errors import SolveError
 #: Prefix of the options database, so that ``-galinx_ksp_view`` and the like work.
 PREFIX = "galinx_"
 
-#: PETSc's options for MUMPS: in the plane the last front is too small to be spread over all ranks.
-OPTIONS = {"mat_mumps_icntl_13": 1}
+#: Largest |b - Ax|/|b| that conjugate gradients leave, and the most steps. Contact forces need more;
+#: refinement gives it.
+TOLERANCE = 1e-10
+LIMIT = 1000
+
+#: In the plane the last front is too small to be spread over all ranks (ICNTL(13)). Approximate minimum
+#: degree leaves a tenth less fill than what MUMPS chooses without libraries for graphs (ICNTL(7)).
+_MUMPS = {
+    "ksp_type": "preonly",
+    "pc_factor_mat_solver_type": "mumps",
+    "mat_mumps_icntl_13": 1,
+    "mat_mumps_icntl_7": 6,
+}
+_GRADIENTS = {
+    "ksp_type": "cg", "ksp_norm_type": "unpreconditioned", "ksp_rtol": TOLERANCE, "ksp_max_it": LIMIT,
+}  # fmt: skip
+
+#: PETSc's options by the name of a solver; those of the options database go before them.
+#: HMIS coarsening with extended interpolation takes a sixth fewer steps than BoomerAMG's default, and a
+#: step with Chebyshev's smoother costs a third. GAMG wants the rigid motions.
+METHODS: dict[str, dict[str, object]] = {
+    "direct": _MUMPS | {"pc_type": "cholesky"},
+    "unsymmetric": _MUMPS | {"pc_type": "lu"},
+    "boomeramg": _GRADIENTS
+    | {
+        "pc_type": "hypre",
+        "pc_hypre_type": "boomeramg",
+        "pc_hypre_boomeramg_strong_threshold": 0.5,
+        "pc_hypre_boomeramg_coarsen_type": "HMIS",
+        "pc_hypre_boomeramg_interp_type": "ext+i",
+        "pc_hypre_boomeramg_relax_type_all": "Chebyshev",
+    },
+    "gamg": _GRADIENTS | {"pc_type": "gamg", "pc_gamg_threshold": 0.02, "mg_levels_ksp_max_it": 3},
+}
 
 #: A direct solve that leaves more than this of its right-hand side has met a singular matrix, which
 #: leaves about all of it. What less means for the results is measured on them: near the Rayleigh speed
 #: the body moves far, so that a sound factor leaves 1e-7 where K_I has its seven digits.
 RESIDUAL_LIMIT = 1e-4
-
-#: Unknowns up to which the condition number is estimated; it then costs next to nothing.
-ANALYSED = 200_000
 
 #: MUMPS's statuses for a workspace that it estimated too small, and for memory that it did not get.
 _TOO_SMALL = (-8, -9, -11, -14, -15, -17, -20)
@@ -42,142 +72,9 @@ WORKSPACE = (35, 400)
 _AT_ONCE = 8_000_000
 
 
-class Factor:
-    """Factor of a symmetric matrix, kept for many right-hand sides.
-
-    Args:
-        A: the matrix; it belongs to the factor from now on.
-        clock: takes the time of factorisation and back-substitutions.
-        definite: positive definite, so that Cholesky's method needs no pivots.
-
-    Attributes:
-        solves: number of back-substitutions.
-        iterations: 0, as for every direct solver.
-        condition: MUMPS's estimate of the condition number, known after the first solve; 0 for a matrix
-            of more than ``ANALYSED`` unknowns.
-        largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
-    """
-
-    def __init__(self, A: PETSc.Mat, clock: Clock, definite: bool = True) -> None:
-        A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        A.setOption(PETSc.Mat.Option.SPD, definite)
-        self.A, self.solves, self.iterations, self.largest_residual = A, 0, 0, 0.0
-        self._clock = clock
-        self._residual = A.createVecLeft()
-        self.condition = 0.0
-        with clock("factorisation"), defaults(OPTIONS):
-            for percent in WORKSPACE:
-                self._factorise(percent)
-                if self._mumps.getMumpsInfog(1) not in _TOO_SMALL or percent == WORKSPACE[-1]:
-                    break
-                self._mumps.destroy(), self._ksp.destroy()
-        self._check_factor()
-
-    def _factorise(self, percent: int) -> None:
-        self._ksp = PETSc.KSP().create(self.A.comm)
-        self._ksp.setOptionsPrefix(PREFIX)
-        self._ksp.setOperators(self.A)
-        self._ksp.setType(PETSc.KSP.Type.PREONLY)
-        pc = self._ksp.getPC()
-        pc.setType(PETSc.PC.Type.CHOLESKY)
-        pc.setFactorSolverType("mumps")
-        self._ksp.setFromOptions()
-        pc.setFactorSetUpSolverType()
-        self._mumps = pc.getFactorMatrix()
-        self._mumps.setMumpsIcntl(14, percent)
-        try:
-            self._ksp.setUp()
-        except PETSc.Error as error:
-            raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
-
-    def _check_factor(self) -> None:
-        status = self._mumps.getMumpsInfog(1)
-        if status == 0:
-            return
-        if status in _MEMORY + _TOO_SMALL:
-            largest, total = (self._mumps.getMumpsInfog(i) for i in (16, 17))
-            raise SolveError(
-                f"the factorisation ran out of memory (MUMPS's status {status}); it needs {largest} MB "
-                f"a rank, {total} MB in all: use more ranks, a larger tolerance, or more memory"
-            )
-        raise SolveError(
-            f"the factorisation failed (MUMPS's status {status}): the matrix is singular or not positive "
-            "definite, as above the Rayleigh speed"
-        )
-
-    def solve(self, b: PETSc.Vec) -> PETSc.Vec:
-        """Solution of A x = b.
-
-        Raises:
-            SolveError: PETSc did not converge, or x is not finite, or it does not solve the system.
-        """
-        with self._clock("back-substitutions"):
-            if self.solves or b.getSize() > ANALYSED:
-                return self._solve(b)
-            self._mumps.setMumpsIcntl(11, 1)  # error analysis, worth a few back-substitutions
-            x = self._solve(b)
-            self._mumps.setMumpsIcntl(11, 0)
-            self.condition = self._mumps.getMumpsRinfog(10)
-            return x
-
-    def solve_all(self, loads: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
-        """Solutions of A x = b for several b at once, for which the factor is read once.
-
-        Raises:
-            SolveError: a solution is not finite, or does not solve its system.
-        """
-        if len(loads) == 1 or not self.solves:
-            # The first alone gives the condition number, which several at once do not.
-            first, rest = self.solve(loads[0]), loads[1:]
-            return [first, *(self.solve_all(rest) if rest else [])]
-        few = max(_AT_ONCE // loads[0].getSize(), 1)
-        if len(loads) > few:
-            return [*self.solve_all(loads[:few]), *self.solve_all(loads[few:])]
-        with self._clock("back-substitutions"):
-            rows = (loads[0].getLocalSize(), loads[0].getSize())
-            B = PETSc.Mat().createDense((rows, (PETSc.DECIDE, len(loads))), comm=self.A.comm)
-            B.setUp()
-            B.getDenseArray()[:] = np.column_stack([b.array_r for b in loads])
-            B.assemble()
-            X = B.duplicate()
-            self._mumps.matSolve(B, X)
-            solutions = []
-            for b, column in zip(loads, X.getDenseArray().T):
-                x = self.A.createVecRight()
-                x.setArray(column)
-                self._check(x, b)
-                solutions.append(x)
-            B.destroy(), X.destroy()
-            return solutions
-
-    def _solve(self, b: PETSc.Vec) -> PETSc.Vec:
-        x = self.A.createVecRight()
-        self._ksp.solve(b, x)
-        reason = self._ksp.getConvergedReason()
-        if reason <= 0:
-            raise SolveError(
-                f"the linear solve failed, PETSc's converged reason {reason}: the right-hand side or the "
-                "matrix is not finite, or memory ran out"
-            )
-        self._check(x, b)
-        return x
-
-    def _check(self, x: PETSc.Vec, b: PETSc.Vec) -> None:
-        self.A.mult(x, self._residual)
-        self._residual.aypx(-1.0, b)
-        residual = self._residual.norm() / b.norm()
-        if not residual <= RESIDUAL_LIMIT:  # also catches NaN
-            raise SolveError(
-                f"the linear solve left |b - Ax|/|b| = {residual:.3g}, expected at most "
-                f"{RESIDUAL_LIMIT:g}: the matrix is singular or nearly so"
-            )
-        self.largest_residual = max(self.largest_residual, residual)
-        self.solves += 1
-
-    def destroy(self) -> None:
-        """Free the factor's memory now; petsc4py would wait for a collective garbage collection."""
-        for held in (self._mumps, self._ksp, self._residual, self.A):
-            held.destroy()
+def available() -> tuple[str, ...]:
+    """Multigrids that the installed PETSc has, the best first."""
+    return ("boomeramg", "gamg") if PETSc.Sys.hasExternalPackage("hypre") else ("gamg",)
 
 
 @contextmanager
@@ -194,104 +91,197 @@ def defaults(options: Mapping[str, object]) -> Iterator[None]:
             database.delValue(name)
 
 
-#: Largest |b - Ax|/|b|. Contact forces need more; refinement gives it.
-TOLERANCE = 1e-10
-LIMIT = 1000
-
-#: PETSc's options by the name that scenes use; those of the options database go before them.
-#: HMIS coarsening with extended interpolation takes a sixth fewer steps than BoomerAMG's default, and a
-#: step with Chebyshev's smoother costs a third. GAMG wants the rigid motions.
-PRECONDITIONERS: dict[str, dict[str, object]] = {
-    "boomeramg": {
-        "pc_type": "hypre",
-        "pc_hypre_type": "boomeramg",
-        "pc_hypre_boomeramg_strong_threshold": 0.5,
-        "pc_hypre_boomeramg_coarsen_type": "HMIS",
-        "pc_hypre_boomeramg_interp_type": "ext+i",
-        "pc_hypre_boomeramg_relax_type_all": "Chebyshev",
-    },
-    "gamg": {"pc_type": "gamg", "pc_gamg_threshold": 0.02, "mg_levels_ksp_max_it": 3},
-}
-
-
-def available() -> tuple[str, ...]:
-    """Multigrids that the installed PETSc has, the best first."""
-    return ("boomeramg", "gamg") if PETSc.Sys.hasExternalPackage("hypre") else ("gamg",)
-
-
-class Multigrid:
-    """Conjugate gradients for a symmetric positive definite matrix and many right-hand sides.
+class LinearSolver:
+    """Solver of one matrix, kept for many right-hand sides.
 
     Args:
         A: the matrix; it belongs to the solver from now on.
         clock: takes the time of set-up and solves.
-        kind: a name of ``OPTIONS``, or ``"multigrid"`` for the best that PETSc has.
-        rigid: the three rigid motions at this rank's rows, (rows, 3).
+        method: a name of :data:`METHODS`, or ``"multigrid"`` for the best that PETSc has.
+        definite: a symmetric matrix is positive definite, so that Cholesky's method needs no pivots.
+        rigid: the three rigid motions at this rank's rows, (rows, 3); a factor needs none.
 
     Attributes:
-        solves: number of solves.
-        iterations: the most that a solve took.
-        condition: 0, it is not estimated.
+        direct: True where a factor is kept.
+        solves: number of right-hand sides that were solved for.
+        iterations: the most steps of conjugate gradients that a solve took; 0 of a factor.
+        condition: lower bound of the condition number in the maximum norm, |A| |x|/|b| of the solutions.
         largest_residual: the largest |b - Ax|/|b| met so far, dimensionless.
+
+    Raises:
+        SolveError: the matrix cannot be factored, or PETSc lacks the method.
     """
 
-    def __init__(self, A: PETSc.Mat, clock: Clock, kind: str, rigid: NDArray[np.float64]) -> None:
-        A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        A.setOption(PETSc.Mat.Option.SPD, True)
-        self.A, self.solves, self.iterations = A, 0, 0
-        self.condition, self.largest_residual = 0.0, 0.0
-        self._clock = clock
-        A.setNearNullSpace(_orthonormal(A, rigid.T))
-        chosen = available()[0] if kind == "multigrid" else kind
-        if chosen not in available():
+    def __init__(
+        self, A: PETSc.Mat, clock: Clock, method: str = "direct", definite: bool = True,
+        rigid: NDArray[np.float64] | None = None,
+    ) -> None:  # fmt: skip
+        chosen = available()[0] if method == "multigrid" else method
+        self.direct = "pc_factor_mat_solver_type" in METHODS[chosen]
+        if not self.direct and chosen not in available():
             raise SolveError(
                 f"this PETSc has no {chosen}, only {', '.join(available())}; name another solver"
             )
-        with clock("multigrid set-up"), defaults(PRECONDITIONERS[chosen]):
-            self._ksp = PETSc.KSP().create(A.comm)
-            self._ksp.setOptionsPrefix(PREFIX)
-            self._ksp.setOperators(A)
-            self._ksp.setType(PETSc.KSP.Type.CG)
-            self._ksp.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
-            self._ksp.setTolerances(rtol=TOLERANCE, max_it=LIMIT)
-            self._ksp.setFromOptions()
-            self._ksp.setUp()
+        if chosen != "unsymmetric":
+            A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+            A.setOption(PETSc.Mat.Option.SPD, definite)
+        if rigid is not None and not self.direct:
+            A.setNearNullSpace(_orthonormal(A, rigid))
+        self.A, self.solves, self.iterations = A, 0, 0
+        self.condition, self.largest_residual = 0.0, 0.0
+        self._norm, self._clock = A.norm(PETSc.NormType.INFINITY), clock
+        self._comm = A.comm.tompi4py()
+        with clock("factorisation" if self.direct else "multigrid set-up"):
+            for percent in WORKSPACE:
+                room = {"mat_mumps_icntl_14": percent} if self.direct else {}
+                self._set_up(METHODS[chosen] | room)
+                status = self._mumps.getMumpsInfog(1) if self.direct else 0
+                if status not in _TOO_SMALL or percent == WORKSPACE[-1]:
+                    break
+                self._free()
+        if status:
+            raise SolveError(f"the factorisation {self._reason(status)}")
 
-    def solve(self, b: PETSc.Vec) -> PETSc.Vec:
-        """Solution of A x = b.
+    def _set_up(self, options: Mapping[str, object]) -> None:
+        self._ksp = PETSc.KSP().create(self.A.comm)
+        self._ksp.setOptionsPrefix(PREFIX)
+        self._ksp.setOperators(self.A)
+        with defaults(options):
+            self._ksp.setFromOptions()
+            try:
+                self._ksp.setUp()
+            except PETSc.Error as error:
+                raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
+        self._mumps: Any = self._ksp.getPC().getFactorMatrix() if self.direct else None
+
+    def _reason(self, status: int) -> str:
+        if status in _MEMORY + _TOO_SMALL:
+            largest, total = (self._mumps.getMumpsInfog(i) for i in (16, 17))
+            return (
+                f"ran out of memory (MUMPS's status {status}); it needs {largest} MB a rank, {total} MB "
+                "in all: use more ranks, a larger tolerance, or more memory"
+            )
+        return (
+            f"failed (MUMPS's status {status}): the matrix is singular or not positive definite, as "
+            "above the Rayleigh speed"
+        )
+
+    def solve(self, b: NDArray, checked: bool = True) -> NDArray[np.float64]:
+        """Solutions at this rank's rows, (rows, n); a factor is read once for all right-hand sides.
+
+        Args:
+            b: right-hand sides at this rank's rows, (rows, n).
+            checked: measure what a factor leaves of them; the caller does so if not, by :meth:`check`.
 
         Raises:
-            SolveError: conjugate gradients did not converge.
+            SolveError: a solution is not finite, or does not solve its system.
         """
-        with self._clock("multigrid solves"):
-            x = self.A.createVecRight()
-            self._ksp.solve(b, x)
-        self.solves += 1
-        self.iterations = max(self.iterations, self._ksp.getIterationNumber())
-        residual = self._ksp.getResidualNorm() / b.norm()
-        if self._ksp.getConvergedReason() <= 0:
-            raise SolveError(
-                f"conjugate gradients left |b - Ax|/|b| = {residual:.3g} after "
-                f"{self._ksp.getIterationNumber()} steps, expected {TOLERANCE:g}; near the Rayleigh "
-                'speed the matrix is nearly singular: use solver = "direct"'
-            )
-        self.largest_residual = max(self.largest_residual, residual)
+        x = self._solved(b)
+        if checked:
+            self.check(b, x, b - times(self.A, x))
         return x
 
-    def solve_all(self, loads: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
-        """Solutions of A x = b for several b, one after the other."""
-        return [self.solve(b) for b in loads]
+    def _solved(self, b: NDArray) -> NDArray[np.float64]:
+        self.solves += b.shape[1]
+        with self._clock("back-substitutions" if self.direct else "multigrid solves"):
+            if b.shape[1] == 1 or not self.direct:
+                return np.column_stack([self._solve_one(column) for column in b.T])
+            x = np.empty_like(b)
+            count = max(_AT_ONCE // self.A.getSize()[0], 1)
+            for start in range(0, b.shape[1], count):
+                columns = slice(start, start + count)
+                B = dense(self.A, b[:, columns])
+                X = B.duplicate()
+                self._mumps.matSolve(B, X)
+                x[:, columns] = X.getDenseArray()
+                B.destroy(), X.destroy()
+            return x
+
+    def _solve_one(self, load: NDArray) -> NDArray[np.float64]:
+        b, x = vector(self.A, load), self.A.createVecRight()
+        self._ksp.solve(b, x)
+        reason, steps = self._ksp.getConvergedReason(), self._ksp.getIterationNumber()
+        if not self.direct:
+            residual = self._ksp.getResidualNorm() / b.norm()
+            if reason <= 0:
+                raise SolveError(
+                    f"conjugate gradients left |b - Ax|/|b| = {residual:.3g} after {steps} steps, "
+                    f"expected {TOLERANCE:g}; near the Rayleigh speed the matrix is nearly singular: use "
+                    'solver = "direct"'
+                )
+            self.iterations = max(self.iterations, steps)
+            self.largest_residual = max(self.largest_residual, residual)
+        elif reason <= 0:
+            raise SolveError(
+                f"the linear solve failed, PETSc's converged reason {reason}: the right-hand side or the "
+                "matrix is not finite, or memory ran out"
+            )
+        solution = np.array(x.array_r)
+        b.destroy(), x.destroy()
+        return solution
+
+    def check(self, b: NDArray, x: NDArray, residuals: NDArray) -> None:
+        """Raise SolveError where a factor's solutions x leave too much of b, all (rows, n)."""
+        if not self.direct:
+            return
+        left = self._squares(residuals)
+        for residual in np.sqrt(left / self._squares(b)):
+            if not residual <= RESIDUAL_LIMIT:  # also catches NaN
+                raise SolveError(
+                    f"the linear solve left |b - Ax|/|b| = {residual:.3g}, expected at most "
+                    f"{RESIDUAL_LIMIT:g}: the matrix is singular or nearly so"
+                )
+            self.largest_residual = max(self.largest_residual, float(residual))
+        sizes = np.abs([x, b]).max(axis=1, initial=0.0)
+        self._comm.Allreduce(MPI.IN_PLACE, sizes, MPI.MAX)
+        self.condition = max(self.condition, float(self._norm * (sizes[0] / sizes[1]).max()))
+
+    def _squares(self, columns: NDArray) -> NDArray[np.float64]:
+        """Squares of the norms of columns, summed over ranks."""
+        squares = np.einsum("ij,ij->j", columns, columns)
+        self._comm.Allreduce(MPI.IN_PLACE, squares)
+        return squares
 
     def destroy(self) -> None:
-        """Free PETSc's memory now."""
-        self._ksp.destroy(), self.A.destroy()
+        """Free PETSc's memory now; petsc4py would wait for a collective garbage collection."""
+        self._free()
+        self.A.destroy()
+
+    def _free(self) -> None:
+        for held in (self._mumps, self._ksp):
+            if held is not None:
+                held.destroy()
 
 
-def _orthonormal(A: PETSc.Mat, modes: Iterable[NDArray]) -> PETSc.NullSpace:
+def vector(A: PETSc.Mat, values: NDArray) -> PETSc.Vec:
+    """A vector with these values at this rank's rows of a matrix."""
+    x = A.createVecRight()
+    x.setArray(values)
+    return x
+
+
+def dense(A: PETSc.Mat, columns: NDArray) -> PETSc.Mat:
+    """A dense matrix of columns, (rows, n), at this rank's columns of another matrix."""
+    B = PETSc.Mat().createDense((A.getSizes()[1], (PETSc.DECIDE, columns.shape[1])), comm=A.comm)
+    B.setUp()
+    B.getDenseArray()[:] = columns
+    B.assemble()
+    return B
+
+
+def times(A: PETSc.Mat, columns: NDArray) -> NDArray[np.float64]:
+    """A times columns of this rank's part, (columns of A, n): (rows of A, n); A is read once for all."""
+    B = dense(A, columns)
+    product = A.matMult(B)
+    result = np.array(product.getDenseArray())
+    B.destroy(), product.destroy()
+    return result
+
+
+def _orthonormal(A: PETSc.Mat, modes: NDArray) -> PETSc.NullSpace:
     basis: list[PETSc.Vec] = []
-    for mode in modes:
-        x = A.createVecRight()
-        x.setArray(np.ascontiguousarray(mode))
+    for mode in modes.T:
+        x = vector(A, mode)
         for earlier in basis:
             x.axpy(-x.dot(earlier), earlier)
         x.normalize()
@@ -299,12 +289,14 @@ def _orthonormal(A: PETSc.Mat, modes: Iterable[NDArray]) -> PETSc.NullSpace:
     return PETSc.NullSpace().create(vectors=basis, comm=A.comm)
 
 
-#: Largest residual of a solution, over its right-hand side.
+#: Largest residual of right-hand sides of time steps, over their norm.
 _RESIDUAL = 1e-6
 
 
-class UnsymmetricFactor:
-    """LU factors of a matrix, kept for many right-hand sides.
+class ArraySolver:
+    """Direct solver of an unsymmetric SciPy matrix on this rank, kept for many right-hand sides.
+
+    Only the first of single right-hand sides is checked: time steps have one matrix.
 
     Args:
         A: the matrix.
@@ -315,28 +307,10 @@ class UnsymmetricFactor:
     """
 
     def __init__(self, A: csr_matrix, clock: Clock) -> None:
-        self._clock, self._A = clock, A
-        parts = (A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data)
-        self._matrix = PETSc.Mat().createAIJ(A.shape, csr=parts, comm=PETSc.COMM_SELF)
-        with clock("factorisation"):
-            self._pc = PETSc.PC().create(PETSc.COMM_SELF)
-            self._pc.setOptionsPrefix(PREFIX)
-            self._pc.setOperators(self._matrix)
-            self._pc.setType(PETSc.PC.Type.LU)
-            self._pc.setFactorSolverType("mumps")
-            self._pc.setFactorSetUpSolverType()
-            self._mumps = self._pc.getFactorMatrix()
-            self._mumps.setMumpsIcntl(14, WORKSPACE[-1])
-            try:
-                self._pc.setUp()
-            except PETSc.Error as error:
-                raise SolveError(f"the factorisation failed, PETSc's error {error.ierr}") from error
-        if status := self._mumps.getMumpsInfog(1):
-            raise SolveError(
-                f"the factorisation failed (MUMPS's status {status}): memory ran out, or the matrix is "
-                "singular; expected a shorter time.end or a larger solve.tolerance"
-            )
-        self._checked = False
+        entries = (A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data)
+        matrix = PETSc.Mat().createAIJ(A.shape, csr=entries, comm=PETSc.COMM_SELF)
+        self._A, self._checked = A, False
+        self._solver = LinearSolver(matrix, clock, "unsymmetric")
 
     def solve(self, b: NDArray) -> NDArray[np.float64]:
         """Solutions for right-hand sides (n,) or (n, count).
@@ -344,35 +318,16 @@ class UnsymmetricFactor:
         Raises:
             SolveError: a solution does not solve its system.
         """
-        with self._clock("back-substitutions"):
-            if b.ndim == 1:
-                x, y = (PETSc.Vec().createWithArray(np.array(b), comm=PETSc.COMM_SELF) for _ in range(2))
-                self._mumps.solve(x, y)
-                solution = np.array(y.array_r)
-                x.destroy(), y.destroy()
-            else:
-                solution = self._many(b)
-        if not self._checked or b.ndim == 2:
-            residual = float(np.linalg.norm(self._A @ solution - b)) / max(
-                float(np.linalg.norm(b)), 1e-300
-            )
-            if np.any(b) and not residual <= _RESIDUAL:
+        x = self._solver.solve(b.reshape(len(b), -1), checked=False).reshape(b.shape)
+        if np.any(b) and (b.ndim == 2 or not self._checked):
+            residual = float(np.linalg.norm(self._A @ x - b) / np.linalg.norm(b))
+            if not residual <= _RESIDUAL:
                 raise SolveError(
                     f"a linear solve left |b - Ax|/|b| = {residual:.3g}, expected {_RESIDUAL:g}"
                 )
             self._checked = True
-        return solution
-
-    def _many(self, b: NDArray) -> NDArray[np.float64]:
-        loads = PETSc.Mat().createDense(b.shape, array=np.asfortranarray(b), comm=PETSc.COMM_SELF)
-        solutions = PETSc.Mat().createDense(b.shape, comm=PETSc.COMM_SELF)
-        solutions.setUp()
-        self._mumps.matSolve(loads, solutions)
-        values = np.array(solutions.getDenseArray())
-        loads.destroy(), solutions.destroy()
-        return values
+        return x
 
     def destroy(self) -> None:
         """Free the factors' memory now."""
-        for held in (self._mumps, self._pc, self._matrix):
-            held.destroy()
+        self._solver.destroy()

@@ -91,7 +91,7 @@ class EndsLevel(PunchLevel):
         self._lengths: dict[State, Lengths] = {}
 
     def conditions(self, g: NDArray) -> list[EndConditions]:
-        """EndConditions at free ends of every friction."""
+        """Conditions at free ends of every friction."""
         missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
         if len(missing):
             parts, local = self.punch.parts(missing), EdgeExponents(self.task.response, missing)
@@ -520,6 +520,7 @@ def solved_over_layers(
     errors = {word: value + off for word, value in state.states.errors().items()}
     states = replace(
         state.states,
+        body=task.body,
         half_width=np.array([h]),
         centre=np.array([h * lean]),
         errors=lambda: errors,

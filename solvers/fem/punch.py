@@ -33,12 +33,14 @@ from scipy.linalg import schur
 from ..approximation import barycentric
 from ..errors import SolveError
 from ..solids.solid import Response
-from .boundary import FarBoundary, forces_of_profile, ones, product, set_zero
-from .linear import Factor, Multigrid
+from .boundary import FarBoundary, held_forces
+from .linear import LinearSolver, times, vector
 from .space import Space
 
 #: Least relative residual of contact forces that can be required; the last digits are rounding.
 LEAST = 1e-13
+#: Relative residual that refined solutions may bring back; what is larger takes further loads.
+_BROUGHT_BACK = 1e-12
 LIMIT = 120
 
 #: Numbers of frictions up to which each is solved for itself; beyond, all share a triangular form.
@@ -46,7 +48,11 @@ _FEW = 40
 
 
 class KrylovSpace:
-    """The space of (T, R₀), by Arnoldi's method.
+    """The space that holds the contact forces of every friction.
+
+    It grows by what is left of the equations at the worst friction. That is Arnoldi's method, but for
+    rounding: loads are applied one after the other by rough solutions, and these are refined together.
+    What is left then is as small as the changes, and another few loads take it away.
 
     Args:
         field: the punch without friction.
@@ -55,82 +61,98 @@ class KrylovSpace:
         left: relative residual of the contact forces that may remain, if it is above the least.
 
     Attributes:
-        fields, forces: without friction first, then those of each tangential load.
+        fields: displacements, of the punch without friction first, then of each tangential load.
+        forces: their forces at the contact nodes, those of rough fields included, (fields, 2, n).
+        rough: displacements of the last loads at this rank's rows, not yet refined.
         complete: the space holds every answer.
     """
 
     def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float) -> None:
-        self.fields, self.forces, self.refines = [field], [forces], refines
-        self._left = max(left, LEAST)
+        self.fields, self.forces, self.refines = [field], forces[None], refines
+        self.rough: list[NDArray[np.float64]] = []
+        self.left = max(left, LEAST)
         self._size = np.linalg.norm(forces[1])
-        self._V = [forces[1] / self._size]
-        self._H = np.zeros((LIMIT + 1, LIMIT))
-        self._triangle = np.empty((0, 0)), np.empty((0, 0))
+        #: Orthonormal loads, (n, loads); the last ones may not be applied yet.
+        self._V = forces[1][:, None] / self._size
         self.complete = False
 
     @property
-    def last(self) -> NDArray[np.float64]:
-        """The load that is not yet applied, (n,)."""
-        return self._V[len(self.fields) - 1]
+    def applied(self) -> int:
+        """Number of loads that are applied."""
+        return len(self.forces) - 1
 
-    def take(self, field: PETSc.Vec, forces: NDArray) -> None:
-        """One Arnoldi step: the field and the forces that the last load causes."""
-        j = len(self.fields) - 1
-        self.fields.append(field)
-        self.forces.append(forces)
-        w = forces[1]
-        for _ in range(2):  # twice is enough
-            h = np.array(self._V) @ w
-            self._H[: j + 1, j] += h
-            w = w - np.array(self._V).T @ h
-        self._H[j + 1, j] = np.linalg.norm(w)
-        # A happy breakdown: the space holds every answer.
-        self.complete = bool(self._H[j + 1, j] <= 1e-15 * np.linalg.norm(self._H[: j + 1, j]))
-        if not self.complete:
-            self._V.append(w / self._H[j + 1, j])
+    @property
+    def waiting(self) -> NDArray[np.float64]:
+        """Loads that are not yet applied, (n, loads)."""
+        return self._V[:, self.applied :]
+
+    @property
+    def of_rough(self) -> NDArray[np.float64]:
+        """Loads of the rough displacements, (n, loads)."""
+        return self._V[:, len(self.fields) - 1 : self.applied]
+
+    def take(self, rough: NDArray, forces: NDArray) -> None:
+        """Take displacements (rows, loads) and forces (loads, 2, n) that the waiting loads cause."""
+        self.rough += list(rough.T)
+        self.forces = np.concatenate([self.forces, forces])
+
+    def settle(self, fields: Sequence[PETSc.Vec], forces: NDArray) -> None:
+        """Replace the rough displacements by fields and their forces (fields, 2, n)."""
+        self.forces[len(self.fields) :] = forces
+        self.fields += fields
+        self.rough = []
 
     def converged(self, g: NDArray) -> NDArray[np.float64] | None:
-        """Coefficients y of R = V y for every g, (states, m); None where the space is too small.
+        """Coefficients y of R = V y for every g, (states, m); None where more loads are waiting.
 
         Raises:
             SolveError: the space has grown to its limit.
         """
-        m = len(self.fields) - 1
-        if not m:
+        if not self.applied:
             return None
-        y, residuals = self.solve(g)
+        y, directions, rest = self.solve(g)
+        residuals = np.linalg.norm(rest, axis=0)
         worst = int(np.argmax(residuals))
-        if self.complete or residuals[worst] <= self._left:
+        if self.complete or residuals[worst] <= self.left:
             return y
-        if m == LIMIT:
+        if self.applied >= LIMIT:
             raise SolveError(
                 f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                f"{LIMIT} steps: residual {residuals[worst]:.3g}, expected {self._left:g}"
+                f"{LIMIT} steps: residual {residuals[worst]:.3g}, expected {self.left:g}"
             )
+        while residuals[worst] > self.left:
+            along = rest[:, worst] / residuals[worst]
+            rest = rest - np.outer(along, along @ rest)
+            load = directions @ along
+            for _ in range(2):  # twice is enough
+                load = load - self._V @ (self._V.T @ load)
+            self._V = np.column_stack([self._V, load / np.linalg.norm(load)])
+            residuals = np.linalg.norm(rest, axis=0)
+            worst = int(np.argmax(residuals))
         return None
 
-    def solve(self, g: NDArray) -> tuple[NDArray, NDArray]:
-        """Coefficients y of R = V y for every g, (states, m), and their relative residuals, (states,)."""
-        m = len(self.fields) - 1
+    def solve(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """Coefficients y of R = V y for every g, and what is left of (I - g T) R = R₀ over R.
+
+        Returns:
+            Coefficients (states, m), orthonormal directions (n, k), residuals along them (k, states).
+        """
+        m = self.applied
+        V, W = self._V[:, :m], self.forces[1:, 1].T
+        H = V.T @ W
+        directions, R = np.linalg.qr(W - V @ H)
         if len(g) <= _FEW:
             first = np.zeros((len(g), m, 1))
             first[:, 0] = self._size
-            y = np.linalg.solve(np.eye(m) - g[:, None, None] * self._H[:m, :m], first)[..., 0]
-            return y, self._residuals(g, y)
-        T, Q = self._triangle
-        if len(T) != m:  # once for all g: Schur's form keeps the digits that eigenvectors may lose
-            T, Q = self._triangle = schur(self._H[:m, :m], output="complex")
-        solved = np.tile((self._size * Q[0].conj())[:, None], len(g))
-        for i in reversed(range(m)):
-            solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])
-            solved[i] /= 1.0 - g * T[i, i]
-        y = (Q @ solved).real.T
-        return y, self._residuals(g, y)
-
-    def _residuals(self, g: NDArray, y: NDArray) -> NDArray[np.float64]:
-        """Relative residuals of (I - g T) R = R₀ for coefficients y (states, m): (states,)."""
-        m = y.shape[1]
-        return np.asarray(np.abs(g * self._H[m, m - 1] * y[:, -1]) / np.linalg.norm(y, axis=1))
+            y = np.linalg.solve(np.eye(m) - g[:, None, None] * H, first)[..., 0]
+        else:  # once for all g: Schur's form keeps the digits that eigenvectors may lose
+            T, Q = schur(H, output="complex")
+            solved = np.tile((self._size * Q[0].conj())[:, None], len(g))
+            for i in reversed(range(m)):
+                solved[i] += g * (T[i, i + 1 :] @ solved[i + 1 :])
+                solved[i] /= 1.0 - g * T[i, i]
+            y = (Q @ solved).real.T
+        return y, directions, R @ (g[:, None] * y / np.linalg.norm(y, axis=1)[:, None]).T
 
 
 @dataclass(frozen=True)
@@ -283,23 +305,23 @@ class SlidingPunch(Punch):
         self._rows = [
             A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=comm)) for i in (0, 1)
         ]
-        self._motions = [ones(A, space.node_dofs[i::2]) for i in (0, 1)]
-        #: Forces that a motion of the far boundary alone causes.
-        self._far = [product(A, ones(A, space.numbers[space.far_nodes] + i)) for i in (0, 1)]
+        self._first = A.getOwnershipRange()[0]
+        rigid = space.rigid_motions(response)
+        #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
+        self._motions, moved = rigid[:, :2], np.zeros((len(rigid), 2))
+        far = space.far_dofs - self._first
+        moved[far] = self._motions[far]
+        #: Forces that a motion of the far boundary alone causes, (rows, 2).
+        self._far = times(A, moved)
         flat = np.full(len(nodes.s), -1.0)
         shapes = [flat, *([] if heights is None else np.atleast_2d(heights))]
-        shaped = [forces_of_profile(A, space, height) for height in shapes]
+        shaped = held_forces(A, space, nodes.dofs(1), np.array(shapes)[:, nodes.owned].T)
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
-        self.factor: Factor | Multigrid
-        if solver == "direct":
-            self.factor = Factor(A, space.clock, definite=not space.mixed)
-        else:
-            self.factor = Multigrid(A, space.clock, solver, space.rigid_motions(response))
+        self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
         self._nodal: tuple[NDArray, NDArray] | None = None
-        self._take_boundary()
         #: Krylov spaces of the flat punch, and of each shape.
-        self._spaces = self._krylov_spaces(shaped, negligible)
+        self._spaces = self._begin(shaped, negligible)
 
     @property
     def fields(self) -> list[PETSc.Vec]:
@@ -307,12 +329,15 @@ class SlidingPunch(Punch):
         return [field for space in self._spaces for field in space.fields]
 
     def prepare(self, g: NDArray[np.float64]) -> None:
-        """Complete the basis for these values of σ_XY/σ_YY, sorted.
+        """Complete the basis for these values of σ_XY/σ_YY, sorted, and for their opposites.
 
-        The residual of the basis is a smooth function of g, so some values spread over all suffice.
+        What a basis leaves is a smooth function of g, so some values spread over all suffice. At opposite
+        frictions a punch is the mirror image, with which rounding is estimated.
         """
-        spread = np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))
-        self._contact_forces(self._spaces, g[spread])
+        spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
+        self._contact_forces(self._spaces, np.concatenate([spread, -spread]))
+        for space in self._spaces:
+            space.complete = True
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         spaces = self._spaces[: None if shapes is None else 1 + shapes]
@@ -323,7 +348,7 @@ class SlidingPunch(Punch):
         weights = np.zeros((len(g), len(space.fields)))
         weights[:, 0] = 1.0
         weights[:, 1 : 1 + y.shape[1]] = g[:, None] * y
-        return Part(weights, np.array(space.forces))
+        return Part(weights, space.forces)
 
     def release(self) -> None:
         for space in self._spaces:
@@ -332,38 +357,38 @@ class SlidingPunch(Punch):
 
     def destroy(self) -> None:
         self._nodal = None
-        for held in (self.factor, self._boundary, *self._rows, *self._motions, *self._far, *self.fields):
+        for held in (self.factor, self._boundary, *self._rows, *self.fields):
             held.destroy()
 
-    def _take_boundary(self) -> None:
-        """Solve for a far boundary that moves."""
-        loads, contact = self._boundary.loads, self.space.contact
-        if loads:
-            fields = self._displacements(loads)
-            # Moments after the resultants have too little effect to need that.
-            self._refine(fields[:2], loads[:2], [0.0, 0.0])
-            self._boundary.set_fields(fields)
-            X = self.space.chart.surface_position(contact.s)
-            self._boundary.take(X, [self._reactions(field) for field in fields])
+    def _begin(self, shaped: NDArray, negligible: float) -> list[KrylovSpace]:
+        """Krylov spaces of the flat punch at v = -1 and of each shape, without friction.
 
-    def _krylov_spaces(self, forces: list[PETSc.Vec], negligible: float) -> list[KrylovSpace]:
-        """Krylov spaces of the flat punch at v = -1 and of each shape, begun without friction.
+        The far boundary's fields are solved for with them.
 
         Args:
-            forces: nodal forces of the held displacements; they are freed.
+            shaped: nodal forces of the held displacements, (rows, shapes).
             negligible: see the class.
         """
-        fields = self._displacements(forces)
-        rough = [self._reactions(field) for field in fields]
+        b = np.column_stack([self._boundary.loads, shaped])
+        flat, count = self._boundary.loads.shape[1], b.shape[1]
+        x = self._displacements(b, checked=True)
+        before = self._reactions(x)
         # Under the flat punch all of the contact moves by the same distance, and no other load acts.
-        self._refine(fields, [None, *forces[1:]], [-1.0] + [0.0] * (len(forces) - 1))
+        v = np.where(np.arange(count) == flat, -1.0, 0.0)
+        b[:, flat] = 0.0
+        # The far boundary's moments after the resultants have too little effect to be refined.
+        refined = [*range(min(flat, 2)), *range(flat, count)]
+        x[:, refined] += self._corrections(self._residuals(x[:, refined], b[:, refined], v[refined]))
+        after = self._reactions(x)
+        fields = [vector(self.factor.A, column) for column in x.T]
+        if flat:
+            X = self.space.chart.surface_position(self.space.contact.s)
+            self._boundary.take(fields[:flat], X, after[:flat])
         spaces = []
-        for field, before, b in zip(fields, rough, forces):
-            after = self._reactions(field)
-            change = np.linalg.norm(after - before) / np.linalg.norm(before)
-            after = self._boundary.follow(field, after)
-            spaces.append(KrylovSpace(field, after, bool(change > negligible), self._left))
-            b.destroy()
+        for field, rough, forces in zip(fields[flat:], before[flat:], after[flat:]):
+            change = np.linalg.norm(forces - rough) / np.linalg.norm(rough)
+            forces = self._boundary.follow(forces, field)
+            spaces.append(KrylovSpace(field, forces, bool(change > negligible), self._left))
         return spaces
 
     def _contact_forces(
@@ -375,133 +400,126 @@ class SlidingPunch(Punch):
         """
         if not np.any(g):
             return [np.zeros((len(g), 0)) for _ in spaces]
-        coefficients: list[NDArray | None] = [None for _ in spaces]
         while True:
-            for i, space in enumerate(spaces):
-                if coefficients[i] is None:
-                    coefficients[i] = space.converged(g)
+            coefficients = [space.converged(g) for space in spaces]
             short = [space for space, y in zip(spaces, coefficients) if y is None]
-            if not short:
+            rough = [space for space in spaces if space.rough]
+            if short:
+                self._extend(short)
+            elif rough:
+                for space in rough:
+                    self._settle(space)
+            else:
                 return [y for y in coefficients if y is not None]
-            self._extend(short)
 
     def _extend(self, spaces: Sequence[KrylovSpace]) -> None:
-        """The displacement and the forces of one more tangential load of each."""
-        if len(self.space.contact.s) <= _FEW_NODES and isinstance(self.factor, Factor):
-            fields, forces = self._of_nodes(any(space.refines for space in self._spaces))
+        """Rough displacements and forces of the waiting loads of each space, all solved for at once."""
+        if len(self.space.contact.s) <= _FEW_NODES and self.factor.direct:
+            fields, of_nodes = self._of_nodes(any(space.refines for space in self._spaces))
             for space in spaces:
-                field = self.factor.A.createVecRight()
-                field.setArray(fields @ space.last)
-                space.take(field, forces @ space.last)
+                load = space.waiting
+                solved, forces = fields @ load, np.einsum("mcn,mk->kcn", of_nodes, load)
+                space.take(solved, forces)
+                space.settle([vector(self.factor.A, field) for field in solved.T], forces)
             return
-        loads = self._tangential([space.last for space in spaces])
-        solved, reactions = self._answers(loads, [space.refines for space in spaces])
-        for space, field, of_field in zip(spaces, solved, reactions):
-            space.take(field, of_field)
+        waiting = [space.waiting for space in spaces]
+        x = self._displacements(self._tangential(np.column_stack(waiting)))
+        forces = np.array([self._boundary.follow(force) for force in self._reactions(x)])
+        ends = np.cumsum([loads.shape[1] for loads in waiting])
+        for space, end, loads in zip(spaces, ends, waiting):
+            columns = slice(end - loads.shape[1], end)
+            space.take(x[:, columns], forces[columns])
+
+    def _settle(self, space: KrylovSpace) -> None:
+        """Check the rough displacements of a space, refine them all at once if that is needed."""
+        x = self._answers(space.of_rough, space.refines, np.column_stack(space.rough))
+        fields, forces = [vector(self.factor.A, column) for column in x.T], self._reactions(x)
+        space.settle(
+            fields,
+            np.array([self._boundary.follow(force, field) for force, field in zip(forces, fields)]),
+        )
+        if space.refines:  # loads that follow are as small as what was changed
+            space.refines, space.left = False, max(space.left, _BROUGHT_BACK)
+
+    def _answers(self, loads: NDArray, refines: bool, x: NDArray) -> NDArray[np.float64]:
+        """Displacements x (rows, k) under tangential loads (n, k), checked and refined if needed."""
+        b = self._tangential(loads)
+        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+        self.factor.check(b, x, residuals)
+        return x + self._corrections(residuals) if refines else x
 
     def _of_nodes(self, refines: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Displacements (rows, n) and forces (2, n, n) that a tangential load at each node causes."""
+        """Displacements (rows, n) and forces (n, 2, n) that a tangential load at each node causes."""
         if self._nodal is None:
-            n = len(self.space.contact.s)
-            fields, forces = self._answers(self._tangential(list(np.eye(n))), [refines] * n)
-            of_nodes = np.moveaxis(np.array(forces), 0, 2)
-            self._nodal = np.array([field.array_r for field in fields]).T, of_nodes
+            loads = np.eye(len(self.space.contact.s))
+            x = self._answers(loads, refines, self._displacements(self._tangential(loads)))
+            fields = [vector(self.factor.A, column) for column in x.T]
+            forces = [self._boundary.follow(*pair) for pair in zip(self._reactions(x), fields)]
+            self._nodal = np.column_stack([field.array_r for field in fields]), np.array(forces)
             for field in fields:
                 field.destroy()
         return self._nodal
 
-    def _answers(
-        self, loads: Sequence[PETSc.Vec], refines: Sequence[bool]
-    ) -> tuple[list[PETSc.Vec], list[NDArray[np.float64]]]:
-        """Displacements under loads, refined where ``refines`` says so, and forces; frees the loads."""
-        fields = self._displacements(loads)
-        refined = [i for i, refine in enumerate(refines) if refine]
-        self._refine([fields[i] for i in refined], [loads[i] for i in refined], [0.0] * len(refined))
-        for b in loads:
-            b.destroy()
-        return fields, [self._boundary.follow(field, self._reactions(field)) for field in fields]
+    def _tangential(self, forces: NDArray) -> NDArray[np.float64]:
+        """Loads (rows, k) of tangential forces at the contact nodes, (n, k)."""
+        nodes, b = self.space.contact, np.zeros((len(self._motions), forces.shape[1]))
+        b[nodes.dofs(0) - self._first] = forces[nodes.owned]
+        return b
 
-    def _tangential(self, forces: Sequence[NDArray]) -> list[PETSc.Vec]:
-        """Loads of tangential forces at the contact nodes, (n,) each."""
-        nodes, loads = self.space.contact, []
-        for force in forces:
-            b = self.factor.A.createVecLeft()
-            b.setValues(nodes.dofs(0), force[nodes.owned])
-            b.assemble()
-            loads.append(b)
-        return loads
+    def _displacements(self, b: NDArray, checked: bool = False) -> NDArray[np.float64]:
+        """Displacements under nodal forces (rows, k), the effect of held displacements included."""
+        x, held = self.factor.solve(b, checked), self._held
+        x[held] = b[held]  # an iterative solver only comes near them
+        return x
 
-    def _displacements(self, forces: Sequence[PETSc.Vec]) -> list[PETSc.Vec]:
-        """Displacements under nodal forces, the effect of the held displacements included."""
-        fields, held = self.factor.solve_all(forces), self.space.held_dofs
-        for u, b in zip(fields, forces):
-            u.setValues(held, b.getValues(held))  # an iterative solver only comes near them
-            u.assemble()
-        return fields
+    @property
+    def _held(self) -> NDArray[np.int32]:
+        """This rank's rows of held unknowns."""
+        return self.space.held_dofs - self._first
 
-    def _refine(
-        self, fields: Sequence[PETSc.Vec], loads: Sequence[PETSc.Vec | None], v: Sequence[float]
-    ) -> None:
-        """Solve once more for the residual forces of displacements.
+    def _corrections(self, residuals: NDArray) -> NDArray[np.float64]:
+        """Displacements under residual forces (rows, k)."""
+        x = np.zeros_like(residuals)
+        left = np.any(residuals, axis=0)
+        self.space.comm.Allreduce(MPI.IN_PLACE, left, MPI.LOR)
+        if left.any():
+            x[:, left] = self.factor.solve(residuals[:, left], checked=False)
+        return x
+
+    def _residuals(self, x: NDArray, b: NDArray, v: NDArray) -> NDArray[np.float64]:
+        """Residual forces of displacements x (rows, k) under loads b.
 
         The contact moves far before the body deforms, the farther the nearer the Rayleigh speed, and what
         forces that motion seems to need is rounding. The residual is taken without it: the rest of the
         displacement is zero under a flat punch, and the far boundary moves instead.
 
         Args:
-            fields: the displacements, in place.
-            loads: nodal forces, those of a profile's held displacements among them.
-            v: normal displacement of the contact where all of it moves by the same distance.
+            x: displacements, (rows, k).
+            b: nodal forces, those of a profile's held displacements among them.
+            v: normal displacement of the contact where all of it moves by the same distance, (k,).
         """
-        residuals = [self._residual(*of_one) for of_one in zip(fields, loads, v)]
-        wrong = [(u, residual) for u, residual in zip(fields, residuals) if residual.norm() > 0.0]
-        if wrong:
-            for (u, _), correction in zip(wrong, self.factor.solve_all([b for _, b in wrong])):
-                u.axpy(1.0, correction)
-                correction.destroy()
-        for residual in residuals:
-            residual.destroy()
+        motion = np.stack([self._contact_motion(x)[0], v])
+        w = x - self._motions @ motion
+        w[self._held] = 0.0
+        residuals = b + self._far @ motion - times(self.factor.A, w)
+        residuals[self._held] = 0.0
+        return residuals
 
-    def _residual(self, u: PETSc.Vec, load: PETSc.Vec | None, v: float) -> PETSc.Vec:
-        """Residual forces of a displacement u under a load, see :meth:`_refine`."""
-        held = self.space.held_dofs
-        t = (self._contact_motion(u)[0], v)
-        w = self._without(u, t)
-        set_zero(w, held)
-        residual = product(self.factor.A, w)
-        residual.scale(-1.0)
-        if load:
-            residual.axpy(1.0, load)
-        residual.maxpy(t, self._far)
-        set_zero(residual, held)
-        w.destroy()
-        return residual
+    def _contact_motion(self, x: NDArray) -> NDArray[np.float64]:
+        """Mean displacement along X and Y of the contact nodes over N/(2μ), (2, k)."""
+        nodes = self.space.contact
+        total = np.array([x[nodes.dofs(i) - self._first].sum(axis=0) for i in (0, 1)])
+        self.space.comm.Allreduce(MPI.IN_PLACE, total)
+        return total / len(nodes.s)
 
-    def _contact_motion(self, u: PETSc.Vec) -> tuple[float, float]:
-        """Mean displacement along X and Y of the contact nodes, over N/(2μ)."""
-        nodes, comm = self.space.contact, self.space.comm
-        total = np.array([u.getValues(nodes.dofs(i)).sum() for i in (0, 1)])
-        comm.Allreduce(MPI.IN_PLACE, total)
-        return tuple((total / len(nodes.s)).tolist())
-
-    def _without(self, u: PETSc.Vec, t: tuple[float, float]) -> PETSc.Vec:
-        """u less the motion t of the whole body."""
-        w = u.copy()
-        w.maxpy((-t[0], -t[1]), self._motions)
-        return w
-
-    def _reactions(self, u: PETSc.Vec) -> NDArray[np.float64]:
-        """Consistent forces in X and Y at the contact nodes, (2, n), the same on every rank."""
-        nodes, comm = self.space.contact, self.space.comm
-        forces = np.zeros((2, len(nodes.s)))
-        w = self._without(u, self._contact_motion(u))
+    def _reactions(self, x: NDArray) -> NDArray[np.float64]:
+        """Consistent forces in X and Y at the contact nodes, (k, 2, n), the same on every rank."""
+        nodes = self.space.contact
+        forces = np.zeros((x.shape[1], 2, len(nodes.s)))
+        w = x - self._motions @ self._contact_motion(x)
         for i, rows in enumerate(self._rows):
-            force = rows.createVecLeft()
-            rows.mult(w, force)
-            forces[i, nodes.owned] = force.array_r
-            force.destroy()
-        w.destroy()
-        comm.Allreduce(MPI.IN_PLACE, forces)
+            forces[:, i, nodes.owned] = times(rows, w).T
+        self.space.comm.Allreduce(MPI.IN_PLACE, forces)
         return forces
 
 

@@ -28,7 +28,7 @@ class SolvedStates:
     """States solved on one mesh; lengths over each contact's half-width, from its middle.
 
     Attributes:
-        task: the speed, and places of stresses.
+        task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
         body: the sliding contact, under the load of each state.
         contact: nodal forces, and weights of the displacement fields.
         pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.RecoveredPressure`
@@ -211,7 +211,7 @@ class Solution:
     def σ_ZZ(self) -> NDArray[np.float64]:
         """Normal stress out of the plane at points inside, (states, m)."""
         Y = self.places.points[:, 1]
-        return self._joined(lambda states: states.body.σ_ZZ(states.below, Y))
+        return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
     @cached_property
     def strength(self) -> Strength:

@@ -5,7 +5,6 @@ it. It numbers nodes and facets on parts of the surface, and makes the nodal for
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -21,12 +20,12 @@ from galinx.clock import Clock
 
 from ..approximation import interpolation
 from ..errors import MeshError
-from ..solids.solid import ByCells, Response
+from ..solids.solid import Response
 from . import versions
 from .cells import Chart, Contracted, lagrange, model_cells
 from .element import CellMatrices
 from .forms import FORMS
-from .versions import compiling, create_mesh, tag_facets
+from .versions import create_mesh, tag_facets
 
 #: dolfinx numbers a quadrilateral's vertices row by row, others go round it.
 _ORDER = [0, 1, 3, 2]
@@ -128,11 +127,7 @@ class SurfaceNodes:
 
     def dofs(self, component: int) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
-        return self._dofs[component]
-
-    @cached_property
-    def _dofs(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        return self.numbers, self.numbers + 1
+        return np.asarray(self.numbers + np.int32(component))
 
 
 @dataclass(frozen=True)
@@ -236,11 +231,11 @@ class Space:
         self.terms = terms
         self.mixed = self.form.pressure
         self.clock, self._say = Clock() if clock is None else clock, say
-        self._kept: tuple[NDArray, ...] | None = None
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
-        self.V = self._functions(versions.vector_element(degree))
+        with self.clock("forms"):
+            self.V = versions.space(mesh, versions.vector_element(degree), say)
         self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():
@@ -265,7 +260,7 @@ class Space:
     @cached_property
     def contact(self) -> SurfaceNodes:
         """Nodes under the punch, both edges included."""
-        blocks = self._owned_blocks("contact")
+        blocks = self.nodes_on("contact")
         s = self.chart.along_surface(self.coordinates[blocks])
         parts = self.comm.allgather(s)
         everyone = np.concatenate(parts)
@@ -273,12 +268,6 @@ class Space:
         start = sum(len(part) for part in parts[: self.comm.rank])
         owned = rank_of[start : start + len(s)]
         return SurfaceNodes(np.sort(everyone), owned, self.numbers[blocks])
-
-    @cached_property
-    def node_dofs(self) -> NDArray[np.int32]:
-        """Global numbers of the owned displacements, node by node, without those inside cells."""
-        first, nodes = self._range[0], self._owned_nodes
-        return np.arange(first, first + 2 * len(nodes), dtype=np.int32)
 
     def contracted(self, response: Response) -> Contracted:
         """The chart as the plane is contracted at a response's speed."""
@@ -296,7 +285,7 @@ class Space:
     @cached_property
     def far_nodes(self) -> NDArray[np.int32]:
         """Local numbers of the owned nodes on the far boundary."""
-        return self._owned_blocks("far")
+        return self.nodes_on("far")
 
     @cached_property
     def far_dofs(self) -> NDArray[np.int32]:
@@ -308,13 +297,6 @@ class Space:
     def held_dofs(self) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns that a punch holds: v under it, and the far boundary."""
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
-
-    def _functions(self, element: Any) -> Any:
-        with self.clock("forms"):
-            if self.comm.allreduce(versions.is_compiled(element), MPI.LAND):
-                return versions.space(self.mesh, element, {})
-            with compiling(self.comm, repr(element), self._say) as options:
-                return versions.space(self.mesh, element, options)
 
     def assemble(self, response: Response) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""
@@ -382,8 +364,7 @@ class Space:
         Returns:
             Array (cells, nodes of a cell, 2, fields).
         """
-        kept, corners = self._kept, self.vertices[cells]
-        E = kept[1][cells] if kept else self._cells(self.kernel.extend, response, corners)
+        E = self._cells(self.kernel.extend, response, self.vertices[cells])
         kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
@@ -427,20 +408,6 @@ class Space:
         cells = self._range[1] - 2 * len(nodes) + 2 * np.arange(len(nodes), dtype=np.int32)
         return np.column_stack([nodes, cells])
 
-    @contextmanager
-    def keeping(self, response: Response) -> Iterator[None]:
-        """Condensed cells of a response are computed once as long as this lasts; they take memory."""
-        chunks = list(self.pieces(len(self.outer_numbers))) or [slice(0, 0)]
-        with self.clock("assembly"):
-            self._kept = tuple(
-                np.concatenate([self._cells(part, response, self.vertices[cells]) for cells in chunks])
-                for part in (self.kernel.condense, self.kernel.extend)
-            )
-        try:
-            yield
-        finally:
-            self._kept = None
-
     def pieces(self, count: int) -> Iterator[slice]:
         """Slices of ``count`` cells, each to be treated at once."""
         step = self.kernel.at_once
@@ -448,8 +415,6 @@ class Space:
 
     def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
-        if self._kept:
-            return self._kept[0][cells]
         return self._cells(self.kernel.condense, response, self.vertices[cells])
 
     def _cells(
@@ -497,19 +462,15 @@ class Space:
         A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
         return A
 
-    def nodes_on(self, part: str) -> NDArray[np.int32]:
-        """Local numbers of the owned nodes on a part of the boundary, those inside cells not left out."""
-        return self._owned_blocks(part)
-
     def densities(self, response: Response, corners: NDArray) -> NDArray[np.float64]:
         """The form at unit gradients: one for all cells, for each cell, or for each point of quadrature.
 
         Arrays (4, 4) or (5, 5), (cells, 4, 4), (cells, 4, 4, points, points).
         """
-        if not isinstance(response, ByCells):
-            return self.form.density(response)
-        solid = response.solids(corners[..., 1].mean(axis=1))
         by_solid = [self.form.densities(rows) for rows in response.constants(self.form.constants)]
+        if len(by_solid) == 1:
+            return np.asarray(by_solid[0][0])
+        solid = response.solids(corners[..., 1].mean(axis=1))
         if all(len(by_solid[i]) == 1 for i in np.unique(solid)):
             return np.array([by_solid[i][0] for i in solid])
         heights = self.kernel.heights(corners)
@@ -521,7 +482,8 @@ class Space:
             H[cells] = np.einsum("myxn,nij->mijyx", basis, by_solid[i], optimize=True)
         return H
 
-    def _owned_blocks(self, part: str) -> NDArray[np.int32]:
+    def nodes_on(self, part: str) -> NDArray[np.int32]:
+        """Local numbers of the owned nodes on a part of the boundary."""
         blocks = fem.locate_dofs_topological(self.V, 1, self.facets[part])
         return blocks[blocks < self.V.dofmap.index_map.size_local]
 

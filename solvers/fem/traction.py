@@ -5,9 +5,12 @@ two linear loads of an interval, from which the field of any pressure that is li
 summed (:class:`Pieces`). The half-plane has no length of its own, so the interval is [-1, 1] and one mesh
 serves pieces of every width. No kink of the pressure lies inside a cell, however narrow the piece is.
 
-Displacements are known relative to each cell's own place, to the last digits of how the cell deforms:
-next to an end of the interval a cell is a billionth of the distance that all of it moves.
+All of the half-plane moves with a load, and next to an end of the interval a cell is a billionth of that
+motion: in its displacement the deformation has lost its digits. A field and a small correction together
+hold it, if they are added only after each cell's own motion was subtracted.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +19,8 @@ from petsc4py import PETSc
 from ..rays import NEAR, rays
 from ..solids.solid import Response
 from .boundary import FarBoundary
-from .fields import forces, gradients_at, shapes
-from .linear import Factor
+from .fields import InteriorGradients
+from .linear import LinearSolver, vector
 from .space import Space, Traction
 
 
@@ -27,24 +30,23 @@ class LoadedHalfPlane:
     Args:
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
-        corrected: also compute corrections of the fields.
+
+    Attributes:
+        fields: two displacement fields a load: of σ_YY, and of σ_XY equal to it.
+        resultants: ∫ σ_YY d(X/a) over N/(2a) of each load.
     """
 
-    def __init__(self, space: Space, response: Response, corrected: bool = False) -> None:
+    def __init__(self, space: Space, response: Response) -> None:
         self.space, self.response = space, response
         A = space.assemble(response)
         self._far = FarBoundary(space, response, A)
         A = space.held(A, response, ("far",))
-        self.factor = Factor(A, space.clock, definite=not space.mixed)
-        #: Two displacement fields a load: of σ_YY, and of σ_XY equal to it.
+        self.factor = LinearSolver(A, space.clock, definite=not space.mixed)
+        self._of_far = self.factor.solve(self._far.loads) if space.terms else self._far.loads
+        self._first = A.getOwnershipRange()[0]
+        self._loads: list[NDArray] = []
         self.fields: list[PETSc.Vec] = []
-        #: ∫ σ_YY d(X/a) over N/(2a) of each load.
         self.resultants: list[float] = []
-        #: Correction of each field, whose last digit is one of the motion of the whole half-plane.
-        self.corrections: list[PETSc.Vec] = []
-        self._corrected = corrected
-        if self._far.loads:
-            self._far.set_fields(self.factor.solve_all(self._far.loads))
 
     def load(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> None:
         """Add the fields of σ_YY alone and of σ_XY = σ_YY alone, and the discrete load's resultant.
@@ -61,28 +63,56 @@ class LoadedHalfPlane:
             b = self.factor.A.createVecLeft()
             b.setValues(load.numbers + component, load.forces, addv=PETSc.InsertMode.ADD_VALUES)
             b.assemble()
-            self.fields.append(self.factor.solve(b))
-            if self._far.fields:
-                self.fields[-1].maxpy(moments.tolist(), self._far.fields[1 - component :: 2])
-            if self._corrected:
-                self.corrections.append(self._correction(self.fields[-1], b))
+            self._loads.append(np.array(b.array_r))
             b.destroy()
+        x = self.factor.solve(np.column_stack(self._loads[-2:]))
+        for component, column in zip((1, 0), x.T):
+            moved = self._of_far[:, 1 - component :: 2] @ moments
+            self.fields.append(vector(self.factor.A, column + moved))
         self.resultants.append(resultant)
 
-    def _correction(self, field: PETSc.Vec, load: PETSc.Vec) -> PETSc.Vec:
-        """Field of the load less the forces of the cells' deformation."""
-        residual = forces(self.space, self.response, field)
-        residual.aypx(-1.0, load)
-        residual.setValues(self.space.far_dofs, np.zeros(len(self.space.far_dofs)))
-        residual.assemble()
-        correction = self.factor.solve(residual)
-        residual.destroy()
-        return correction
+    def corrections(self) -> list[PETSc.Vec]:
+        """Corrections of the fields, whose last digit is one of the motion of the whole half-plane.
+
+        They are the fields of the loads less the forces of the cells' deformation. Collective.
+        """
+        residuals = np.column_stack(self._loads) - self._forces_of_deformation()
+        residuals[self.space.far_dofs - self._first] = 0.0
+        return [vector(self.factor.A, column) for column in self.factor.solve(residuals).T]
+
+    def _forces_of_deformation(self) -> NDArray[np.float64]:
+        """Nodal forces of the condensed fields, (rows, fields).
+
+        Equal to the matrix times the fields, but without the rounding of the cells' own motion.
+        """
+        space, numbers = self.space, self.space.outer_numbers
+        sums = [field.duplicate() for field in self.fields]
+        deformed = _deformed(space, self.fields)
+        for cells in space.pieces(len(numbers)):
+            condensed = space.condensed(self.response, cells)
+            for rows, S, u in zip(numbers[cells] // 2, condensed, deformed[cells]):
+                forces = S @ u.reshape(len(S), -1)
+                for total, column in zip(sums, forces.T):
+                    total.setValuesBlocked(rows, column, addv=PETSc.InsertMode.ADD_VALUES)
+        for total in sums:
+            total.assemble()
+        forces = np.column_stack([total.array_r for total in sums])
+        for total in sums:
+            total.destroy()
+        return forces
 
     def destroy(self) -> None:
         """Free factor and fields."""
-        for held in (self.factor, self._far, *self.fields, *self.corrections):
+        for held in (self.factor, *self.fields):
             held.destroy()
+
+
+def _deformed(space: Space, fields: Sequence[PETSc.Vec]) -> NDArray[np.float64]:
+    """Outer values of all of this rank's cells, displacements less that of the cell's first node."""
+    outer = space.fetch(fields, space.outer_numbers)
+    displacement = outer[:, : len(space.kernel.outer)]
+    displacement -= displacement[:, :1].copy()
+    return outer
 
 
 #: Fields: of σ_YY that falls from 1 at -1 to 0 at 1 and of σ_XY equal to it, and of their mirror images.
@@ -103,14 +133,21 @@ class LinearLoads:
 
     def __init__(self, space: Space, response: Response) -> None:
         self.space, self.response = space, response
-        with space.keeping(response):
-            loaded = LoadedHalfPlane(space, response, corrected=True)
-            try:
-                loaded.load(lambda left, right: right / 2.0)
-                loaded.load(lambda left, right: left / 2.0)
-                self._shapes = shapes(space, response, loaded.fields, loaded.corrections)
-            finally:
-                loaded.destroy()
+        loaded = LoadedHalfPlane(space, response)
+        try:
+            loaded.load(lambda left, right: right / 2.0)
+            loaded.load(lambda left, right: left / 2.0)
+            corrections = loaded.corrections()
+            outer = _deformed(space, loaded.fields) + _deformed(space, corrections)
+            #: Values less those of a cell's first node, (cells, nodes of a cell, 2, FIELDS).
+            self._shapes = np.concatenate([
+                space.extended(outer[cells], response, np.arange(len(outer))[cells])
+                for cells in [slice(0), *space.pieces(len(outer))]
+            ])  # fmt: skip
+            for correction in corrections:
+                correction.destroy()
+        finally:
+            loaded.destroy()
         self.resultants, self.factor = np.array(loaded.resultants), loaded.factor
 
     def gradients(self, points: NDArray) -> NDArray[np.float64]:
@@ -119,7 +156,8 @@ class LinearLoads:
         Raises:
             MeshError: a point lies outside the mesh.
         """
-        return gradients_at(self.space, self.response, points, lambda cells: self._shapes[cells])
+        values = self._shapes.__getitem__
+        return InteriorGradients(self.space, self.response, values, points).of_fields()
 
 
 #: Pieces that meet have at most this ratio of widths, so that both meshes resolve what cancels there.

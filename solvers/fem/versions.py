@@ -2,25 +2,21 @@
 
 Nothing else in the program depends on the version of dolfinx.
 
-FFCx compiles what dolfinx needs of a form, its elements, into a folder of this run's own. When all is
-well the folder gets a digest and, by being renamed, the place where every run looks for the form. So
-nobody meets what a killed run left, nobody has to wait for what is there, and what was damaged since is
-noticed before it is loaded: that could end the program or change its numbers.
+FFCx compiles forms and elements into a folder of this run's own. When all is well the folder gets a
+digest and, by being renamed, the place where every run looks for the form. dolfinx's own cache would wait
+for what a killed run left, and load what was damaged since, which could end the program or change its
+numbers.
 """
 
-import fcntl
 import hashlib
 import os
-import re
 import secrets
 import shutil
-import socket
 import sysconfig
-import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import basix
 import dolfinx
@@ -44,9 +40,6 @@ except ImportError:  # elements were UFL's own
 
 _CELL = "quadrilateral"
 
-#: Compiled code of elements, which dolfinx would look for again with each space.
-_compiled: dict[Any, Any] = {}
-
 
 def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1) -> Any:
     """A mesh shared out over the ranks; nodes of cells evenly spaced, in the order of Lagrange's."""
@@ -57,8 +50,7 @@ def create_mesh(comm: MPI.Comm, cells: NDArray, points: NDArray, degree: int = 1
     # FFCx names this variant in the element when it compiles, not when it finds the form in its cache;
     # named here, the form has one key in both cases.
     element = ufl.VectorElement("Lagrange", ufl.quadrilateral, degree, variant="equispaced")
-    # An array would be refused first, with a message that prints all of it.
-    table = dolfinx.cpp.graph.AdjacencyList_int64(np.asarray(cells, dtype=np.int64))
+    table = dolfinx.graph.create_adjacencylist(np.asarray(cells, dtype=np.int64))
     return dolfinx.mesh.create_mesh(comm, table, points, ufl.Mesh(element))
 
 
@@ -98,10 +90,18 @@ def quadrature_points(degree: int) -> NDArray[np.float64]:
     return basix.make_quadrature(basix.CellType.quadrilateral, degree)[0]
 
 
-def function_space(mesh: Any, element: Any) -> Any:
-    """The functions on a mesh."""
-    make = getattr(fem, "functionspace", None) or fem.FunctionSpace
-    return make(mesh, element)
+def space(mesh: Any, element: Any, say: Callable[[str], None] = lambda _: None) -> Any:
+    """The functions of an element on a mesh; collective.
+
+    Args:
+        mesh: the mesh.
+        element: of a cell.
+        say: called on rank 0 with messages of the compiler to the user.
+    """
+    if hasattr(fem, "functionspace"):  # nothing is compiled
+        return fem.functionspace(mesh, element)
+    with compiling(mesh.comm, repr(element), say) as options:
+        return fem.FunctionSpace(mesh, element, jit_params=options)
 
 
 def form(form: Any, options: dict[str, Any]) -> Any:
@@ -123,31 +123,6 @@ def vector(form: Any) -> Any:
     b = petsc.assemble_vector(form)
     b.ghostUpdate(addv=PETSc.InsertMode.ADD_VALUES, mode=PETSc.ScatterMode.REVERSE)
     return b
-
-
-def is_compiled(element: Any) -> bool:
-    """Return True if this process has loaded the compiled code of an element."""
-    return element in _compiled
-
-
-def space(mesh: Any, element: Any, options: dict[str, Any]) -> Any:
-    """The functions on a mesh; ``options`` are the compiler's, where a rank has not compiled the element.
-
-    Then all ranks do: one that has worked alone before would leave the others waiting for it.
-    """
-    if hasattr(fem, "functionspace"):
-        return fem.functionspace(mesh, element)
-    if options or element not in _compiled:
-        _compiled[element] = dolfinx.jit.ffcx_jit(mesh.comm, element, jit_params=options)
-    (shape, layout), module, _ = _compiled[element]
-    address = module.ffi.addressof
-    shape_address, layout_address = (
-        int(module.ffi.cast("uintptr_t", address(part))) for part in (shape, layout)
-    )
-    own = dolfinx.cpp.fem.FiniteElement(shape_address)
-    dofmap = dolfinx.cpp.fem.create_dofmap(mesh.comm, layout_address, mesh.topology, own)
-    made = dolfinx.cpp.fem.FunctionSpace(getattr(mesh, "_mesh", mesh), own, dofmap)
-    return fem.FunctionSpace(mesh, element, made)
 
 
 def reference_nodes(V: Any) -> NDArray[np.float64]:
@@ -172,14 +147,6 @@ def _table(adjacency: Any, width: int) -> NDArray[np.int32]:
     return np.reshape(getattr(adjacency, "array", adjacency), (-1, width))
 
 
-#: Seconds until the user is told that this run waits for another, and until it no longer waits.
-_SAID, _PATIENCE = 10.0, 60.0
-#: Seconds after which an unfinished folder counts as abandoned.
-_DAY = 86400.0
-#: The file with the digest of all others in its folder.
-_DIGEST = "digest"
-
-
 @contextmanager
 def compiling(
     comm: MPI.Comm, what: str, say: Callable[[str], None] = lambda _: None
@@ -194,149 +161,60 @@ def compiling(
     Raises:
         CompilerError: the form could not be compiled; the message says why.
     """
+    own = kept = _place(what)
     try:
-        with _folder(what, say) if comm.rank == 0 else nullcontext() as folder:
-            yield {"cache_dir": comm.bcast(folder)}
-            comm.barrier()  # the folder is renamed when all ranks have loaded what is in it
-    except CompilerError:
-        raise
+        if comm.rank == 0 and not _is_whole(kept):
+            if os.path.lexists(kept):
+                say(f"the compiled form in {kept} is damaged; it is compiled again")
+            own = kept.with_suffix(f".{secrets.token_hex(4)}")
+            own.mkdir(parents=True)
+        own = comm.bcast(own)
+        yield {"cache_dir": str(own)}
+        comm.barrier()  # the folder is renamed when all ranks have loaded what is in it
+        if comm.rank == 0 and own != kept:
+            with suppress(OSError):  # a file system that refuses is no fault
+                files.write(own / "digest", _digest(own, kept.name))
+                if not _is_whole(kept):  # there may be another's by now
+                    shutil.rmtree(kept) if kept.is_dir() else kept.unlink(missing_ok=True)
+                    own.rename(kept)
     except Exception as error:
-        raise CompilerError(f"compiling a form failed: {_why(error)}") from error
+        raise CompilerError(_why(error, kept.parent)) from error
+    finally:
+        if comm.rank == 0 and own != kept:
+            shutil.rmtree(own, ignore_errors=True)
 
 
-@contextmanager
-def _folder(what: str, say: Callable[[str], None]) -> Iterator[str]:
-    """Folder of a compiled form, or one to compile it into, which is then kept in the cache."""
-    kept = _cache() / _key(what)
-    if not _is_whole(kept):
-        with _turn(kept, say):
-            if not _is_whole(kept):
-                if os.path.lexists(kept):
-                    say(f"the compiled form in {kept} is damaged; it is compiled again")
-                own = kept.with_suffix(f".{secrets.token_hex(4)}")
-                with _writing(own):
-                    own.mkdir()
-                try:
-                    yield str(own)
-                    _keep(own, kept)
-                finally:
-                    _remove(own)
-                return
-    yield str(kept)
-
-
-def _key(what: str) -> str:
-    """Hash of everything that a form's code depends on, 24 digits."""
+def _place(what: str) -> Path:
+    """Folder of a compiled form in the cache, by all that its code depends on."""
     python = [sysconfig.get_config_var(name) for name in ("SOABI", "CFLAGS")]
-    description = repr([what, ffcx.__version__, dolfinx.__version__, *python])
-    return hashlib.sha256(description.encode()).hexdigest()[:24]
+    key = repr([what, ffcx.__version__, dolfinx.__version__, *python])
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"
+    return cache / hashlib.sha256(key.encode()).hexdigest()[:24]
 
 
 def _is_whole(kept: Path) -> bool:
     """Return True if the folder of a form is there, unchanged since it was compiled."""
     try:
-        return files.read(kept / _DIGEST, 100) == _digest(kept, kept.name)
+        return files.read(kept / "digest", 100) == _digest(kept, kept.name)
     except OSError:
         return False
 
 
 def _digest(folder: Path, name: str) -> bytes:
-    """Digest of all files in a folder, and of the name that the folder has or will have."""
+    """Digest of all files in a folder but its own, and of the name that the folder has or will have."""
     digest = hashlib.sha256(name.encode())
-    for path in sorted(folder.iterdir()):
-        if path.name != _DIGEST:
-            content = hashlib.sha256(files.read(path)).hexdigest()
-            digest.update(f"{path.name} {content} ".encode(errors="surrogateescape"))
+    for path in sorted(path for path in folder.iterdir() if path.name != "digest"):
+        content = hashlib.sha256(files.read(path)).hexdigest()
+        digest.update(f"{path.name} {content} ".encode(errors="surrogateescape"))
     return digest.hexdigest().encode()
 
 
-def _keep(own: Path, kept: Path) -> None:
-    """Move a compiled form to its place in the cache; a file system that refuses is no fault."""
-    with suppress(OSError):
-        for path in own.glob("*.[co]"):
-            path.write_bytes(b"")  # FFCx asks whether there is a source, nobody reads it
-        files.write(own / _DIGEST, _digest(own, kept.name))
-        for path in own.iterdir():
-            files.synchronise(path)
-        if not _is_whole(kept):  # there may be another's by now
-            _remove(kept)
-            own.rename(kept)
-            files.synchronise(kept.parent)
-
-
-@contextmanager
-def _turn(kept: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """Lock for a block that compiles. Other runs that need the form wait, for a limited time only."""
-    with _writing(kept):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        handle = files.open_file(kept.with_suffix(".lock"), os.O_RDWR | os.O_CREAT)
-    with open(handle, "r+", encoding="utf-8", errors="replace") as lock:
-        started, said = time.monotonic(), False
-        while not _taken(lock) and not _is_whole(kept):
-            waited = time.monotonic() - started
-            if waited > _PATIENCE:
-                break
-            if waited > _SAID and not said:
-                said = True
-                say(
-                    f"{lock.read(100)} compiles the same form for {waited:.0f} s already, or is stopped; "
-                    f"after {_PATIENCE:.0f} s it is no longer waited for"
-                )
-            time.sleep(0.1)
-        _sweep(kept.parent)
-        yield
-
-
-def _taken(lock: IO[str]) -> bool:
-    """Return True if this process has the lock, and write so in it; always where there are no locks."""
-    with suppress(OSError):
-        try:
-            fcntl.lockf(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except (BlockingIOError, PermissionError):
-            return False
-        lock.seek(0)
-        lock.truncate()
-        lock.write(f"process {os.getpid()} on {socket.gethostname()}")
-        lock.flush()
-    return True
-
-
-def _sweep(cache: Path) -> None:
-    """Remove what killed runs left, and earlier versions of the program."""
-    for path in cache.iterdir():
-        with suppress(OSError):
-            old = time.time() - path.stat().st_mtime > _DAY
-            if old and not re.fullmatch("[0-9a-f]{24}", path.name):
-                _remove(path)
-
-
-def _remove(path: Path) -> None:
-    with suppress(OSError):
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink()
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    """Turn errors of a block that writes in the cache into a message with the remedy."""
-    try:
-        yield
-    except OSError as error:
-        raise CompilerError(
-            f"the cache of compiled forms {path.parent} cannot be written ({error.strerror}); "
-            "name another folder in the variable XDG_CACHE_HOME"
-        ) from error
-
-
-def _why(error: Exception) -> str:
+def _why(error: Exception, cache: Path) -> str:
     compiler = (sysconfig.get_config_var("CC") or "cc").split()[0]
-    if shutil.which(compiler) is None:
-        return f"there is no C compiler, expected {compiler}; install gcc and libc6-dev"
-    return f"{error}"
-
-
-def _cache() -> Path:
-    """Folder of compiled forms."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"
+    if isinstance(error, OSError) and not os.access(cache, os.W_OK):
+        return (
+            f"the cache of compiled forms {cache} cannot be written ({error.strerror}); name another "
+            "folder in the variable XDG_CACHE_HOME"
+        )
+    missing = f"there is no C compiler, expected {compiler}; install gcc and libc6-dev"
+    return f"compiling a form failed: {error if shutil.which(compiler) else missing}"

@@ -28,6 +28,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
@@ -78,41 +79,24 @@ class Transform:
 
 
 def spherical_bessel(count: int, z: NDArray) -> NDArray[np.float64]:
-    """j₀ … j_(count - 1) of real z, (..., count).
+    """j₀ … j_(count - 1) of real z, (..., count), to the last digits of the largest.
 
-    Upwards where |z| is larger than the order, downwards from where they vanish elsewhere.
+    Upwards where |z| is larger than the order; elsewhere by Gauss's rule for (-i)ⁿ/2 ∫ P_n(τ) e^(izτ) dτ
+    over [-1, 1], whose two halves are alike.
     """
-    size = np.abs(z)
     bessel = np.empty((*z.shape, count))
-    far = size > count
+    far = np.abs(z) > count
     safe = np.where(far, z, 1.0)
     bessel[..., 0] = np.sin(safe) / safe
     bessel[..., 1] = (bessel[..., 0] - np.cos(safe)) / safe
     for n in range(1, count - 1):
         bessel[..., n + 1] = (2 * n + 1) / safe * bessel[..., n] - bessel[..., n - 1]
-    near = z[~far]
-    tiny = np.abs(near) < 1e-8
-    safe = np.where(tiny, 1.0, near)
-    start = 2 * count + 14
-    after, value = np.zeros_like(safe), np.full_like(safe, 1e-290)
-    falling = np.empty((len(safe), count))
-    for n in range(start, 0, -1):
-        after, value = value, (2 * n + 1) / safe * value - after
-        big = np.abs(value) > 1e200
-        if big.any():
-            scale = np.where(big, 1e-200, 1.0)
-            after, value = after * scale, value * scale
-            falling[:, n:] *= scale[:, None]
-        if n - 1 < count:
-            falling[:, n - 1] = value
-    j0, j1 = np.sinc(safe / np.pi), np.sin(safe) / safe**2 - np.cos(safe) / safe
-    by_first = np.abs(j0) >= np.abs(j1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        scale = np.where(by_first, j0 / falling[:, 0], j1 / falling[:, 1])
-    falling *= scale[:, None]
-    falling[tiny] = np.eye(1, count)[0]
-    falling[tiny, 1] = near[tiny] / 3.0
-    bessel[~far] = falling
+    τ, w = (part[count:] for part in leggauss(2 * count))
+    weights = w[:, None] * legvander(τ, count - 1) * (-1.0) ** (np.arange(count) // 2)
+    angle = np.outer(z[~far], τ)
+    near = np.empty((len(angle), count))
+    near[:, 0::2], near[:, 1::2] = np.cos(angle) @ weights[:, 0::2], np.sin(angle) @ weights[:, 1::2]
+    bessel[~far] = near
     return bessel
 
 

@@ -1,25 +1,41 @@
-"""Layers on a substrate as one solid: all that solvers need of a solid, and its layers besides.
+"""Layers on a substrate as one solid, and their half-plane seen from a load that moves over it.
 
-:class:`Layered` is the solid, :class:`LayeredResponse` the solid at a speed, and :class:`LayersAtSpeed`
-the layers at that speed with lengths over a, with the stiffness of their surface.
+:class:`Layered` is the solid, :class:`LayeredHalfPlane` its half-plane at a speed, and
+:class:`LayersAtSpeed` the layers at that speed with the stiffness of their surface.
 
 Below the highest speed over layers the stiffness against every wave, on the surface and inside, is
 positive; it falls with speed, so that the speed at which the smallest of all vanishes is found by
 bracketing (:func:`highest`), and so is the speed of the slowest wave of each wavelength
 (:func:`dispersion`).
+
+Far from a load, layers on a substrate move as under line loads, and by what the layers add to that. With
+t the loads of a field e^(ikX), Z₋ of the substrate, and through layers that are thin beside 1/k
+
+    t' = k² A u - ik B t,   u' = -ik Bᵀ u + T⁻¹ t,   A = Q - R T⁻¹ Rᵀ,   B = R T⁻¹   (Y upwards),
+
+the substrate, whose surface lies at the depth D, carries t + k E t and moves there by
+
+    u = Z₋⁻¹ t/k + Z₋⁻¹ E t + O(k),   E = -∫ (A Z₋⁻¹ - i B) dY,
+
+a height inside the layers by ∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY t more. The first term is the line load's
+logarithm, the others fall like 1/X; the remainder falls like its square.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from ..approximation import bisected, chebyshev_points, interpolation
 from ..errors import SolveError
 from ..parameters import build_model, parameters, values
-from ..solids.solid import Potential, Response, Solid
+from ..solids.half_plane import DATUM, LOADS, HalfPlane, Potential, UniformHalfPlane
+from ..solids.solid import Solid
 from .stiffness import Graded, Medium, Uniform, inverse, least
 
 
@@ -155,7 +171,7 @@ def highest(stack: Callable[[float], LayersAtSpeed], most: float, accuracy: floa
         if value > 0.0:
             return speed
         if np.isfinite(value):
-            speed = (1.0 - accuracy) * _where_it_falls(stack, k, speed, accuracy)
+            speed = (1.0 - accuracy) * _zero(_stiffness_at(stack, np.array([k])), 0.0, speed, accuracy)
         else:
             speed, step = speed * (1.0 - step), max(_STRIDE * step, _FIRST_STEP)
         if not 0.0 < step < 1.0:
@@ -163,18 +179,23 @@ def highest(stack: Callable[[float], LayersAtSpeed], most: float, accuracy: floa
     raise SolveError("no speed was found at which the layers are stable; are their constants as meant?")
 
 
-def _where_it_falls(
-    stack: Callable[[float], LayersAtSpeed], k: float, high: float, accuracy: float
-) -> float:
-    """Speed at which one wave's stiffness vanishes, below one at which it is negative."""
+def _stiffness_at(
+    stack: Callable[[float], LayersAtSpeed], k: NDArray
+) -> Callable[[float], NDArray[np.float64]]:
+    """Smallest stiffness against waves (n,) by speed; -∞ where some wave inside is not faster."""
 
-    def min_stiffness(speed: float) -> float:
+    def min_stiffness(speed: float) -> NDArray[np.float64]:
         try:
-            return float(stack(speed).min_stiffness(np.array([k]))[0])
+            return stack(speed).min_stiffness(k)
         except (ValueError, SolveError):
-            return -np.inf
+            return np.full(len(k), -np.inf)
 
-    low, f_low, f_high, side = 0.0, min_stiffness(0.0), min_stiffness(high), 0
+    return min_stiffness
+
+
+def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: float) -> float:
+    """Number up to which a falling function, (1,), is positive; it may be -∞ beyond."""
+    (f_low,), (f_high,), side = f(low), f(high), 0
     for _ in range(_STEPS):
         if high - low <= accuracy * high:
             break
@@ -182,7 +203,7 @@ def _where_it_falls(
         if np.isfinite(f_high) and f_high < 0.0:  # Illinois
             guess = (low * f_high - high * f_low) / (f_high - f_low)
             middle = guess if low < guess < high else middle
-        value = min_stiffness(middle)
+        (value,) = f(middle)
         if value > 0.0:
             low, f_low = middle, value
             f_high = f_high / 2.0 if side == 1 else f_high
@@ -191,12 +212,13 @@ def _where_it_falls(
             high, f_high = middle, value
             f_low = f_low / 2.0 if side == -1 else f_low
             side = -1
-    return low
+    return float(low)
 
 
-#: Speeds over the highest at which each wave's stiffness is evaluated first, and steps from there.
+#: Speeds over the highest at which each wave's stiffness is evaluated first.
 _SPEEDS = np.concatenate([[0.0], 1.0 - np.geomspace(1.0, 1e-9, 40)[1:]])
-_CLOSE = 60
+#: Relative accuracy of the speed of the slowest wave inside.
+_INSIDE = 1e-13
 
 
 def dispersion(
@@ -210,41 +232,16 @@ def dispersion(
         k: wavenumbers times a, (n,).
         accuracy: relative.
     """
-
-    def min_stiffness(speed: float, k_waves: NDArray) -> NDArray[np.float64]:
-        try:
-            return stack(speed).min_stiffness(k_waves)
-        except (ValueError, SolveError):
-            return np.full(len(k_waves), -np.inf)
-
-    slowest_inside = bisected(lambda c: bool(np.isfinite(min_stiffness(c, k[:1]))[0]), most)
-    speeds = slowest_inside * _SPEEDS
-    values = np.array([min_stiffness(speed, k) for speed in speeds.tolist()])
+    stands = _stiffness_at(stack, k[:1])
+    speeds = bisected(lambda c: bool(np.isfinite(stands(c)[0])), most, accuracy=_INSIDE) * _SPEEDS
+    values = np.array([_stiffness_at(stack, k)(speed) for speed in speeds.tolist()])
     slowest = np.full(len(k), np.nan)
     for i, column in enumerate(values.T):
         if (column <= 0.0).any():
             j = int(np.argmax(column <= 0.0))
-            holds = partial(_is_stiff, min_stiffness, k[i : i + 1])
-            slowest[i] = bisected(holds, speeds[j], speeds[j - 1], accuracy)
+            of_wave = _stiffness_at(stack, k[i : i + 1])
+            slowest[i] = _zero(of_wave, float(speeds[j - 1]), float(speeds[j]), accuracy)
     return slowest
-
-
-def _is_stiff(min_stiffness: Callable[[float, NDArray], NDArray], k: NDArray, speed: float) -> bool:
-    return bool(min_stiffness(speed, k)[0] > 0.0)
-
-
-def bisected(
-    holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 1e-13
-) -> float:
-    """Highest number up to which a condition holds."""
-    if holds(high):
-        return high
-    for _ in range(_CLOSE):
-        if high - low <= accuracy * high:
-            break
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return low
 
 
 #: Laws by which constants change from the upper face of a layer to the lower one.
@@ -326,7 +323,7 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Layered:
+class Layered(Solid):
     """Layers from the top down, perfectly bonded to one another and to a substrate.
 
     Modulus, density and wave speed are those at the surface; so are the exponents of the pressure.
@@ -339,13 +336,18 @@ class Layered:
     about: ClassVar[str] = "layers on a substrate"
     form: ClassVar[str] = "anisotropic"
 
-    layers: tuple[Layer, ...]
-    substrate: Solid
+    layers: tuple[Layer, ...] = field()  # no default, though uniform solids have one: no layers
+    substrate: Solid = field()
+
+    @cached_property
+    def parts(self) -> tuple[Layer, ...]:
+        """The layers, and the substrate as one without end."""
+        return (*self.layers, Layer(np.inf, self.substrate))
 
     @property
     def surface(self) -> Solid:
         """The solid at the surface."""
-        return self.layers[0].solid
+        return self.parts[0].solid
 
     @property
     def nearly_incompressible(self) -> bool:
@@ -353,12 +355,10 @@ class Layered:
 
     @property
     def solids(self) -> Sequence[Solid]:
-        """All solids from the top down, graded ones at both faces."""
-        ends = (end for layer in self.layers for end in (layer.solid, layer.bottom) if end is not None)
-        return (*ends, self.substrate)
+        return tuple(end for part in self.parts for end in (part.solid, part.bottom) if end is not None)
 
     @property
-    def plane(self) -> str:
+    def plane(self) -> str:  # type: ignore[override]
         return self.surface.plane
 
     @property
@@ -366,7 +366,7 @@ class Layered:
         return self.surface.μ
 
     @property
-    def ρ(self) -> float:
+    def ρ(self) -> float:  # type: ignore[override]
         return self.surface.ρ
 
     @property
@@ -379,11 +379,6 @@ class Layered:
         return self.surface.flutter
 
     @property
-    def slowest(self) -> float:
-        """Least of the solids' wave speeds [m/s]."""
-        return min(solid.c_s for solid in self.solids)
-
-    @property
     def knows_σ_ZZ(self) -> bool:
         return all(solid.knows_σ_ZZ for solid in self.solids)
 
@@ -394,12 +389,9 @@ class Layered:
 
     def at(self, depth: float) -> Solid:
         """The solid at a depth [m]; at an interface the one above it."""
-        top = 0.0
-        for layer in self.layers:
-            if depth <= top + layer.thickness:
-                return layer.at(((depth - top) / layer.thickness) ** layer.power)
-            top += layer.thickness
-        return self.substrate
+        i = int(np.searchsorted(self.depths, depth))
+        layer, top = self.parts[i], float(np.append(0.0, self.depths)[i])
+        return layer.at(((depth - top) / layer.thickness) ** layer.power)
 
     @property
     def changes(self) -> tuple[float, ...]:
@@ -414,8 +406,8 @@ class Layered:
 
     def beside(self, interface: int) -> tuple[Solid, Solid]:
         """The solids above and below an interface; interfaces are numbered from 0."""
-        layer, rest = self.layers[interface], self.layers[interface + 1 :]
-        return layer.bottom or layer.solid, rest[0].solid if rest else self.substrate
+        layer, below = self.parts[interface : interface + 2]
+        return layer.bottom or layer.solid, below.solid
 
     @cached_property
     def _limit(self) -> float:
@@ -426,12 +418,13 @@ class Layered:
 
         # Waves much shorter than a layer, and much longer than all, run as in one solid.
         most = min(self.surface.limit(), self.substrate.limit() * self.substrate.c_s / self.c_s)
-        return highest(stack, bisected(self._outruns, most), 1e-9 if graded else 1e-13)
+        most = bisected(self._outruns, most, accuracy=_INSIDE)
+        return highest(stack, most, 1e-9 if graded else 1e-13)
 
     def _outruns(self, c: float) -> bool:
         """Return True if waves inside all solids are faster than c."""
         try:
-            return bool(self.response(c).roots)
+            return bool(self.response(c).roots_of_solids)
         except ValueError:
             return False
 
@@ -439,55 +432,84 @@ class Layered:
         """Highest speed over ``c_s`` at which no wave runs with the load, freely."""
         return self._limit
 
-    def response(self, c: float) -> "LayeredResponse":
+    def response(self, c: float, a: float = 1.0) -> "LayeredHalfPlane":
         """The half-plane at a speed over ``c_s`` of the surface's solid.
+
+        Args:
+            c: speed, dimensionless.
+            a: unit of length [m].
 
         Raises:
             ValueError: waves in one of the solids are not faster.
         """
+        half_plane = LayeredHalfPlane(self, c, a)
         for solid in self.solids:
-            solid.response(c * self.c_s / solid.c_s)
-        return LayeredResponse(self, c)
+            half_plane.uniform(solid)
+        return half_plane
 
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """σ_ZZ of the solid at the surface, in the unit of the stresses."""
         return self.surface.σ_ZZ(σ_XX, σ_YY, σ_XY)
+
+    def σ_ZZ_at(self, depth: NDArray, σ: NDArray) -> NDArray[np.float64]:
+        values = np.empty(σ.shape[1:])
+        for each in np.unique(depth).tolist():
+            there = each == depth
+            values[..., there] = self.at(each).σ_ZZ(*σ[..., there])
+        return values
 
     def words(self) -> str:
         words = "; ".join(layer.words() for layer in self.layers)
         return f"{words}; on {self.substrate.words()}"
 
 
-@dataclass(frozen=True)
-class LayeredResponse:
-    """Layers at a speed; quantities of a half-plane are those of the solid at the surface.
+#: Columns of tables of constants: stiffness row by row, the speed, and the density.
+_COLUMNS = {name: i for i, name in enumerate(("c11", "c12", "c16", "c22", "c26", "c66", "c", "ρ"))}
+#: Points at which a graded solid is tabulated at first and at most, and its error between them.
+_FEW, _MANY, _LEFT = 9, 257, 1e-13
+#: Gauss's rule over a layer's thickness.
+_τ, _w = leggauss(24)
+#: Relative distance of a depth from an interface beyond which it is not that of the interface.
+_BESIDE = 1e-12
 
-    See :class:`galinx.solvers.solids.solid.Response`.
+
+@dataclass(frozen=True)
+class LayeredHalfPlane(HalfPlane):
+    """Layers on a substrate at a speed; n, m, q, n12 and Hooke's law are of the solid at the surface.
+
+    Attributes:
+        solid: the layers and the substrate.
+        c: speed over the wave speed of the solid at the surface.
+        a: unit of length [m].
     """
 
     solid: Layered
     c: float
+    a: float = 1.0
+
+    #: Meshes along interfaces are drawn in the plane itself.
+    contraction = 1j  # type: ignore[assignment]
+
+    def uniform(self, solid: Solid) -> UniformHalfPlane:
+        """Half-plane of one of the solids alone at this speed.
+
+        Raises:
+            ValueError: waves in it are not faster.
+        """
+        return solid.response(self.c * self.solid.c_s / solid.c_s).surface
 
     @cached_property
-    def surface(self) -> Response:
-        """The half-plane of the solid at the surface."""
-        return self.solid.surface.response(self.c)
+    def surface(self) -> UniformHalfPlane:
+        return self.solid.surface.response(self.c).surface
 
-    @property
-    def n(self) -> float:
-        return self.surface.n
+    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """Not available: see :class:`galinx.solvers.layers.kernel.Level`."""
+        raise NotImplementedError("stresses inside layers are no function of one potential")
 
-    @property
-    def m(self) -> float:
-        return self.surface.m
-
-    @property
-    def n12(self) -> float:
-        return self.surface.n12
-
-    @property
-    def q(self) -> float:
-        return self.surface.q
+    @cached_property
+    def depths(self) -> NDArray[np.float64]:
+        """Depths of the interfaces over a, (layers,)."""
+        return self.solid.depths / self.a
 
     @property
     def margin(self) -> float:
@@ -501,39 +523,23 @@ class LayeredResponse:
         return 1.0 - (self.c * self.solid.c_s / (below.limit() * below.c_s)) ** 2
 
     @property
-    def contraction(self) -> complex:
-        return self.surface.contraction
-
-    @property
-    def spread(self) -> float:
-        return self.surface.spread
-
-    @property
     def mirrored(self) -> bool:
         """True where all solids are their own mirror images."""
-        return all(
-            solid.response(self.c * self.solid.c_s / solid.c_s).mirrored for solid in self.solid.solids
-        )
+        return all(self.uniform(solid).mirrored for solid in self.solid.solids)
+
+    @property
+    def roots_of_solids(self) -> list[tuple[complex, ...]]:
+        """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
+        roots = []
+        for part in self.solid.parts:
+            shares = np.linspace(0.0, 1.0, _SAMPLES if part.bottom else 1).tolist()
+            each = [self.uniform(part.at(share)).roots.each for share in shares]
+            roots.append(tuple(p for pair in each for p in pair))
+        return roots
 
     def medium(self, solid: Solid) -> Medium:
         """One of the solids at this speed."""
-        return Medium(solid.response(self.c * self.solid.c_s / solid.c_s), solid.μ / self.solid.μ)
-
-    @property
-    def roots(self) -> list[tuple[complex, ...]]:
-        """p of every solid from the top down, of graded ones at several depths, and of the substrate."""
-        shares = [np.linspace(0.0, 1.0, _SAMPLES if layer.bottom else 1) for layer in self.solid.layers]
-        solids = [
-            *(
-                [layer.at(share) for share in of_layer.tolist()]
-                for layer, of_layer in zip(self.solid.layers, shares)
-            ),
-            [self.solid.substrate],
-        ]
-        return [
-            tuple(p for solid in of_layer for p in self.medium(solid).response.roots.each)
-            for of_layer in solids
-        ]
+        return Medium(self.uniform(solid), solid.μ / self.solid.μ)
 
     def stack(self, a: float, rtol: float = 0.0) -> LayersAtSpeed:
         """The layers with lengths over a.
@@ -542,9 +548,8 @@ class LayeredResponse:
             a: length [m].
             rtol: of the integration of graded layers, 0 for the usual one.
         """
-        return LayersAtSpeed([self._layer(layer, a, rtol) for layer in self.solid.layers], self.medium(
-            self.solid.substrate
-        ))  # fmt: skip
+        layers = [self._layer(layer, a, rtol) for layer in self.solid.layers]
+        return LayersAtSpeed(layers, self.medium(self.solid.substrate))
 
     def _layer(self, layer: Layer, a: float, rtol: float) -> Uniform | Graded:
         if layer.bottom is None:
@@ -553,12 +558,121 @@ class LayeredResponse:
         of: Callable[[float], Medium] = lambda share: self.medium(layer.at(share))  # noqa: E731
         return Graded(of, layer.thickness / a, layer.power, **graded)
 
-    def σ_XX(self, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        return self.surface.σ_XX(u_X, σ_YY, σ_XY)
+    def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
+        return [np.stack([table[_COLUMNS[name]] for name in names], axis=-1) for table in self._tables]
 
-    def stresses(self, G: NDArray) -> NDArray[np.float64]:
-        return self.surface.stresses(G)
+    @cached_property
+    def _tables(self) -> list[NDArray[np.float64]]:
+        """Tables of each solid: ``_COLUMNS`` at Chebyshev's points of its share of change, (8, n)."""
+        return [_tabulated(partial(self._column, part), part.bottom is None) for part in self.solid.parts]
 
-    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Not available: see :class:`galinx.solvers.layers.kernel.Level`."""
-        raise NotImplementedError("stresses inside layers are no function of one potential")
+    def _column(self, part: Layer, share: float) -> NDArray[np.float64]:
+        """Stiffness over the surface's μ, the speed over its wave speed by density, and the density."""
+        solid = part.at(share)
+        C, ρ = solid.μ * solid.response(0.0).surface.C / self.solid.μ, solid.ρ / self.solid.ρ
+        return np.append(C[np.triu_indices(3)], [self.c * ρ**0.5, ρ])
+
+    @cached_property
+    def _faces(self) -> NDArray[np.float64]:
+        """Depths of the upper faces of all solids, over a."""
+        return np.append(0.0, self.depths)
+
+    def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
+        return np.maximum(np.searchsorted(self._faces, -Y * (1.0 - side * _BESIDE)) - 1, 0)
+
+    def share(self, solid: int, Y: NDArray) -> NDArray[np.float64]:
+        layer, top = self.solid.parts[solid], self._faces[solid]
+        done = np.clip((-Y - top) * self.a / layer.thickness, 0.0, 1.0)
+        return np.asarray(done**layer.power)
+
+    def stresses_at(self, Y: NDArray, G: NDArray, side: int = 1) -> NDArray[np.float64]:
+        solid, C = self.solids(Y, side), np.empty((len(Y), 3, 3))
+        row, column = np.triu_indices(3)
+        for i in np.unique(solid).tolist():
+            points = solid == i
+            values = interpolation(self.share(i, Y[points]), self._tables[i].shape[1]) @ self._tables[i].T
+            stiffnesses = np.empty((len(values), 3, 3))
+            stiffnesses[:, row, column] = stiffnesses[:, column, row] = values[:, : len(row)]
+            C[points] = stiffnesses
+        strain = np.stack([G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]], axis=-1)
+        return np.moveaxis(np.einsum("nij,...nj->...ni", C, strain, optimize=True), -1, 0)
+
+    def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
+        """Displacements μ u far from line loads alone, whatever terms is, (1, 2, 2, n)."""
+        substrate, D = self.medium(self.solid.substrate), float(self.depths[-1])
+        below = np.minimum(Y + D, 0.0)
+        (displacement,) = (
+            substrate.response.far(X, below, datum=datum * max(1.0, self.far_length)) / substrate.modulus
+        )
+        G = substrate.response.G.conj()
+        heights, which = np.unique(np.maximum(Y, -D), return_inverse=True)
+        moved = [self._moved(height) for height in heights.tolist()]  # none on a rank without far nodes
+        more = np.reshape(moved, (-1, 2, 2))[which]
+        w = inverse(X[:, None, None] * np.eye(2) + below[:, None, None] * G)
+        w = w @ (self._compliance @ self._loaded + more)
+        for load, t in zip(displacement, LOADS):
+            load += (1j * w @ t).real.T / np.pi
+        return displacement[None]
+
+    @cached_property
+    def _compliance(self) -> NDArray[np.complex128]:
+        return inverse(self.medium(self.solid.substrate).down)
+
+    @property
+    def far_length(self) -> float:
+        """Length over a on which the terms that layers add to the line load's vary."""
+        moved, compliance, loaded = (
+            float(np.linalg.norm(matrix, 2))
+            for matrix in (self._moved(0.0), self._compliance, self._loaded)
+        )
+        return max(float(self.depths[-1]), moved / compliance, loaded)
+
+    @cached_property
+    def _loaded(self) -> NDArray[np.complex128]:
+        """Matrix E of the load on the substrate, (2, 2)."""
+        A, B, _ = self._through(0.0)
+        return np.asarray(1j * B - A @ self._compliance)
+
+    def _moved(self, height: float) -> NDArray[np.complex128]:
+        """∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY from the substrate up to a height over a, (2, 2)."""
+        _, B, T_inverse = self._through(height)
+        return np.asarray(T_inverse - 1j * B.T @ self._compliance)
+
+    def _through(self, height: float) -> NDArray[np.float64]:
+        """∫ A, ∫ B and ∫ T⁻¹ over the layers up to a height over a, (3, 2, 2)."""
+        integrals = np.zeros((3, 2, 2))
+        for i in range(len(self.solid.layers)):
+            bottom, top = -self._faces[i + 1], min(-self._faces[i], height)
+            if top <= bottom:
+                continue
+            Y = bottom + (top - bottom) * (_τ + 1.0) / 2.0
+            of_share = interpolation(self.share(i, Y), self._tables[i].shape[1])
+            c11, c12, c16, c22, c26, c66, c, _ = self._tables[i] @ of_share.T
+            Q, R, T = (
+                np.moveaxis(np.array(M), 2, 0)
+                for M in ([[c11 - c**2, c16], [c16, c66 - c**2]], [[c16, c12], [c66, c26]],
+                          [[c66, c26], [c26, c22]])
+            )  # fmt: skip
+            T_inverse = np.linalg.inv(T)
+            B = R @ T_inverse
+            parts = np.array([Q - B @ R.swapaxes(1, 2), B, T_inverse])
+            integrals += (top - bottom) / 2.0 * np.einsum("q,nqij->nij", _w, parts)
+        return integrals
+
+
+def _tabulated(of: Callable[[float], NDArray], uniform: bool) -> NDArray[np.float64]:
+    """Constants of a solid at Chebyshev's points of its share of change, (columns, points).
+
+    Raises:
+        SolveError: constants change too much.
+    """
+    count = 1 if uniform else _FEW
+    while count <= _MANY:
+        values = np.array([of(s) for s in chebyshev_points(count).tolist()])
+        if uniform:
+            return values.T
+        c = np.linalg.solve(chebvander(2.0 * chebyshev_points(count) - 1.0, count - 1), values)
+        if np.abs(c[-2:]).max() <= _LEFT * np.abs(values).max():
+            return values.T
+        count = 2 * count - 1
+    raise SolveError("the solid of a graded layer changes too much to be followed by finite elements")

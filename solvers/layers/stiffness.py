@@ -8,10 +8,12 @@ tractions t = (σ_XY, σ_YY) are k Z₋ u and k Z₊ u with
 
 Below the speed of the solid's surface wave Z₋ is positive and Z₊ negative, both Hermitian.
 
-**A uniform layer** (:class:`Uniform`) changes the stiffness of what is below it. With E = e^(ik G H), Z_b
-the stiffness of what is below and
+At complex speeds, one for each k, fields that decay downwards are those of the conjugate speed instead.
 
-    r = (Z₊ - Z_b)⁻¹ (Z_b - Z₋),   W = E r conj(E),
+**A uniform layer** (:class:`Uniform`) changes the stiffness of what is below it. With the factors E₊ and
+E₋ of both fields over its thickness, Z_b the stiffness of what is below and
+
+    r = (Z₊ - Z_b)⁻¹ (Z_b - Z₋),   W = E₊ r E₋,
 
 the stiffness on top is Z₋ + δ, δ = (Z₊ - Z₋) W (1 + W)⁻¹: exponentials that decay, and no other.
 
@@ -38,6 +40,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from ..errors import SolveError
+from ..solids.half_plane import Waves, exponential
 
 
 def inverse(M: NDArray) -> NDArray[Any]:
@@ -60,29 +63,27 @@ def least(Z: NDArray) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Medium:
-    """A solid at a speed.
+    """A uniform solid at a speed, or at the complex speeds of many waves.
 
     Attributes:
-        response: of its half-plane at that speed.
+        response: its half-plane at that speed; at complex speeds the fields that decay upwards for k > 0.
         modulus: unit of its stiffness over the modulus of the surface's solid.
+        falling: fields that decay downwards; None at a real speed, where they are the conjugates.
     """
 
     response: Any
     modulus: float
-
-    @cached_property
-    def G(self) -> NDArray[Any]:
-        """Matrix in u,Y = G u,X of fields that decay upwards for k > 0, (2, 2)."""
-        return np.asarray(self.response.G)
+    falling: Waves | None = None
 
     @cached_property
     def down(self) -> NDArray[Any]:
-        """Stiffness Z₋ against fields that decay downwards, (2, 2)."""
-        return np.asarray(1j * self.modulus * self.response.L.conj())
+        """Stiffness Z₋ against fields that decay downwards, (2, 2), at many speeds (n, 2, 2)."""
+        L = self.falling.L if self.falling else self.response.L.conj()
+        return np.asarray(1j * self.modulus * L)
 
     @cached_property
     def up(self) -> NDArray[Any]:
-        """Stiffness Z₊ against fields that decay upwards, (2, 2)."""
+        """Stiffness Z₊ against fields that decay upwards, (2, 2), at many speeds (n, 2, 2)."""
         return np.asarray(1j * self.modulus * self.response.L)
 
     @cached_property
@@ -90,25 +91,14 @@ class Medium:
         """Inverse of T, the stiffness of tractions against u,Y, (2, 2)."""
         return np.asarray(self.response.T_inverse / self.modulus)
 
-    def upwards(self, kh: NDArray) -> NDArray[Any]:
-        """e^(ik G h) for h >= 0, (n, 2, 2); its conjugate is the factor of fields that decay downwards.
+    def exponentials(self, kh: NDArray) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Factors over a height h >= 0 of fields that decay upwards and downwards, (n, 2, 2) each.
 
         Args:
             kh: k times h, (n,).
         """
-        p, other = self.response.roots.each
-        middle, half = (p + other) / 2.0, (p - other) / 2.0
-        first, second = np.exp(1j * kh * p), np.exp(1j * kh * other)
-        x = kh * half
-        near = np.abs(x) < 0.5
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            by_series = np.exp(1j * kh * middle) * kh * np.sinc(np.where(near, x, 0.0) / np.pi)
-            by_difference = (first - second) / (2j * half)
-        change = np.where(near, by_series, by_difference)
-        beyond = self.G - middle * np.eye(2)
-        return np.asarray(
-            ((first + second) / 2.0)[:, None, None] * np.eye(2) + 1j * change[:, None, None] * beyond
-        )
+        up = exponential(self.response, kh)
+        return up, exponential(self.falling, -kh) if self.falling else up.conj()
 
 
 _ONE = np.eye(2)
@@ -150,8 +140,8 @@ class Uniform:
             k: wavenumbers times a, (n,).
             below: stiffness Z of what is below, (n, 2, 2).
         """
-        E = self.medium.upwards(k * self.H)
-        W = E @ self._reflected(below) @ E.conj()
+        up, down = self.medium.exponentials(k * self.H)
+        W = up @ self._reflected(below) @ down
         return np.asarray((self.medium.up - self.medium.down) @ W @ inverse(_ONE + W))
 
     def min_stiffness(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
@@ -159,8 +149,8 @@ class Uniform:
 
         Not positive: some wave with this wavenumber runs inside, slower than the load.
         """
-        E = self.medium.upwards(k * self.H)
-        back = E.conj() @ E
+        up, down = self.medium.exponentials(k * self.H)
+        back = down @ up
         with np.errstate(all="ignore"):
             own = -(self.medium.up - self.medium.down @ back) @ inverse(_ONE - back)
         return least(below + own)
@@ -171,8 +161,8 @@ class Uniform:
         Args:
             k, below: see :meth:`excess`.
         """
-        E, r = self.medium.upwards(k * self.H), self._reflected(below)
-        return np.asarray((_ONE + r) @ E.conj() @ inverse(_ONE + E @ r @ E.conj()))
+        (up, down), r = self.medium.exponentials(k * self.H), self._reflected(below)
+        return np.asarray((_ONE + r) @ down @ inverse(_ONE + up @ r @ down))
 
     def cut(self, depth: float) -> tuple["Uniform", "Uniform"]:
         """The parts of the layer above and below a depth over a."""
@@ -250,7 +240,7 @@ class Graded:
         while count <= _MANY:
             x = np.cos(np.pi * np.arange(count) / (count - 1))
             media = [self.medium_of((1.0 + value) / 2.0) for value in x.tolist()]
-            values = np.array([[m.G.conj(), m.T_inverse, m.down] for m in media])
+            values = np.array([[m.response.G.conj(), m.T_inverse, m.down] for m in media])
             c = np.linalg.solve(chebyshev.chebvander(x, count - 1), values.reshape(count, -1))
             size = np.abs(c).max(axis=0)
             size = np.maximum(size, size.reshape(3, 4).max(axis=1).repeat(4))

@@ -12,16 +12,17 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..approximation import bisected
 from ..parameters import check, parameter
-from .potentials import Roots, line_loads, stresses
-from .solid import SOLIDS, Potential, density, in_plane, modulus
+from .half_plane import Roots, UniformHalfPlane
+from .solid import SOLIDS, Solid, density, in_plane, modulus
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04
 
 
 @dataclass(frozen=True)
-class Isotropic:
+class Isotropic(Solid):
     """An isotropic elastic solid in plane strain or plane stress.
 
     Raises:
@@ -51,19 +52,9 @@ class Isotropic:
         return (3.0 - self.ν) / (1.0 + self.ν)
 
     @property
-    def c_s(self) -> float:
-        """Shear wave speed [m/s]."""
-        return sqrt(self.μ / self.ρ)
-
-    @property
     def nearly_incompressible(self) -> bool:
         """True near ν = 1/2 in plane strain."""
         return self.κ - 1.0 < INCOMPRESSIBLE
-
-    @property
-    def knows_σ_ZZ(self) -> bool:
-        """True: the constants are always enough for σ_ZZ."""
-        return True
 
     @property
     def form(self) -> str:
@@ -84,8 +75,8 @@ class Isotropic:
         g = 1.0 if self.ν > 0.0 else inf
         return g, g
 
-    def response(self, c: float) -> "MovingFrame":
-        """The half-plane at a speed over the shear wave speed."""
+    def response(self, c: float, a: float = 1.0) -> "MovingFrame":
+        """The half-plane at a speed over the shear wave speed; it has no length, whatever a is."""
         return MovingFrame(self.κ, c)
 
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
@@ -97,13 +88,8 @@ class Isotropic:
 
 
 @dataclass(frozen=True)
-class MovingFrame:
-    """Constants of a half-plane seen from a load that moves at c times the shear wave speed.
-
-    The surface answers tractions with (H is the Hilbert transform over the contact)::
-
-        μ v,X = n H[σ_YY] - q σ_XY
-        μ u,X = q σ_YY + m H[σ_XY]
+class MovingFrame(UniformHalfPlane):
+    """Isotropic half-plane seen from a load that moves at c times the shear wave speed.
 
     The Rayleigh function R = 4 β_s β_d - (2 - c²)² is O(c²) at slow speed and would lose all
     digits there, so R/c² is used in a form without cancellation.
@@ -119,6 +105,10 @@ class MovingFrame:
     κ: float
     c: float
 
+    #: Slope v,X by the Hilbert transform of σ_XY: none, for the solid is its own mirror image.
+    n12 = 0.0
+    mirrored = True
+
     def __post_init__(self) -> None:
         if not 0.0 <= self.c < 1.0:
             raise ValueError(f"c = {self.c!r}: expected 0 <= c < 1, the punch must be subsonic")
@@ -130,31 +120,6 @@ class MovingFrame:
         """(c_s/c_d)² = (κ-1)/(κ+1)."""
         return (self.κ - 1.0) / (self.κ + 1.0)
 
-    @property
-    def c11(self) -> float:
-        """Stiffness over μ along X without strain across, 1/k; infinite at ν = 1/2."""
-        return 1.0 / self.k if self.k else inf
-
-    @property
-    def c12(self) -> float:
-        """λ over μ."""
-        return self.c11 - 2.0
-
-    @property
-    def c22(self) -> float:
-        """Stiffness over μ along Y without strain across, equal to :attr:`c11`."""
-        return self.c11
-
-    @property
-    def c16(self) -> float:
-        """Coupling of σ_XX and shear over μ: none."""
-        return 0.0
-
-    @property
-    def c26(self) -> float:
-        """Coupling of σ_YY and shear over μ: none."""
-        return 0.0
-
     @cached_property
     def β_s(self) -> float:
         """√(1 - c²)."""
@@ -164,11 +129,6 @@ class MovingFrame:
     def β_d(self) -> float:
         """√(1 - k c²)."""
         return sqrt(1.0 - self.k * self.c**2)
-
-    @cached_property
-    def e(self) -> float:
-        """1 + β_s² = 2 - c²."""
-        return 2.0 - self.c**2
 
     @cached_property
     def _w(self) -> float:
@@ -196,11 +156,6 @@ class MovingFrame:
         return self.β_s / self.r
 
     @property
-    def n12(self) -> float:
-        """Slope v,X by the Hilbert transform of σ_XY: none, by symmetry."""
-        return 0.0
-
-    @property
     def margin(self) -> float:
         """Rayleigh function over its value at rest; 0 at the Rayleigh speed."""
         return self.r / MovingFrame(self.κ, 0.0).r
@@ -215,11 +170,6 @@ class MovingFrame:
         """log β_d/β_s."""
         return log(self.β_d / self.β_s)
 
-    @property
-    def mirrored(self) -> bool:
-        """True: an isotropic solid is its own mirror image."""
-        return True
-
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""
         κ = self.κ
@@ -231,20 +181,23 @@ class MovingFrame:
         λ_div = (3.0 - self.κ) / (self.κ - 1.0) * (u_X + v_Y)
         return np.array([2.0 * u_X + λ_div, 2.0 * v_Y + λ_div, G[..., 0, 1] + G[..., 1, 0]])
 
-    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Stresses from a pressure's potential at the two z_j = X + i β_j Y."""
-        return stresses(self, Φ, g, X, Y)
-
-    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
-        """Displacements far away by moments of tractions."""
-        return line_loads(self, X, Y, terms)
-
     @cached_property
     def G(self) -> NDArray[Any]:
         """Matrix of u,Y = G u,X of decaying fields, (2, 2); regular up to ν = 1/2 and at rest."""
         s, d, k, w = self.β_s, self.β_d, self.k, self._w
         across = (1.0 - k) / ((s + d) * w)
         return np.array([[1j * d / w, -s * across], [-d * across, 1j * s * k / w]])
+
+    @cached_property
+    def C(self) -> NDArray[np.float64]:
+        """Stiffness over μ: σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY, (3, 3); infinite at ν = 1/2."""
+        λ = (3.0 - self.κ) / (self.κ - 1.0) if self.k else inf
+        return np.array([[2.0 + λ, λ, 0.0], [λ, 2.0 + λ, 0.0], [0.0, 0.0, 1.0]])
+
+    @cached_property
+    def Y(self) -> NDArray[Any]:
+        """Admittance of the surface by n, q and m, which keep their digits near the Rayleigh speed."""
+        return np.array([[-1j * self.m, self.q], [-self.q, -1j * self.n]])
 
     @cached_property
     def L(self) -> NDArray[Any]:
@@ -275,10 +228,7 @@ def rayleigh_speed(κ: float) -> float:
 
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
-    low, high = 0.1, 1.0 - 1e-15
-    while low < (c := (low + high) / 2.0) < high:  # scipy.optimize takes longer to import than a run
-        low, high = (c, high) if MovingFrame(κ, c).r > 0.0 else (low, c)
-    return c
+    return bisected(lambda c: MovingFrame(κ, c).r > 0.0, 1.0 - 1e-15, 0.1)
 
 
 SOLIDS.register("isotropic", Isotropic)

@@ -13,22 +13,23 @@ surface have u,Y = G u,X, where G solves T G² + (R + Rᵀ) G + Q = 0 and has th
 as eigenvalues. Functions of the matrix G replace eigenvectors, so that nothing happens where roots meet.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, pi, sin, sqrt
+from math import cos, pi, sin
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .potentials import Roots, line_loads, roots, value_and_change
-from .solid import Potential
+from ..approximation import bisected
+from .half_plane import Roots, UniformHalfPlane
+from .solid import Solid
 
 
 @dataclass(frozen=True)
-class AnisotropicFrame:
-    """Half-plane of an anisotropic solid at a speed, see :class:`galinx.solvers.solids.solid.Response`.
+class AnisotropicFrame(UniformHalfPlane):
+    """Half-plane of an anisotropic solid at a speed.
 
     Args:
         c11, c12, c16, c22, c26: stiffness over c₆₆, positive definite.
@@ -44,9 +45,6 @@ class AnisotropicFrame:
     c22: float
     c26: float
     c: float
-
-    #: Stiffnesses are over c₆₆.
-    c66 = 1.0
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.c < 1.0 or self._decaying_roots is None:
@@ -88,35 +86,6 @@ class AnisotropicFrame:
         return R.T + T @ self.G
 
     @cached_property
-    def T_inverse(self) -> NDArray[np.float64]:
-        """Inverse T⁻¹ of the stiffness across, (2, 2)."""
-        return np.asarray(np.linalg.inv(self._matrices[2]), dtype=float)
-
-    @cached_property
-    def _Y(self) -> NDArray[Any]:
-        return np.linalg.inv(self.L)
-
-    @cached_property
-    def n(self) -> float:
-        """Slope v,X by the Hilbert transform of σ_YY."""
-        return float(-self._Y[1, 1].imag)
-
-    @cached_property
-    def m(self) -> float:
-        """Strain u,X by the Hilbert transform of σ_XY."""
-        return float(-self._Y[0, 0].imag)
-
-    @cached_property
-    def n12(self) -> float:
-        """Slope v,X by the Hilbert transform of σ_XY, and strain by that of σ_YY."""
-        return float(-(self._Y[0, 1] + self._Y[1, 0]).imag / 2.0)
-
-    @cached_property
-    def q(self) -> float:
-        """Strain u,X by σ_YY, slope -v,X by σ_XY."""
-        return float((self._Y[0, 1] - self._Y[1, 0]).real / 2.0)
-
-    @cached_property
     def least_stiffness(self) -> float:
         """Smallest eigenvalue of the surface's Hermitian stiffness -iL; it falls with speed."""
         Z = -1j * self.L
@@ -128,16 +97,6 @@ class AnisotropicFrame:
         return self.least_stiffness / self.at(0.0).least_stiffness
 
     @property
-    def contraction(self) -> complex:
-        """Point midway between the roots in the hyperbolic metric of the half-plane."""
-        return self.roots.midpoint
-
-    @property
-    def spread(self) -> float:
-        """Hyperbolic distance of the roots."""
-        return self.roots.apart
-
-    @property
     def mirrored(self) -> bool:
         """True if the solid is its own mirror image in X = 0."""
         return self.c16 == 0.0 == self.c26
@@ -147,7 +106,7 @@ class AnisotropicFrame:
         return AnisotropicFrame(self.c11, self.c12, self.c16, self.c22, self.c26, c)
 
     @cached_property
-    def _C(self) -> NDArray[np.float64]:
+    def C(self) -> NDArray[np.float64]:
         """Stiffness over c₆₆: σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY, (3, 3)."""
         return np.array(
             [
@@ -157,63 +116,36 @@ class AnisotropicFrame:
             ]
         )
 
-    @cached_property
-    def _along(self) -> NDArray[np.float64]:
-        """Coefficients of u,X, σ_YY and σ_XY in σ_XX, (3,): Hooke's law, u,Y and v,Y eliminated."""
-        s11, s12, s16 = np.linalg.inv(self._C)[0]
-        return np.array([1.0, -s12, -s16]) / s11
 
-    def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
-        """In-plane stress σ_XX from the strain μ u,X and the tractions, of one shape."""
-        by_u_X, by_σ_YY, by_σ_XY = self._along
-        return by_u_X * u_X + by_σ_YY * σ_YY + by_σ_XY * σ_XY
-
-    def stresses(self, G: NDArray) -> NDArray[np.float64]:
-        """Hooke's law: σ_XX, σ_YY, σ_XY over c₆₆ of displacement gradients (..., 2, 2)."""
-        strains = [G[..., 0, 0], G[..., 1, 1], G[..., 0, 1] + G[..., 1, 0]]
-        return np.einsum("ij,j...->i...", self._C, np.array(strains))
-
-    def far(self, X: NDArray, Y: NDArray, terms: int) -> NDArray[np.float64]:
-        """Displacements far away by moments of tractions."""
-        return line_loads(self, X, Y, terms)
-
-    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """Stresses below a pressure by its potential at the matrix X + Y G; Y < 0.
-
-        u,X = Re iΦ(X + Y G) 𝐘 (g, 1)ᵀ, and the tractions are those of the surface with 𝐘⁻¹ G 𝐘 for G.
-
-        Raises:
-            ValueError: a point has Y >= 0; the surface has formulas of its own.
-        """
-        X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
-        if np.any(Y >= 0.0):
-            raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use the formulas of the surface there")
-        p, other = self.roots.each
-        z = X + p * Y
-        # Φ of a matrix with two eigenvalues: Φ(z₁) + Φ[z₁, z₂] Y (G - p₁).
-        at, change = (1j * part for part in value_and_change(Φ, z, Y + 0j, other - p))
-        beyond = self.G - p * np.eye(2)
-        strain = self._Y[0], (beyond @ self._Y)[0]
-        tractions = np.eye(2), self.L @ beyond @ self._Y
-
-        def part(first: NDArray, second: NDArray) -> NDArray[np.float64]:
-            return ((first[0] * g + first[1]) * at + (second[0] * g + second[1]) * change).real
-
-        u_X = part(*strain)
-        σ_XY, σ_YY = (part(tractions[0][i], tractions[1][i]) for i in (0, 1))
-        return np.array([self.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
+#: Steps of Newton's method at most: it begins with half the digits where the roots meet.
+_STEPS = 10
 
 
-def surface_wave(solid: AnisotropicFrame) -> float:
-    """Speed over √(c₆₆/ρ) of the wave along the surface, to the last digits.
+def roots(coefficients: NDArray) -> Roots | None:
+    """Two roots with Im p > 0 of a real quartic, or None where it has real roots.
 
-    The surface's stiffness falls with speed until it has a zero, before that of the slowest wave inside
-    is reached: bisection.
+    Args:
+        coefficients: of p⁴ to p⁰, (5,).
     """
-    low, high = 0.0, 1.0
-    while low < (middle := (low + high) / 2.0) < high:
-        low, high = (middle, high) if _surface_is_stiff(solid, middle) else (low, middle)
-    return low
+    b3, b2, b1, b0 = coefficients[1:] / coefficients[0]
+    upper = [p for p in np.roots(coefficients) if p.imag > 0.0]
+    if len(upper) != 2:
+        return None
+    # p⁴ + … = (p² - s p + d)(p² - s̄ p + d̄), where Re s = -b₃/2 is known.
+    s, d = sum(upper), np.prod(upper)
+    a, x = -b3 / 2.0, np.array([s.imag, d.real, d.imag])
+    for _ in range(_STEPS):
+        b, e, f = x
+        rest = [a * a + b * b + 2.0 * e - b2, -2.0 * (a * e + b * f) - b1, e * e + f * f - b0]
+        slopes = [[2.0 * b, 2.0, 0.0], [-2.0 * f, -2.0 * a, -2.0 * b], [0.0, 2.0 * e, 2.0 * f]]
+        try:
+            step = np.linalg.solve(slopes, rest)
+        except np.linalg.LinAlgError:  # all four meet on the real axis
+            return None
+        x = x - step
+        if np.abs(step).max() <= 1e-15 * np.abs(x).max():
+            break
+    return Roots(complex(a, x[0]), complex(x[1], x[2]))
 
 
 def _surface_is_stiff(solid: AnisotropicFrame, c: float) -> bool:
@@ -228,11 +160,10 @@ def _surface_is_stiff(solid: AnisotropicFrame, c: float) -> bool:
 _ROUNDING = 1e-13
 
 
-class PlaneSolid(ABC):
+class PlaneSolid(Solid):
     """A solid with a plane of symmetry normal to Z, in plane strain or plane stress."""
 
     form = "anisotropic"
-    nearly_incompressible = False
 
     ρ: float
     plane: str
@@ -243,19 +174,9 @@ class PlaneSolid(ABC):
         """σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY in the frame of the scene [Pa], (3, 3)."""
 
     @property
-    def knows_σ_ZZ(self) -> bool:
-        """True if the constants are enough for σ_ZZ."""
-        return True
-
-    @property
     def μ(self) -> float:
         """c₆₆ in the frame of the scene [Pa]."""
         return float(self.stiffness[2, 2])
-
-    @property
-    def c_s(self) -> float:
-        """√(c₆₆/ρ) [m/s], the speed of the wave along X that shears across it, if there is one."""
-        return sqrt(self.μ / self.ρ)
 
     @cached_property
     def _at_rest(self) -> AnisotropicFrame:
@@ -264,10 +185,11 @@ class PlaneSolid(ABC):
 
     @cached_property
     def _limit(self) -> float:
-        return surface_wave(self._at_rest)
+        return bisected(lambda c: _surface_is_stiff(self._at_rest, c), 1.0)
 
     def limit(self) -> float:
-        """Speed of the wave along the surface over ``c_s``."""
+        """Speed of the wave along the surface over ``c_s``: there the surface's stiffness, which falls
+        with speed, vanishes, before the speed of the slowest wave inside is reached."""
         return self._limit
 
     @cached_property
@@ -280,8 +202,8 @@ class PlaneSolid(ABC):
 
         return thresholds(Admittance.of(self._at_rest))
 
-    def response(self, c: float) -> AnisotropicFrame:
-        """The half-plane at a speed over ``c_s``.
+    def response(self, c: float, a: float = 1.0) -> AnisotropicFrame:
+        """The half-plane at a speed over ``c_s``; it has no length, whatever a is.
 
         Raises:
             ValueError: a wave in the solid is not faster.

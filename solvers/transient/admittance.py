@@ -31,10 +31,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, pi
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..solids.half_plane import HalfPlane, Roots, Waves
 
 #: Imaginary part over the size of a root below which the root is real, where C is real.
 _REAL = 1e-9
@@ -44,56 +46,6 @@ _STEPS = 3
 _DIRECTIONS, _HALVINGS = 1440, 60
 #: Points on a circle round the pole, which halves the way to the next speed at which 𝐘 is not analytic.
 _CIRCLE = 64
-
-
-@runtime_checkable
-class InPlane(Protocol):
-    """A uniform solid with its stiffness over μ = c₆₆ in the plane: c₁₁, c₁₂, c₁₆, c₂₂, c₂₆."""
-
-    @property
-    def c11(self) -> float: ...
-    @property
-    def c12(self) -> float: ...
-    @property
-    def c16(self) -> float: ...
-    @property
-    def c22(self) -> float: ...
-    @property
-    def c26(self) -> float: ...
-
-
-@dataclass(frozen=True)
-class Waves:
-    """Two of a solid's four waves at given speeds: fields with u,Y = G u,X and tractions L u,X.
-
-    Attributes:
-        s, d: sum and product of their roots p, (n,).
-        G, L: (n, 2, 2), L over c₆₆.
-    """
-
-    s: NDArray[np.complex128]
-    d: NDArray[np.complex128]
-    G: NDArray[np.complex128]
-    L: NDArray[np.complex128]
-
-    @property
-    def conjugate(self) -> "Waves":
-        """Other two waves, at the conjugate speeds."""
-        return Waves(self.s.conj(), self.d.conj(), self.G.conj(), self.L.conj())
-
-    def exponential(self, κ: NDArray) -> NDArray[np.complex128]:
-        """Matrix exponential e^(iκG), (n, 2, 2); κ, (n,), has the sign with which it decays."""
-        middle = self.s / 2.0
-        half = np.sqrt(middle**2 - self.d)
-        first, second = (np.exp(1j * κ * (middle + sign * half)) for sign in (1.0, -1.0))
-        x = κ * half
-        near = np.abs(x) < 0.5
-        by_series = np.exp(1j * κ * middle) * κ * np.sinc(np.where(near, x, 0.0) / pi)
-        by_difference = (first - second) / (2j * np.where(near, 1.0, half))
-        change = np.where(near, by_series, by_difference)
-        beyond = self.G - middle[:, None, None] * np.eye(2)
-        mean = (first + second)[:, None, None] / 2.0 * np.eye(2)
-        return np.asarray(mean + 1j * change[:, None, None] * beyond)
 
 
 @dataclass(frozen=True)
@@ -111,18 +63,10 @@ class Admittance:
     c26: float
 
     @classmethod
-    def of(cls, response: Any) -> "Admittance":
-        """Admittance of a half-plane's solid.
-
-        Raises:
-            ValueError: the response has no c11 … c26, its solid's stiffness in the plane.
-        """
-        if not isinstance(response, InPlane):
-            raise ValueError(
-                f"{type(response).__name__}: expected a uniform solid, with c11 … c26 over μ"
-            )
-        solid = response
-        return cls(solid.c11, solid.c12, solid.c16, solid.c22, solid.c26)
+    def of(cls, half_plane: HalfPlane) -> "Admittance":
+        """Admittance of a uniform half-plane's solid."""
+        (c11, c12, c16), (_, c22, c26), _ = half_plane.surface.C.tolist()
+        return cls(c11, c12, c16, c22, c26)
 
     @property
     def mirrored(self) -> "Admittance":
@@ -133,7 +77,7 @@ class Admittance:
         """𝐘 of the roots with Im p > 0 at speeds (n,): (n, 2, 2)."""
         return np.asarray(np.linalg.inv(self.waves(C).L), dtype=complex)
 
-    def waves(self, C: NDArray) -> "Waves":
+    def waves(self, C: NDArray) -> Waves:
         """Two waves with Im p > 0 at speeds C, (n,)."""
         C = np.asarray(C, dtype=complex)
         s, d = self._sum_and_product(C)
@@ -150,7 +94,7 @@ class Admittance:
         G = np.linalg.solve(np.moveaxis(M, 2, 0), np.moveaxis(F, 2, 0))
         across = np.array([[1.0, self.c26], [self.c26, self.c22]])
         L = np.array([[self.c16, 1.0], [self.c12, self.c26]]) + across @ G
-        return Waves(s, d, G, L)
+        return Waves(Roots(s, d), G, L)
 
     def _quartic(self, C2: Any) -> list[Any]:
         """Coefficients of p⁰ to p⁴ at C²."""

@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .admittance import Admittance
 from .transform import Transformed
 
@@ -59,7 +59,7 @@ class OscillatingPunch:
         ValueError: a wave along the contact is too short.
     """
 
-    def __init__(self, response: Response, rayleigh: float, ω: NDArray, way: int = 1) -> None:
+    def __init__(self, response: HalfPlane, rayleigh: float, ω: NDArray, way: int = 1) -> None:
         if (last := float(ω.max())) > (most := highest(response, rayleigh)):
             raise ValueError(
                 f"found a frequency of {last:.4g} c_s/a, expected at most {most:.4g} c_s/a at c = "
@@ -91,6 +91,6 @@ class OscillatingPunch:
         return float(1.0 / (slopes[1] + g * slopes[0]))
 
 
-def highest(response: Response, rayleigh: float) -> float:
+def highest(response: HalfPlane, rayleigh: float) -> float:
     """Highest angular frequency over c_s/a that can be solved at a speed."""
     return MOST * (rayleigh - response.c)

@@ -28,7 +28,7 @@ e^(-2sH/c_d) where plane waves go down and up. As Re s > 0 it is analytic along 
 that its transform back to X goes along it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, cos, log, log2, pi
 from typing import Any, Protocol
@@ -37,9 +37,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from ..layers.in_cells import LayersInCells
-from ..layers.stiffness import inverse
-from .admittance import Admittance, Waves
+from ..layers.layered import LayeredHalfPlane, LayersAtSpeed
+from ..layers.stiffness import Medium, Uniform
+from ..solids.half_plane import HalfPlane
+from .admittance import Admittance
 
 #: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8
@@ -65,7 +66,7 @@ _RATIO = 4.0
 
 @dataclass(frozen=True)
 class Kernel:
-    """Response at a distance x > 0 ahead of a line load in a frame that moves at c.
+    """HalfPlane at a distance x > 0 ahead of a line load in a frame that moves at c.
 
     Behind it the response is that ahead, in the mirror image of the solid and a frame that moves at -c,
     with the signs of σ_XY's and u changed.
@@ -249,92 +250,64 @@ _LAYERS_POINTS, _LAYERS_TURN, _LAYERS_HALVINGS, _LAYERS_ACCURACY = 12, 5.0, 14, 
 _FEWEST, _LAYERS_BETWEEN = 8, np.linspace(-0.9, 0.9, 4)
 #: Wavenumbers whose exponentials are computed at once.
 _TOGETHER = 512
-_ONE = np.eye(2)
-
-
-@dataclass(frozen=True)
-class UniformLayer:
-    """A uniform layer.
-
-    Attributes:
-        surface: admittance of the layer's solid.
-        modulus: its c₆₆ over that of the solid at the surface.
-        slower: wave speed of the solid at the surface over the layer's own.
-        H: thickness over a.
-    """
-
-    surface: Admittance
-    modulus: float
-    slower: float
-    H: float
-
-    def waves(self, C: NDArray) -> Waves:
-        """Waves with Im p > 0 at speeds C over c_s of the solid at the surface, L over its c₆₆."""
-        own = self.surface.waves(self.slower * C)
-        return replace(own, L=self.modulus * own.L)
 
 
 @dataclass(frozen=True)
 class UniformLayers:
-    """Layers on a substrate.
+    """Uniform layers on a substrate at complex speeds.
 
     Attributes:
-        layers: uniform, from the top down.
-        substrate: half-plane below them; its thickness is not used.
+        solids: admittance of each solid from the top down, its c₆₆ over that of the solid at the surface,
+            and the wave speed of the solid at the surface over its own.
+        H: thicknesses over a of all but the substrate.
     """
 
-    layers: tuple[UniformLayer, ...]
-    substrate: UniformLayer
+    solids: tuple[tuple[Admittance, float, float], ...]
+    H: tuple[float, ...]
 
     @classmethod
-    def of(cls, response: LayersInCells) -> "UniformLayers":
-        """Layers of a response.
+    def of(cls, half_plane: LayeredHalfPlane) -> "UniformLayers":
+        """Layers of a half-plane.
 
         Raises:
             ValueError: a layer is graded.
         """
-        solid, layers = response.solid, []
-        for layer in solid.layers:
-            if layer.bottom is not None:
-                raise ValueError("a layer is graded: expected uniform ones")
-        thicknesses = [*(layer.thickness / response.a for layer in solid.layers), np.inf]
-        for own, H in zip((*(layer.solid for layer in solid.layers), solid.substrate), thicknesses):
-            surface = Admittance.of(own.response(0.0))
-            layers.append(UniformLayer(surface, own.μ / solid.μ, solid.c_s / own.c_s, H))
-        return cls(tuple(layers[:-1]), layers[-1])
+        solid = half_plane.solid
+        if any(layer.bottom for layer in solid.layers):
+            raise ValueError("a layer is graded: expected uniform ones")
+        solids = tuple(
+            (Admittance.of(own.response(0.0)), own.μ / solid.μ, solid.c_s / own.c_s)
+            for own in solid.solids
+        )
+        return cls(solids, tuple(layer.thickness / half_plane.a for layer in solid.layers))
 
     @property
     def mirrored(self) -> "UniformLayers":
         """The mirror image in X = 0."""
-        every = (*self.layers, self.substrate)
-        mirror_images = [replace(layer, surface=layer.surface.mirrored) for layer in every]
-        return UniformLayers(tuple(mirror_images[:-1]), mirror_images[-1])
+        return UniformLayers(tuple((own.mirrored, M, s) for own, M, s in self.solids), self.H)
 
     @property
     def fastest(self) -> float:
         """Largest speed of a wave inside, over the wave speed of the solid at the surface."""
-        return max(layer.surface.fastest / layer.slower for layer in (*self.layers, self.substrate))
+        return max(own.fastest / slower for own, _, slower in self.solids)
 
     def change(self, k: NDArray, C: NDArray) -> NDArray[np.complex128]:
         """Δ𝐘 at wavenumbers times a, k < 0, and speeds C, Im C < 0, (n,) each: (n, 2, 2)."""
-        Z = self.substrate.waves(C).L
-        δ = np.zeros_like(Z)
-        for layer in self.layers[::-1]:
-            down, up = layer.waves(C), layer.waves(C.conj()).conjugate
-            κ = k * layer.H
-            r = inverse(up.L - Z) @ (Z - down.L)
-            W = up.exponential(κ) @ r @ down.exponential(-κ)
-            δ = (up.L - down.L) @ W @ inverse(_ONE + W)
-            Z = down.L + δ
-        return np.asarray(-inverse(Z) @ δ @ inverse(down.L))
+        # The stiffness of layers is that at k > 0, whose fields are the conjugates.
+        media = [
+            Medium(own.waves(slower * C.conj()), modulus, own.waves(slower * C).conjugate)
+            for own, modulus, slower in self.solids
+        ]
+        layers = [Uniform(medium, H) for medium, H in zip(media, self.H)]
+        return LayersAtSpeed(layers, media[-1]).admittance(-k).conj()
 
     def decay(self, k: NDArray, C: NDArray) -> NDArray[np.float64]:
         """Logarithm by which waves at least decay on the way down and up through the uppermost layer."""
-        top, falls = self.layers[0], np.full(len(k), np.inf)
-        for waves in (top.waves(C), top.waves(C.conj())):
-            half = np.sqrt(waves.s**2 / 4.0 - waves.d)
-            slow = np.minimum((waves.s / 2.0 + half).imag, (waves.s / 2.0 - half).imag)
-            falls = np.minimum(falls, -2.0 * top.H * k * slow)
+        (top, _, slower), falls = self.solids[0], np.full(len(k), np.inf)
+        for roots in (top.waves(slower * C).roots, top.waves(slower * C.conj()).roots):
+            half = np.sqrt(roots.sum**2 / 4.0 - roots.product)
+            slow = np.minimum((roots.sum / 2.0 + half).imag, (roots.sum / 2.0 - half).imag)
+            falls = np.minimum(falls, -2.0 * self.H[0] * k * slow)
         return falls
 
 
@@ -403,14 +376,14 @@ class Echoes:
 
 
 class Side(Protocol):
-    """Response on one side of a line load; behind it that of the mirror image, see :class:`Kernel`."""
+    """HalfPlane on one side of a line load; behind it that of the mirror image, see :class:`Kernel`."""
 
     def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]: ...
 
 
 @dataclass(frozen=True)
 class OnLayers:
-    """Response of layers: that of a half-plane of the uppermost solid, and echoes.
+    """HalfPlane of layers: that of a half-plane of the uppermost solid, and echoes.
 
     Attributes:
         uniform: response of a half-plane of the solid at the surface.
@@ -425,26 +398,28 @@ class OnLayers:
         return np.asarray(self.uniform(x, s, slopes) + self.echoes(x, s, slopes))
 
 
-def fastest(response: Any) -> float:
+def fastest(half_plane: HalfPlane) -> float:
     """Largest speed of a wave inside over c_s."""
-    of = UniformLayers if isinstance(response, LayersInCells) else Admittance
-    return of.of(response).fastest
+    of: Any = UniformLayers if len(half_plane.depths) else Admittance
+    return float(of.of(half_plane).fastest)
 
 
-def both_sides(response: Any, rayleigh: float, way: int) -> tuple[Side, Side]:
+def both_sides(half_plane: HalfPlane, rayleigh: float, way: int) -> tuple[Side, Side]:
     """Responses on the sides towards +X and -X of a line load that moves over a solid.
 
     Args:
-        response: of the solid at the load's speed, :class:`LayersInCells` of layers.
-        rayleigh: of the wave along the surface of a uniform solid over c_s.
+        half_plane: of the solid at the load's speed.
+        rayleigh: of the wave along the surface of a uniform solid over c_s; not used over layers.
         way: ±1, in which the load moves along X.
 
     Raises:
-        ValueError: the solid's stiffness in the plane is not known.
+        ValueError: a layer is graded.
     """
-    if not isinstance(response, LayersInCells):
-        surface, V = Admittance.of(response), way * response.c
+    V = way * half_plane.c
+    if not len(half_plane.depths):
+        surface = Admittance.of(half_plane)
         return Kernel(surface, V, rayleigh), Kernel(surface.mirrored, -V, rayleigh)
-    sheets, V = UniformLayers.of(response), way * response.c
-    ahead, behind = both_sides(response.surface, response.solid.surface.limit(), way)
+    layers: Any = half_plane
+    ahead, behind = both_sides(layers.surface, layers.solid.surface.limit(), way)
+    sheets = UniformLayers.of(layers)
     return OnLayers(ahead, Echoes(sheets, V)), OnLayers(behind, Echoes(sheets.mirrored, -V))

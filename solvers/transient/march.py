@@ -20,7 +20,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .transform import Basis, Transformed
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
@@ -126,7 +126,7 @@ class FrictionInterpolation:
         middle: polynomials at the middle of the range.
     """
 
-    def __init__(self, response: Response, least: float, most: float, terms: int) -> None:
+    def __init__(self, response: HalfPlane, least: float, most: float, terms: int) -> None:
         self._response, self._terms = response, terms
         self._middle, self._half = (least + most) / 2.0, (most - least) / 2.0
         self.middle = Basis(response, self._middle, terms)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .line_load import both_sides
 from .march import FrictionInterpolation, Radau, march
 from .residual import Residual
@@ -47,7 +47,9 @@ class AlongSurface:
         way: ±1, in which the punch moves along X.
     """
 
-    def __init__(self, response: Response, rayleigh: float, s: NDArray, X: NDArray, way: int = 1) -> None:
+    def __init__(
+        self, response: HalfPlane, rayleigh: float, s: NDArray, X: NDArray, way: int = 1
+    ) -> None:
         self._response, self._s, self._X = response, s, X
         self._kernels = both_sides(response, rayleigh, way)
         self._slowest = 1.0 / (rayleigh - response.c)
@@ -224,7 +226,7 @@ class StartingPunch:
     """
 
     def __init__(
-        self, response: Response, rayleigh: float, end: float, steps: int, terms: int = 24,
+        self, response: HalfPlane, rayleigh: float, end: float, steps: int, terms: int = 24,
         surface: bool = False, way: int = 1, checked: bool = False,
     ) -> None:  # fmt: skip
         self._response, self._terms = response, terms

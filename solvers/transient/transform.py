@@ -15,7 +15,7 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .line_load import Side, both_sides
 
 #: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
@@ -72,7 +72,7 @@ class Basis:
         tests: polynomials with the exponents of the mirror image.
     """
 
-    def __init__(self, response: Response, g: float, terms: int) -> None:
+    def __init__(self, response: HalfPlane, g: float, terms: int) -> None:
         self.g = g
         cot = g * response.q / (response.n + g * response.n12)
         α = -0.5 - float(np.arctan(cot)) / pi
@@ -195,7 +195,7 @@ class Transformed:
     """
 
     def __init__(
-        self, response: Response, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN,
+        self, response: HalfPlane, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN,
         way: int = 1,
     ) -> None:  # fmt: skip
         self._response, self.s, self._terms, self._panel = response, s, terms, min(panel, _EVEN)
@@ -329,5 +329,5 @@ class Transformed:
 
 
 def response_at(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-    """Response at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
+    """HalfPlane at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
     return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

@@ -11,7 +11,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem import fields
 from galinx.solvers.fem.cells import model_cells
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
-from galinx.solvers.fem.fields import InteriorGradients
+from galinx.solvers.fem.fields import InteriorGradients, KeptValues
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.traction import LinearLoads, LoadedHalfPlane, Pieces
 from galinx.solvers.rays import NEAR
@@ -33,7 +33,8 @@ def test_a_shared_mesh_gives_what_one_rank_gives(mesh, form):
         states.append(punch.states(-0.66))
         trace = fields.gather(space, punch.fields[:3])
         traces.append(trace.derivative(np.array([-1.9, -0.7, 0.3, 1.2, 1.8])))
-        inside = InteriorGradients(space, MovingFrame(2.0, 0.6), punch.fields, points)
+        values = KeptValues(space, MovingFrame(2.0, 0.6), punch.fields)
+        inside = InteriorGradients(space, MovingFrame(2.0, 0.6), values, points)
         gradients.append(inside.of(states[-1].weights))
         punch.destroy()
     alone, shared = states

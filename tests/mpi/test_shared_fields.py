@@ -12,7 +12,7 @@ from galinx import template
 from galinx.app.results import fields
 from galinx.app.results.fields import select_states, solve_states, state_field, write_fields
 from galinx.meshes.rings import Refinement
-from galinx.solvers.fem.fields import sample
+from galinx.solvers.fem.export import sample
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 

@@ -13,11 +13,10 @@ from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.contact import stresses
-from galinx.solvers.layers.in_cells import LayersInCells
+from galinx.solvers.contact import residual, stresses
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.potentials import DATUM, line_loads
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from test_layers import COAT, GRADED, scene
@@ -130,6 +129,20 @@ def test_alone_they_say_how_good_they_are():
     assert error <= data["states/fem/estimate"][0] <= 1e-6
 
 
+@pytest.mark.parametrize("wrong, verdict", [(0.0, "PASS"), (0.2, "FAIL")])
+def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypatch):
+    """A pressure that leans leaves a part of the equation."""
+    of_contact = residual.of_contact
+
+    def leaning(response, g, local, body, pressure, *more):
+        return of_contact(response, g, local, body, lambda r: pressure(r) * (1.0 + wrong * r), *more)
+
+    monkeypatch.setattr("galinx.solvers.fem.contact.of_contact", leaning)
+    result = galinx.compute(scene(tolerance=1e-3, methods=("fem",), quantities=("sif",)))
+    assert result.verdict == verdict, result.data["states/fem/residual"]
+
+
+
 def test_a_graded_layer_whose_faces_are_alike_is_uniform():
     same = COAT + 'to = { E = "7.5 GPa" }\n'
     found = [
@@ -146,12 +159,12 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
     """What is left of the expansion falls with the distance's square."""
     solid = Isotropic(2.5, 0.25, 1.0)
     stack = Layered((Layer(0.7, solid), Layer(0.5, solid)), solid)
-    response = LayersInCells(stack, V / solid.c_s, 1.0)
+    response = stack.response(V / solid.c_s)
 
     def left(R):
         X, Y = R * np.array([1.0, -1.0, 0.3, -0.7]), np.array([-0.4, -1.0, -R, -0.8 * R])
-        datum = DATUM * max(1.0, response.far_field.length)
-        exact = line_loads(solid.response(response.c), X, Y, datum=datum)
+        datum = DATUM * max(1.0, response.far_length)
+        exact = solid.response(response.c).far(X, Y, datum=datum)
         return np.abs(response.far(X, Y, 1) - exact).max()
 
     near, far = left(50.0), left(100.0)

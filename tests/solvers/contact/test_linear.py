@@ -5,10 +5,10 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
+from isotropic_field import field
 
 from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
 from galinx.solvers.solids.isotropic import MovingFrame
-from galinx.solvers.solids.potentials import field
 
 PRESSURES = {
     "triangle": [[-1, 0], [0.3, -2], [1, 0]],

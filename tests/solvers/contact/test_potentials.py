@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 import sympy as sp
+from isotropic_field import field
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.solids import potentials
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 
@@ -61,7 +61,7 @@ def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
     symbols = sp.symbols("s_s h_s s h")
     c2, κ, β = 1 - frame.β_s**2, frame.κ, sp.diag(frame.β_s, frame.β_d)
     n, q, m = (exactly(constant) for constant in (frame.n, frame.q, frame.m))
-    σ_XX, σ_YY, σ_XY = (amplitudes(σ, symbols, c2) for σ in potentials.field(frame, g, *symbols))
+    σ_XX, σ_YY, σ_XY = (amplitudes(σ, symbols, c2) for σ in field(frame, g, *symbols))
     K, λ, coupling = (κ + 1) / (κ - 1), (3 - κ) / (κ - 1), 2 / (κ - 1)
     # Hooke's law, Eqs 6-7, solved for the strains.
     u_X, v_Y = ((K * a - λ * b) / (K**2 - λ**2) for a, b in ((σ_XX, σ_YY), (σ_YY, σ_XX)))

@@ -5,7 +5,10 @@ import pytest
 from random_solids import random_solid
 
 from galinx.solvers.contact import residual
+from galinx.solvers.contact.equation import ContactsAtSpeed
 from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.layers.kernel import Kernel, Scaled
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles.power import Parabolic, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -52,3 +55,32 @@ def test_a_wrong_field_is_seen(contact):
     at_a_point = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (X == 0.9)))[1]
     at_a_depth = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (len(X) > 9)))[1]
     assert at_a_point.min() >= 1e-7 and at_a_depth.min() >= 1e-6
+
+
+def layered(graded):
+    layer = Layer(0.4, Isotropic(3.0, 0.2, 2.0), Isotropic(1.5, 0.3, 1.0) if graded else None)
+    return Layered((layer,), Isotropic(1.0, 0.3, 1.0))
+
+
+@pytest.mark.parametrize("graded", [False, True], ids=["uniform", "graded"])
+def test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_its_error(graded):
+    solid, g = layered(graded), 0.4
+    response = solid.response(0.3 * solid.limit(), 1.0)
+    speed = ContactsAtSpeed(response, response.stack(1.0), np.zeros_like, 1e-9)
+    (solved,) = speed.solved(np.array([g]))[0].each
+    pressure = solved.pressure
+    ends = np.array([pressure.α]), np.array([pressure.β])
+
+    def σ_YY(r, ε=0.0):
+        weight = (1.0 - r) ** pressure.α * (1.0 + r) ** pressure.β
+        return (weight * pressure.series(r) * (1.0 + ε * r))[None]
+
+    def left_with(ε):
+        return residual.of_pressure(
+            response, np.array([g]), ends, np.zeros_like, lambda r: σ_YY(r, ε),
+            layers=[Scaled(Kernel(response.stack(1.0), 1e-11), 1.0)],
+        )[0]  # fmt: skip
+
+    assert left_with(0.0) <= 1e-7
+    for ε in (1e-2, 1e-4):
+        assert 0.1 * ε <= left_with(ε) <= 10.0 * ε

@@ -11,7 +11,6 @@ from galinx.meshes.rings import TAGS
 from galinx.solvers.fem import space as spaces
 from galinx.solvers.fem.cells import congruent_cells, model_cells
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 
@@ -72,7 +71,7 @@ COATED = Layered((Layer(1.0, SOFT),), STEEL)
 @pytest.mark.parametrize("solid, fewer", [(COATED, 3.0), (TO_SOFT, 1.2)], ids=["coating", "graded"])
 def test_the_matrix_is_that_of_each_cell_by_itself(solid, fewer, monkeypatch):
     """Of a graded layer only cells below it have others that are like them."""
-    response = LayersInCells(solid, 0.2)
+    response = solid.response(0.2)
     mesh = on_layers((1.0,)).drawn(Requirements(1e-6, nearest=1e-2))
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), 5, solid.form)
     models, members = model_cells(space.vertices, response, space.form.constants)

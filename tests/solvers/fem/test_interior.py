@@ -9,18 +9,22 @@ from support import small_punch, space_on
 from galinx.meshes.rings import Refinement
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem import fields
-from galinx.solvers.fem.fields import InteriorGradients
+from galinx.solvers.fem.fields import InteriorGradients, KeptValues
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
+
+
+def values_at(punch, points):
+    """Gradients of all fields of a punch at points."""
+    values = KeptValues(punch.space, punch.response, punch.fields)
+    return InteriorGradients(punch.space, punch.response, values, points)
 
 
 def test_a_point_outside_the_mesh_is_named():
     space = space_on("graded", Refinement(4, 0.5, 2, (1.0,) * 3), 2)
     punch = SlidingPunch(space, MovingFrame(2.0, 0.0))
     with pytest.raises(MeshError, match="X/a = 0, Y/a = -1e\\+06 lies outside"):
-        InteriorGradients(
-            space, MovingFrame(2.0, 0.0), punch.fields, np.array([[0.0, -1.0], [0.0, -1e6]])
-        )
+        values_at(punch, np.array([[0.0, -1.0], [0.0, -1e6]]))
     punch.destroy()
 
 
@@ -39,10 +43,9 @@ def test_batches_of_points_give_the_same(punch, states, monkeypatch):
     points = random.uniform([-2.0, -2.0], [2.0, -0.01], (50, 2))
     points = np.concatenate([points, [[0.0, -0.5]]])  # which lies between two cells
     weights = random.standard_normal((states, len(punch.fields)))
-    arguments = punch.space, MovingFrame(2.0, 0.6), punch.fields, points
-    whole = InteriorGradients(*arguments).of(weights)
+    whole = values_at(punch, points).of(weights)
     monkeypatch.setattr(fields, "TOGETHER", 7)
-    gradients = InteriorGradients(*arguments)
+    gradients = values_at(punch, points)
     pieces = [*gradients.by_batches(weights)]
     assert [some.stop - some.start for some, _ in pieces] == [7] * 7 + [2]
     assert whole.shape == (states, 51, 2, 2)
@@ -54,7 +57,7 @@ def test_many_points_are_not_held_for_every_field(punch):
     points = np.random.default_rng(3).uniform([-2.0, -2.0], [2.0, -0.01], (count, 2))
     fields, weights = punch.fields, np.ones((1, len(punch.fields)))
     tracemalloc.start()
-    gradients = InteriorGradients(punch.space, MovingFrame(2.0, 0.6), fields, points)
+    gradients = values_at(punch, points)
     for _ in gradients.by_batches(weights):
         pass
     peak = tracemalloc.get_traced_memory()[1]

@@ -8,7 +8,8 @@ from support import areas, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.fields import InteriorGradients, sample
+from galinx.solvers.fem.export import sample
+from galinx.solvers.fem.fields import InteriorGradients, KeptValues
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -36,7 +37,8 @@ def test_gradients_are_those_at_single_points(solved):
     alone = cKDTree(found.points).query(found.points, k=2)[0][:, 1] > 1e-9
     deep = alone & (found.points[:, 1] <= -0.01) & (np.abs(found.points).max(axis=1) < 0.8 * EXTENT)
     assert deep.sum() > 500
-    inside = InteriorGradients(punch.space, MovingFrame(κ, C), punch.fields, found.points[deep])
+    values = KeptValues(punch.space, MovingFrame(κ, C), punch.fields)
+    inside = InteriorGradients(punch.space, MovingFrame(κ, C), values, found.points[deep])
     expected = inside.of(states.weights)[0]
     error = np.abs(found.gradient[deep] - expected).max()
     assert error <= 1e-9 * np.abs(expected).max()

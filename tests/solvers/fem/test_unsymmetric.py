@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import diags, identity, kron
 
 from galinx.clock import Clock
-from galinx.solvers.fem.linear import UnsymmetricFactor
+from galinx.solvers.fem.linear import ArraySolver
 
 N = 150
 
@@ -23,7 +23,7 @@ def resident():
 
 def test_one_and_many_right_hand_sides():
     A, b = matrix(), np.random.default_rng(0).normal(size=(N * N, 3))
-    factor = UnsymmetricFactor(A, Clock())
+    factor = ArraySolver(A, Clock())
     found = factor.solve(b)
     np.testing.assert_allclose(A @ found, b, atol=1e-10)
     np.testing.assert_allclose(factor.solve(b[:, 1]), found[:, 1], rtol=1e-12, atol=1e-12)
@@ -32,8 +32,8 @@ def test_one_and_many_right_hand_sides():
 
 def test_a_factor_that_is_destroyed_leaves_no_memory():
     def made():
-        factor = UnsymmetricFactor(matrix(), Clock())
-        entries = factor._mumps.getMumpsInfog(29)
+        factor = ArraySolver(matrix(), Clock())
+        entries = factor._solver._mumps.getMumpsInfog(29)
         factor.destroy()
         return 8e-6 * entries  # MB
 

@@ -44,7 +44,7 @@ def test_the_stored_mesh_has_the_same_intensities(c):
 
 def test_what_differs_between_versions_is_in_one_module():
     """No code branches on a version number, which only the cache's key contains."""
-    source, key = (inspect.getsource(part) for part in (versions, versions._key))
+    source, key = (inspect.getsource(part) for part in (versions, versions._place))
     assert "__version__" in key and "__version__" not in source.replace(key, "")
     for path in Path(versions.__file__).parent.glob("*.py"):
         if path.name != "versions.py":

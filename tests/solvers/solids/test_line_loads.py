@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import MovingFrame
 from galinx.solvers.solids.orthotropic import Orthotropic
-from galinx.solvers.solids.potentials import DATUM, line_loads
 
 OBLIQUE = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 40.0)
 RESPONSES = [
@@ -24,7 +24,7 @@ def test_line_loads_balance_and_solve_the_equations(response):
     X, Y = np.array([[2.0, -1.0], [-3.0, -0.5], [0.4, -2.0]]).T
 
     def u(x, y):
-        return line_loads(response, x, y)[0]
+        return response.far(x, y)[0]
 
     def stresses(x, y):
         along = (u(x + h, y) - u(x - h, y)) / (2.0 * h)
@@ -54,8 +54,8 @@ def test_moments_are_those_of_line_loads_side_by_side(response):
     p = response.contraction  # a circle of the plane midway
     Y = 8.0 * np.sin(angle) / p.imag
     X = 8.0 * np.cos(angle) - p.real * Y
-    wanted = sum(np.tensordot(t[:, i], line_loads(response, X - s[i], Y)[0], 1) for i in range(len(s)))
-    found = line_loads(response, X, Y, terms=9)
+    wanted = sum(np.tensordot(t[:, i], response.far(X - s[i], Y)[0], 1) for i in range(len(s)))
+    found = response.far(X, Y, terms=9)
     moments = np.array([[np.sum(one * s**n) for one in t] for n in range(9)])
     left = np.abs(np.einsum("ij,ijkn->kn", moments, found) - wanted).max()
     nearest = 8.0 * np.exp(-response.spread / 2.0)
@@ -65,5 +65,5 @@ def test_moments_are_those_of_line_loads_side_by_side(response):
 @pytest.mark.parametrize("response", RESPONSES)
 def test_the_datum_does_not_move(response):
     """The mean of both sides of the surface there."""
-    there = line_loads(response, np.array([-DATUM, DATUM]), np.zeros(2))[0].mean(axis=-1)
+    there = response.far(np.array([-DATUM, DATUM]), np.zeros(2))[0].mean(axis=-1)
     np.testing.assert_allclose(there, 0.0, atol=1e-13)

@@ -14,7 +14,6 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
-from galinx.solvers.layers.in_cells import LayersInCells
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.line_load import Echoes, UniformLayers
@@ -26,8 +25,8 @@ STACK = Layered((Layer(0.7, COAT), Layer(0.4, SOFT)), ONE)
 DIGITS = [(7.5, 0.3, 1.2), (1.5, 0.1, 0.7), (2.5, 0.25, 1.0)]
 
 
-def sheets(solid, c):
-    return UniformLayers.of(LayersInCells(solid, c, 1.0))
+def sheets(solid):
+    return UniformLayers.of(solid.response(0.0))
 
 
 def random_points(count):
@@ -47,7 +46,7 @@ def test_symbol_of_layers_is_that_of_many_digits():
         V2 = mp.mpmathify(C) ** 2 * STACK.μ / STACK.ρ
         exact = admittance(layers, of[-1], V2, mp.mpf(k)) - admittance([], of[0], V2, mp.mpf(k))
         exact = np.array((exact * STACK.μ).tolist(), dtype=complex)
-        found = sheets(STACK, c).change(np.array([k]), np.array([C]))[0]
+        found = sheets(STACK).change(np.array([k]), np.array([C]))[0]
         np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-13)
 
 
@@ -55,19 +54,19 @@ def test_echoes_are_the_transform_of_their_symbol():
     """By the trapezoidal rule along the whole axis of k."""
     c, s, x = 0.3, 1.5 + 4.0j, np.array([0.05, 0.4, 1.7])
     κ = np.linspace(-80.0, 80.0, 16000)  # an even number: none at 0, where a formula divides
-    found = Echoes(sheets(STACK, c), c)(x, s)
+    found = Echoes(sheets(STACK), c)(x, s)
     left, of = κ < 0.0, np.empty((len(κ), 2, 2), dtype=complex)
-    of[left] = sheets(STACK, c).change(κ[left], c + 1j * s / κ[left])
+    of[left] = sheets(STACK).change(κ[left], c + 1j * s / κ[left])
     # Fields of k > 0 are the conjugates of those of -k and the conjugate of s.
     other = -κ[~left]
-    of[~left] = np.conj(sheets(STACK, c).change(other, c + 1j * np.conj(s) / other))
+    of[~left] = np.conj(sheets(STACK).change(other, c + 1j * np.conj(s) / other))
     values = of[:, ::-1, ::-1].reshape(-1, 4).T / (1j * κ)
     expected = values @ np.exp(1j * np.outer(κ, x)) * (κ[1] - κ[0]) / (2.0 * np.pi)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * np.abs(expected).max())
 
 
 def started(solid, c, end=4.0, steps=8, g=-0.4, terms=8):
-    response = LayersInCells(solid, c, 1.0) if isinstance(solid, Layered) else solid.response(c)
+    response = solid.response(c)
     return StartingPunch(response, solid.limit(), end, steps, terms).course(g, lambda t: smooth(t, 3.0))
 
 
@@ -88,8 +87,8 @@ def test_a_layer_is_all_there_is_until_its_echo_comes_back():
 
 def test_finite_elements_agree_over_layers():
     c, g, end, steps, degree = 0.3, -0.4, 3.0, 18, 6
-    response = LayersInCells(STACK, c, 1.0)
-    fast = sheets(STACK, c).fastest
+    response = STACK.response(c)
+    fast = sheets(STACK).fastest
     mesh = Reached(1.0 + fast * end / 2.0, fast * end / 2.0, 1.0, 0.15, 1e-4, depths=(0.7, 1.1)).drawn()
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, STACK.form)
     motion = Motion(space, response)
@@ -115,7 +114,7 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
     runs = []
     for solid, response in (
         (ONE, ONE.response(c)),
-        (stack := Layered((Layer(0.5, ONE), Layer(0.7, ONE)), ONE), LayersInCells(stack, c, 1.0)),
+        (stack := Layered((Layer(0.5, ONE), Layer(0.7, ONE)), ONE), stack.response(c)),
     ):
         space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
         solver = SlidingInTime(Motion(space, response))
@@ -129,4 +128,4 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
 def test_a_graded_layer_is_refused():
     graded = Layered((Layer(1.0, ONE, bottom=COAT),), COAT)
     with pytest.raises(ValueError, match="graded"):
-        UniformLayers.of(LayersInCells(graded, 0.3, 1.0))
+        UniformLayers.of(graded.response(0.3))

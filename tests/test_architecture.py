@@ -51,8 +51,8 @@ PURE = {
 #: pressure has that.
 TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
 SOLUTIONS = (
-    FORMULA, "solvers.contact.exact", "solvers.contact.layered", "solvers.contact.collocation",
-    "solvers.contact.equation", "solvers.contact.free_contact", "solvers.contact.free_on_layers",
+    FORMULA, "solvers.contact.exact", "solvers.contact.layered", "solvers.contact.pressure",
+    "solvers.contact.equation", "solvers.contact.uniform", "solvers.contact.free_on_layers",
     "solvers.contact.panels", "solvers.friction",
 )  # fmt: skip
 #: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics, and

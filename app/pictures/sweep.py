@@ -30,9 +30,9 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.postprocess.tables import as_archived
 from galinx.solvers.contact import layered as on_layers
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.solution import Body, Places, Task
 from galinx.solvers.contact.stresses import NEAR
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 
 from ..errors import BadInput
@@ -479,6 +479,6 @@ def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:
     response = body.response(c)
     task = Task(0, body, response, places, (), ())
     stack = response.stack(body.half_width)  # type: ignore[attr-defined]
-    punch = on_layers.sharp_at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
+    punch = on_layers.at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
     σ_YY, σ_XY, above, below = punch.interfaces[:, 0, 0]
     return np.array([*punch.K_I[0], -σ_YY.min(), np.abs(σ_XY).max(), above.max(), below.max()])

@@ -31,9 +31,9 @@ from galinx.solvers.contact.fem_plan import (
     swept,
     unknowns,
 )
-from galinx.solvers.contact.free_contact import contacts
 from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.solution import Places
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent, smooth
 from galinx.solvers.rays import NEAR

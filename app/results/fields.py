@@ -23,7 +23,7 @@ from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
-from galinx.solvers.contact.prescribed_pressure import PrescribedPressureSolution
+from galinx.solvers.contact.pressure import Loaded, LoadedHalfPlane
 from galinx.solvers.contact.solution import Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 
@@ -429,9 +429,9 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "contact_pressure": body.stress * _pressure(solution, sampled.points),
     }
     if state.exact:
-        exact: FlatPunch | PrescribedPressureSolution = FlatPunch(task.response, state.g)
+        exact: Loaded = FlatPunch(task.response, state.g)
         if body.pressure:
-            exact = PrescribedPressureSolution(task.response, state.g, body.pressure)
+            exact = LoadedHalfPlane(task.response, state.g, body.pressure)
         data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
     return StateField(body.half_width * sampled.points, sampled.quads, data)
 
@@ -453,7 +453,7 @@ def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
 
 
 def _error(
-    exact: FlatPunch | PrescribedPressureSolution, points: NDArray, stresses: NDArray
+    exact: Loaded, points: NDArray, stresses: NDArray
 ) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)

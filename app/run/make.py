@@ -26,13 +26,9 @@ def make(name: str, plan: Plan, progress: Progress, clock: Clock) -> Method:
 
 
 def _closed_form(plan: Plan, progress: Progress, clock: Clock) -> Method:
-    from galinx.solvers.contact.exact import ClosedForm, with_fixed_ends
+    from galinx.solvers.contact.exact import ClosedForm, ExactSolution
 
-    if plan.body.found:
-        from galinx.solvers.contact.exact import FreePunches
-
-        return ClosedForm(FreePunches)
-    return ClosedForm(with_fixed_ends)
+    return ClosedForm(ExactSolution)
 
 
 def _layers(plan: Plan, progress: Progress, clock: Clock) -> Method:

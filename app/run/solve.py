@@ -21,9 +21,9 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.edges import Exponents
-from galinx.solvers.contact.free_contact import local_exponents
 from galinx.solvers.contact.method import Method, Solver
 from galinx.solvers.contact.solution import Body, Surface, Task
+from galinx.solvers.contact.uniform import local_exponents
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS

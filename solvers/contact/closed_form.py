@@ -21,24 +21,26 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p
 
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
+from .pressure import Loaded, Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
 _STEPS = 80
 
 
 @dataclass(frozen=True)
-class FlatPunch(EdgeExponents):
-    """The exact solution at one speed and friction, or at several frictions."""
+class FlatPunch(EdgeExponents, Pressure, Loaded):
+    """Pressure of a flat punch at one speed and friction, or at several frictions, and its stresses."""
 
-    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r = X/a; 0 outside the contact, NaN at |r| = 1 (Eq 55).
+    @property
+    def pressure(self) -> "FlatPunch":
+        return self
+
+    def series(self, r: NDArray) -> Any:
+        """Amplitude of the contact stress over N/(2a) (Eq 55).
 
         The study's Eq 55 has lost the sign of its Eq 37; the stress is compressive.
         """
-        r = np.asarray(r, dtype=float)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            inside = 2.0 * self._sin / np.pi * self._weight(r)
-        return np.where(under_punch(r), inside, np.where(from_edge(r) > 0.0, 0.0, np.nan))
+        return 2.0 * self._sin / np.pi
 
     def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
@@ -53,15 +55,17 @@ class FlatPunch(EdgeExponents):
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface over N/(2a); NaN at |r| = 1."""
         r = np.asarray(r, dtype=float)
         with np.errstate(invalid="ignore", divide="ignore"):
-            outside = np.abs(r - 1.0) ** self.α * np.abs(r + 1.0) ** self.β / self._sin
-            F = np.where(under_punch(r), self._cot * self._weight(r), np.sign(r) * outside)
+            size = np.abs(1.0 - r) ** self.α * np.abs(1.0 + r) ** self.β
+        F = size * np.where(under_punch(r), self._cot, np.sign(r) / self._sin)
         return np.where(from_edge(r) == 0.0, np.nan, 2.0 * self._sin / np.pi * F)
 
-    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
-        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN at |r| = 1 (Eq 32)."""
-        answer, σ_YY = self.response, self.σ_YY(r)
-        u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.hilbert(r)
-        return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+
+    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+        """Change of Φ, see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        return self.at(z) * _growth(self.α, self.β, z, step, share)
 
     def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
@@ -99,39 +103,13 @@ class FlatPunch(EdgeExponents):
             t = moved
         return np.exp(t)
 
-    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
-        return self.response.inside(EdgePotential(self.α, self.β), self.g, np.asarray(X), np.asarray(Y))
 
-    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
-        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
-        on, σ_YY = Y == 0.0, self.σ_YY(X)
-        return np.where(
-            on, [self.σ_XX(X), σ_YY, self.g * σ_YY], self.inside(X, np.where(on, -1.0, Y))
-        )  # fmt: skip
-
-    def _weight(self, r: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(1 - r)^α (1 + r)^β, NaN outside (-1, 1)."""
-        return (1.0 - r) ** self.α * (1.0 + r) ** self.β
-
-
-@dataclass(frozen=True)
-class EdgePotential:
-    """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, the flat punch's; α and β broadcast against z."""
-
-    α: Any
-    β: Any
-
-    def at(self, z: NDArray) -> NDArray[np.complex128]:
-        return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        by_right, by_left = step / (z - 1.0), step / (z + 1.0)
-        if share == 0.0:
-            return self.at(z) * (self.α * by_right + self.β * by_left)
-        growth = self.α * log1p(share * by_right) + self.β * log1p(share * by_left)
-        return self.at(z) * np.expm1(growth) / share
+def _growth(α: Any, β: Any, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
+    """Relative change of (z - 1)^α (z + 1)^β for a step share·step, over share."""
+    by_right, by_left = step / (z - 1.0), step / (z + 1.0)
+    if share == 0.0:
+        return α * by_right + β * by_left
+    return np.expm1(α * log1p(share * by_right) + β * log1p(share * by_left)) / share
 
 
 #: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
@@ -139,7 +117,7 @@ _FAR, _POWERS = 3.0, 36
 
 
 @dataclass(frozen=True)
-class Weighted:
+class Weighted(Pressure):
     """σ_YY = (1 - s)^α (1 + s)^β (A + B s) over N/(2a); all broadcast against positions.
 
     Attributes:
@@ -154,13 +132,8 @@ class Weighted:
     B: Any
     order: int
 
-    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress at r; 0 beside the contact, and NaN at an end where it is infinite."""
-        r = np.asarray(r, dtype=float)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            inside = (1.0 - r) ** self.α * (1.0 + r) ** self.β * (self.A + self.B * r)
-        beside = np.where(from_edge(r) > 0.0, 0.0, np.nan)
-        return np.where(under_punch(r), inside, beside)
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.A + self.B * r
 
     def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface off the ends."""
@@ -173,6 +146,10 @@ class Weighted:
             near = (sign * size - self._polynomial(r)) / self._sin
         return np.where(np.abs(r) > _FAR, self._far(np.where(np.abs(r) > _FAR, r, np.inf)), near)
 
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        place = np.ravel((self.β - self.α) / (self.β + self.α))  # of a parabola: B vanishes
+        return -self.σ_YY(place[:, None])[:, 0], place
+
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         far = np.abs(z) > _FAR
@@ -180,12 +157,7 @@ class Weighted:
         return np.where(far, self._far(np.where(far, z, np.inf)), near)
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        by_right, by_left = step / (z - 1.0), step / (z + 1.0)
-        if share == 0.0:
-            growth = self.α * by_right + self.β * by_left
-        else:
-            exponent = self.α * log1p(share * by_right) + self.β * log1p(share * by_left)
-            growth = np.expm1(exponent) / share
+        growth = _growth(self.α, self.β, z, step, share)
         moved = z + share * step
         near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
         near = (near - self._leading * step) / self._sin

@@ -19,6 +19,13 @@ def from_edge(X: ArrayLike) -> NDArray[np.float64]:
     return np.abs(1.0 - np.abs(np.asarray(X, dtype=float)))
 
 
+def weights_hilbert(α: Any, β: Any, r: NDArray) -> NDArray[np.float64]:
+    """(1/π) ⨍ (1 - t)^α (1 + t)^β/(t - r) dt, α + β = -1."""
+    size = np.abs(1.0 - r) ** α * np.abs(1.0 + r) ** β
+    under = under_punch(r)
+    return np.where(under, size / np.tan(np.pi * α), np.sign(r) * size / np.sin(np.pi * α))
+
+
 @dataclass(frozen=True)
 class EdgeTraction:
     """Stress on the contact of a flat punch over N/(2a) (Eq 55); numbers, arrays, or symbols of a form.

@@ -30,7 +30,7 @@ _LEAN, _NEXT = 1.0, 1e-3
 #: where the former is infinite; how much farther than to the expected root it goes.
 _GROWTH, _STEP, _BEYOND = 2.0, 1.0, 1.1
 #: Farthest middle over the half-width, and change of the half-width's logarithm.
-_FARTHEST, _WIDEST = 1e4, 100.0
+_FARTHEST, _WIDEST = 1e12, 100.0
 #: Largest size of a function that is infinite; rounding of a root, and of a sum over its terms' sizes.
 _SIZE, _ROUNDING, _OF_SUMS = 200.0, 1e-16, 4e-16
 
@@ -121,13 +121,16 @@ def logarithm_of_load(carried: float) -> float:
     return float(np.log(carried)) if abs(carried - 1.0) > _OF_SUMS else 0.0
 
 
-def half_width_of_load(load: Callable[[float], float], h: float, punch: Punch) -> float:
+def half_width_of_load(
+    load: Callable[[float], float], h: float, punch: Punch, rounding: float = _ROUNDING
+) -> float:
     """Half-width at which a contact carries the load of its punch, one at which ``load`` was called.
 
     Args:
         load: logarithm of the load that is carried over the punch's load, by the half-width.
         h: half-width to begin with.
         punch: the punch.
+        rounding: relative error of the half-width, which ends the search where each call is expensive.
 
     Raises:
         SolveError: no half-width carries the load.
@@ -140,7 +143,7 @@ def half_width_of_load(load: Callable[[float], float], h: float, punch: Punch) -
     try:
         expected = abs(of_logarithm(0.0)) / _GROWTH
         step = _BEYOND * expected if 0.0 < expected < np.inf else _STEP
-        return h * float(np.exp(root(of_logarithm, 0.0, step, _WIDEST)))
+        return h * float(np.exp(root(of_logarithm, 0.0, step, _WIDEST, rounding)))
     except NoRoot:
         raise SolveError(
             f"no contact of a {punch.profile.words()} carries the load: half-widths from "
@@ -149,7 +152,13 @@ def half_width_of_load(load: Callable[[float], float], h: float, punch: Punch) -
         ) from None
 
 
-def root(function: Callable[[float], float], x: float, step: float, farthest: float) -> float:
+def root(
+    function: Callable[[float], float],
+    x: float,
+    step: float,
+    farthest: float,
+    rounding: float = _ROUNDING,
+) -> float:
     """Root of a growing function, which may be infinite away from it, at a place where it was called.
 
     Steps that double lead from the first place to beyond the root, and Brent's method from there to it.
@@ -159,6 +168,7 @@ def root(function: Callable[[float], float], x: float, step: float, farthest: fl
         x: first place.
         step: length of the first step.
         farthest: longest step.
+        rounding: error of the root; that of floating-point numbers is added.
 
     Raises:
         NoRoot: the function does not change its sign as far as the steps go.
@@ -173,6 +183,6 @@ def root(function: Callable[[float], float], x: float, step: float, farthest: fl
     while step <= farthest:
         other = x + direction * step
         if finite(other) * direction >= 0.0:
-            return float(brentq(finite, x, other, xtol=_ROUNDING, rtol=4.0 * np.finfo(float).eps))
+            return float(brentq(finite, x, other, xtol=rounding, rtol=4.0 * np.finfo(float).eps))
         x, step = other, 2.0 * step
     raise NoRoot

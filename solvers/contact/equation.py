@@ -6,20 +6,19 @@
 part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
 their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels replace them.
 
-:class:`Pressure` is the interface of contact pressures, solved for or prescribed: values, transforms,
-integrals. A prescribed pressure is linear between knots (:class:`Given`). It is integrated by Gauss's
+A prescribed pressure is linear between knots (:class:`PrescribedPressure`). It is integrated by Gauss's
 rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
 towards it. The part of the half-plane of the surface's solid is known exactly.
 
 Any number of frictions at one speed share the kernels, which do not depend on friction
-(:class:`Speed`). A pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond a few
-frictions the equation is solved at Chebyshev's points in g, and interpolated between them.
+(:class:`ContactsAtSpeed`). A pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond
+a few frictions the equation is solved at Chebyshev's points in g, and interpolated between them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,44 +27,28 @@ from scipy.special import roots_jacobi
 from ..errors import SolveError
 from ..layers.kernel import Kernel, Scaled
 from ..layers.layered import LayersAtSpeed
-from .collocation import Expansion, jacobi
 from .panelled import PanelledPressure, Panels
 from .panelled import parts as panelled
 from .prescribed_pressure import LinearPressure
+from .pressure import ENDS, SolvedPressure
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
 
 
-class Pressure(Protocol):
-    """Contact pressure σ_YY over N/(2a) = (1 - r)^α (1 + r)^β p(r), |r| < 1.
-
-    Attributes:
-        α, β: exponents.
-        near: |r| up to which p can be evaluated.
-        tips: places under the punch at which the pressure is infinite.
-    """
-
-    @property
-    def α(self) -> float: ...
-    @property
-    def β(self) -> float: ...
-    @property
-    def near(self) -> float: ...
-    @property
-    def tips(self) -> tuple[float, ...]: ...
-
-    def series(self, r: NDArray) -> NDArray[np.float64]:
-        """p at |r| <= near, (len(r),)."""
-
-    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
-
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
-
-    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
+def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
+    """Jacobi polynomials P_0^(α,β), P_1^(α,β), … at r by the recurrence, (*r.shape, count)."""
+    r, s = np.asarray(r, dtype=float), α + β
+    P = np.empty((count, *r.shape))
+    P[0] = 1.0
+    if count > 1:
+        P[1] = α + 1.0 + (s + 2.0) * (r - 1.0) / 2.0
+    for n in range(1, count - 1):
+        m = 2.0 * n + s
+        now = (m + 1.0) * ((m + 2.0) * m * r + (α - β) * s) * P[n]
+        before = 2.0 * (n + α) * (n + β) * (m + 2.0) * P[n - 1]
+        P[n + 1] = (now - before) / (2.0 * (n + 1.0) * (n + s + 1.0) * m)
+    return np.moveaxis(P, 0, -1)
 
 
 def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -76,32 +59,30 @@ def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
 
 
 @dataclass(frozen=True)
-class Polynomial:
-    """Pressure as a sum of Jacobi polynomials under their weight, see :class:`Pressure`."""
+class Polynomial(SolvedPressure):
+    """SolvedPressure as a sum of Jacobi polynomials under their weight.
 
-    expansion: Expansion
+    Attributes:
+        α, β: exponents at the right and the left end.
+        c: coefficients Σ c_j P_j^(α,β)(r), dimensionless, (terms,).
+    """
 
-    tips: ClassVar[tuple[float, ...]] = ()
-
-    @property
-    def near(self) -> float:
-        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.expansion.c))))
-
-    @property
-    def α(self) -> float:
-        return self.expansion.α
+    α: float
+    β: float
+    c: NDArray[np.float64]
 
     @property
-    def β(self) -> float:
-        return self.expansion.β
+    def near(self) -> float:  # type: ignore[override]
+        """|r| up to which polynomials, so many, have not grown."""
+        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.c))))
 
     @cached_property
     def _rule(self) -> tuple[NDArray, NDArray, NDArray]:
-        t, w = gauss(max(_FINE, 2 * len(self.expansion.c)), self.α, self.β)
+        t, w = gauss(max(_FINE, 2 * len(self.c)), self.α, self.β)
         return t, w, self.series(t)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.expansion.series(r)
+        return np.asarray(jacobi(len(self.c), self.α, self.β, r) @ self.c)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         t, w, p = self._rule
@@ -131,27 +112,46 @@ _MOST = 200_000
 
 
 @dataclass(frozen=True)
-class PrescribedPressure:
-    """Prescribed pressure with the integrals of :class:`Pressure`.
+class PrescribedPressure(SolvedPressure):
+    """Prescribed pressure with its integrals.
 
     Attributes:
-        pressure: σ_YY over N/(2a).
+        prescribed: σ_YY over N/(2a).
         nodes: number of points of a panel.
         length: length over a over which the kernel on the surface varies.
         rough: True where the kernel has a logarithm at 0.
     """
 
-    pressure: LinearPressure
+    α, β, near = 0.0, 0.0, -1.0  # its Hilbert transform is exact everywhere
+
+    prescribed: LinearPressure
     nodes: int
     length: float
     rough: bool
 
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.prescribed.series(r)
+
+    @property
+    def resultant(self) -> float:  # type: ignore[override]
+        """∫ σ_YY d(X/a) over N/(2a)."""
+        return self.prescribed.resultant
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Knots of the pressure, both ends among them."""
+        return self.prescribed.knots
+
+    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return np.zeros_like(edges.α), np.zeros_like(edges.β)
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        return self.prescribed.hilbert(r)
+
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
-        return self._weighted(self._cut(self.pressure.knots, finest))
+        return self._weighted(self._cut(self.prescribed.knots, finest))
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
         whole = self.points(self.length)
         integrals = []
         for place in r.tolist():
@@ -171,7 +171,7 @@ class PrescribedPressure:
     def _towards(self, place: float) -> NDArray[np.float64]:
         """Ends of panels that get shorter towards a place."""
         near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
-        knots = self.pressure.knots
+        knots = self.prescribed.knots
         more = np.concatenate([place - near, place + near])
         inside = more[(more > knots[0]) & (more < knots[-1])]
         return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
@@ -180,13 +180,12 @@ class PrescribedPressure:
         x, w = np.polynomial.legendre.leggauss(self.nodes)
         half = np.diff(ends) / 2.0
         t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
-        return t, (half[:, None] * w).ravel() * self.pressure(t)
+        return t, (half[:, None] * w).ravel() * self.prescribed(t)
 
 
 #: Number of polynomials at first, its growth from step to step, and its maximum.
 FIRST, _MORE, MOST = 24, 1.5, 1400
-#: Where pressures of two numbers of polynomials are compared.
-_ENDS = np.array([-1.0, 1.0])
+#: Places at which pressures of two numbers of polynomials are compared, with both ends.
 _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
 #: Distance from a tip of the punch within which pressures are not compared.
 NEAR_TIP = 0.02
@@ -215,16 +214,29 @@ class Parts:
     """
 
     coefficients: NDArray[np.float64]
-    made: Callable[[NDArray], Pressure]
+    made: Callable[[NDArray], SolvedPressure]
 
-    def pressure(self, amplitudes: NDArray) -> Pressure:
+    def pressure(self, amplitudes: NDArray) -> SolvedPressure:
         """Sum of the parts with amplitudes, (parts,)."""
         return self.made(self.coefficients @ amplitudes)
 
     @property
     def ends(self) -> NDArray[np.float64]:
         """Values of p at the left and the right end, (2, parts)."""
-        return np.stack([self.made(c).series(_ENDS) for c in self.coefficients.T], axis=-1)
+        return np.stack([self.made(c).series(ENDS) for c in self.coefficients.T], axis=-1)
+
+
+class _NoLayers:
+    """Kernel of a uniform half-plane, whose equation has none."""
+
+    rough = False
+
+    def __call__(self, x: NDArray) -> NDArray[np.float64]:
+        return np.zeros((*np.shape(x), 4))
+
+
+#: Kernel of the equation of a uniform half-plane.
+UNIFORM = _NoLayers()
 
 
 @dataclass(frozen=True)
@@ -233,14 +245,14 @@ class Equation:
 
     Attributes:
         response: of the surface's solid.
-        kernel: of the layers.
+        kernel: of the layers; ``UNIFORM`` without any.
         g: σ_XY/σ_YY under the punch.
         slope: μ v,X under the punch over N/(2a) at given r.
         kinks: places r next to which the slope is not smooth.
     """
 
     response: Any
-    kernel: Kernel | Scaled
+    kernel: Any
     g: float
     slope: Slope
     kinks: tuple[float, ...] = ()
@@ -260,13 +272,8 @@ class Equation:
         """Exponent at X = -a, dimensionless."""
         return -1.0 - self.α
 
-    def solved(self, terms: int) -> Expansion:
-        """Pressure as a sum of ``terms`` polynomials, with resultant -2."""
-        (c,) = self._coefficients(terms, [self.slope], [-2.0]).T
-        return Expansion(self.α, self.β, c)
-
-    def pressure(self, resolution: Resolution) -> Pressure:
-        """Pressure with resultant -2 at a resolution."""
+    def pressure(self, resolution: Resolution) -> SolvedPressure:
+        """SolvedPressure with resultant -2 at a resolution."""
         return self.parts(resolution, [self.slope], [-2.0]).pressure(np.ones(1))
 
     def parts(self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]) -> Parts:
@@ -275,7 +282,7 @@ class Equation:
             panels, values = panelled(self, resolution, slopes, loads)
             return Parts(values, lambda p: PanelledPressure(panels, p))
         c = self._coefficients(resolution, slopes, loads)
-        return Parts(c, lambda c: Polynomial(Expansion(self.α, self.β, c)))
+        return Parts(c, lambda c: Polynomial(self.α, self.β, c))
 
     def _coefficients(
         self, terms: int, slopes: Sequence[Slope], loads: Sequence[float]
@@ -294,35 +301,41 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class ConvergedPressure:
-    """A pressure and its change with the number of unknowns.
+class Contact:
+    """A contact with its pressure; lengths are over a unit that all states share.
 
     Attributes:
         pressure: the pressure.
         before: the pressure with fewer unknowns.
-        change: relative change of the pressure and its intensities.
+        change: relative change of the pressure and its intensities with the number of unknowns.
+        half_width: of the contact.
+        centre: its middle, from the punch's axis.
+        free: True where the left and the right end are free, and were solved for.
     """
 
-    pressure: Pressure
-    before: Pressure
+    pressure: SolvedPressure
+    before: SolvedPressure
     change: float
+    half_width: float = 1.0
+    centre: float = 0.0
+    free: tuple[bool, bool] = (False, False)
 
 
-def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> ConvergedPressure:
-    """Pressure of an equation to a relative tolerance, with ``first`` polynomials at first.
+def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> Contact:
+    """SolvedPressure of an equation to a relative tolerance, with ``first`` polynomials at first.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much.
     """
     check_exponents(equation)
-    before: Pressure | None = None
+    before: SolvedPressure | None = None
     moved = np.inf
     for resolution in resolutions(equation.kernel.rough, first):
         now = equation.pressure(resolution)
         if before is not None:
             moved = change(before, now)
             if is_converged(moved, tolerance):
-                return ConvergedPressure(now, before, moved)
+                return Contact(now, before, moved)
         before = now
     raise not_converged(moved, tolerance)
 
@@ -367,9 +380,9 @@ def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
     yield MOST
 
 
-def change(before: Pressure, now: Pressure) -> float:
+def change(before: SolvedPressure, now: SolvedPressure) -> float:
     """Largest change of intensities and p, relative to the largest |p|; not next to tips."""
-    at = np.concatenate([_ENDS, _LOOKED_AT])
+    at = np.concatenate([ENDS, _LOOKED_AT])
     for tip in now.tips:
         at = at[np.abs(at - tip) > NEAR_TIP]
     earlier, later = before.series(at), now.series(at)
@@ -400,34 +413,35 @@ class ContactsAtSpeed:
     def kernel(self) -> Kernel:
         return Kernel(self.stack, self.tolerance / 1e3)
 
-    def solved(self, g: NDArray) -> tuple["PressuresByFriction", NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple["Contacts", NDArray[np.float64]]:
         """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
 
         Args:
             g: σ_XY/σ_YY, sorted, (states,).
         """
         if len(g) <= _FEW:
-            return self._together(g, self._each(g)), np.zeros(1)
+            return Contacts(g, self._each(g)), np.zeros(1)
         count = _FEW
         middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
         while True:
             nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
-            frictions = self._together(nodes, self._each(nodes))
+            frictions = Contacts(nodes, self._each(nodes))
             error = frictions.unresolved
             if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
                 return frictions, np.array([error])
             count = 2 * count - 1
 
-    def _together(self, g: NDArray, each: list[Any]) -> "PressuresByFriction":
-        return PressuresByFriction(g, each)
-
-    def _each(self, g: NDArray) -> list[ConvergedPressure]:
-        answers: list[ConvergedPressure] = []
+    def _each(self, g: NDArray) -> list[Contact]:
+        answers: list[Contact] = []
         first = FIRST
         for value in g.tolist():
             equation = Equation(self.response, self.kernel, value, self.slope)
             answers.append(converged_pressure(equation, self.tolerance, first))
         return answers
+
+    def scaled(self, h: float) -> Scaled:
+        """The kernel of a contact of the half-width h."""
+        return Scaled(self.kernel, h)
 
     @property
     def rounding(self) -> float:
@@ -436,29 +450,66 @@ class ContactsAtSpeed:
 
 
 @dataclass(frozen=True)
-class PressuresByFriction:
-    """Pressures at several frictions, from which those at others are interpolated.
+class Contacts:
+    """Contacts with several frictions, from which those with others are interpolated.
 
     Attributes:
         g: σ_XY/σ_YY, (nodes,).
-        each: pressures with their changes, one for each g.
+        each: contacts, one for each g.
     """
 
     g: NDArray[np.float64]
-    each: list[ConvergedPressure]
+    each: list[Contact]
 
     @property
     def near(self) -> float:
         """|r| up to which p of all pressures can be evaluated."""
-        return min(p.near for solution in self.each for p in (solution.pressure, solution.before))
+        return min(p.near for contact in self.each for p in (contact.pressure, contact.before))
+
+    @cached_property
+    def half_width(self) -> NDArray[np.float64]:
+        """Half-width of every contact, (nodes,)."""
+        return np.array([contact.half_width for contact in self.each])
+
+    @cached_property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of every contact, (nodes,)."""
+        return np.array([contact.centre for contact in self.each])
+
+    @cached_property
+    def free(self) -> NDArray[np.float64]:
+        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
+        return np.array([contact.free for contact in self.each], dtype=float)
+
+    @cached_property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
+        each = [contact.pressure.tips for contact in self.each]
+        places = np.full((len(each), max(map(len, each))), np.inf)
+        for row, tips in zip(places, each):
+            row[: len(tips)] = tips
+        return places
 
     def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
         """Values of a function of every pressure, (nodes, ...)."""
-        return np.array([what(solution.pressure) for solution in self.each])
+        return np.array([what(contact.pressure) for contact in self.each])
 
     def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
         """Values of a function of every pressure, and of that with fewer unknowns, (2, nodes, ...)."""
-        return np.array([self.read(what), [what(solution.before) for solution in self.each]])
+        return self.of_each(lambda pressure, g, h: what(pressure))
+
+    def of_each(self, what: Callable[[Any, float, float], NDArray]) -> NDArray[np.float64]:
+        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
+
+        Those of every contact come first, then those of the pressures with fewer unknowns.
+        """
+        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
+        return np.array(
+            [
+                [what(contact.pressure, g, h) for contact, g, h in nodes],
+                [what(contact.before, g, h) for contact, g, h in nodes],
+            ]
+        )
 
     @cached_property
     def unresolved(self) -> float:
@@ -470,9 +521,11 @@ class PressuresByFriction:
 
     @property
     def smooth(self) -> NDArray[np.float64]:
-        """Samples of every pressure that are smooth in g, (nodes, n)."""
+        """Samples of every contact that are smooth in g, (nodes, n)."""
         r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
-        return self.read(lambda pressure: pressure.series(r))
+        pressures = self.read(lambda pressure: pressure.series(r))
+        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
+        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
     def at(self, g: NDArray) -> NDArray[np.float64]:
         """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
@@ -489,4 +542,4 @@ class PressuresByFriction:
     @property
     def change(self) -> float:
         """Largest relative change of a pressure with the number of unknowns."""
-        return max(solution.change for solution in self.each)
+        return max(contact.change for contact in self.each)

@@ -8,11 +8,9 @@ that under the slope 1 without a resultant. A pressure σ that vanishes at both 
 
     ∫ ρ₁ P'(m + h s) ds = 0,        N/μ = h ∫ ρ₂ P'(m + h s) ds.
 
-These two conditions on the slope alone give the middle m, and the load that makes a contact of the
-half-width h (:class:`Conditions`). Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
-profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors, and these are the conditions of
-:mod:`galinx.solvers.contact.free_contact`. The load grows with h, which is iterated until the contact
-carries the load of the punch.
+These conditions on the slope alone (:func:`rule_of_ends`) give both ends, by
+:mod:`galinx.solvers.contact.ends`. Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
+profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors.
 
 **A tilted punch one edge of which lifts off.** The contact starts at the other edge, and the intensity at
 its free end vanishes for one sum of two pressures, that of a flat punch and that under the slope 1.
@@ -30,7 +28,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..errors import SolveError
 from ..layers.kernel import REACH, Kernel, Scaled
@@ -39,13 +36,14 @@ from ..profiles import check_reach, cusp, jumps, kinks
 from ..profiles.flat import Flat
 from .closed_form import FlatPunch
 from .edges import Exponents
+from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
     FIRST,
+    Contact,
+    Contacts,
     ContactsAtSpeed,
-    ConvergedPressure,
     Equation,
-    Pressure,
-    PressuresByFriction,
+    Parts,
     Resolution,
     change,
     check_exponents,
@@ -53,48 +51,14 @@ from .equation import (
     not_converged,
     resolutions,
 )
-from .free_contact import NEXT_TO_TIP, Balance, contacts
-from .free_contact import local_exponents as of_the_surface
 from .panelled import PanelledPressure, Panels
 from .panels import FreeEnds
+from .pressure import SolvedPressure
+from .uniform import contacts, off_tips, panels_of
+from .uniform import local_exponents as of_the_surface
 
-#: Most steps to a half-width, the largest step of its logarithm, and rounding of that.
-_STEPS, _LARGEST, _ROUNDING = 80, 1.5, 1e-13
-#: Growth of the load's logarithm with that of the half-width: at first, and its bounds in a secant.
-_GROWTH, _GROWTHS = 2.0, (0.3, 40.0)
-#: Doublings of the middle over the half-width within which it is sought, and its rounding.
-_FARTHER, _OF_MIDDLE = 12, 1e-15
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
-
-
-@dataclass(frozen=True)
-class Punch:
-    """A punch with both ends of its contact free, and its load; lengths over a unit shared by states.
-
-    Attributes:
-        profile: of the punch, in m.
-        unit: the unit of length [m].
-        compression: N/μ [m].
-    """
-
-    profile: Any
-    unit: float
-    compression: float
-
-    def slope(self, m: float, h: float) -> Callable[[NDArray], NDArray]:
-        """μ v,X over N/(2h) at places over the half-width h from the middle m."""
-
-        def slope(r: NDArray) -> NDArray[np.float64]:
-            slopes = np.asarray(self.profile.slope(self.unit * (m + h * r)), dtype=float)
-            return 2.0 * h * self.unit / self.compression * slopes
-
-        return slope
-
-    def kinks(self, m: float, h: float) -> tuple[float, ...]:
-        """Places inside the contact at which the slope or its derivative jumps."""
-        at = (np.array(kinks(self.profile), dtype=float) / self.unit - m) / h
-        return tuple(at[np.abs(at) < 1.0].tolist())
 
 
 @dataclass(frozen=True)
@@ -123,79 +87,29 @@ class _Adjoint:
         return -np.asarray(self.of(-np.asarray(x, dtype=float)))
 
 
-@dataclass(frozen=True)
-class Conditions:
-    """Both conditions on contacts with free ends and one half-width.
-
-    Attributes:
-        punch: the punch.
-        h: half-width.
-        lifting, carrying: ρ₁ and ρ₂.
-        finest: longest panel that resolves these.
-    """
-
-    punch: Punch
-    h: float
-    lifting: Pressure
-    carrying: Pressure
-    finest: float
-
-    def _over(self, ρ: Pressure, m: float) -> float:
-        """∫ ρ f ds with f the slope over N/(2h), dimensionless."""
-        panels = Panels(ρ.α, ρ.β, self.finest, self.punch.kinks(m, self.h))
-        f = self.punch.slope(m, self.h)(panels.t)
-        return float(panels.weights @ (ρ.series(panels.t) * f))
-
-    def middle(self) -> float:
-        """Middle m of the contact for which the pressure vanishes at both ends.
-
-        Raises:
-            SolveError: there is no such middle.
-        """
-
-        def pulled(lean: float) -> float:
-            return -self._over(self.lifting, lean * self.h)
-
-        far = 1.0
-        for _ in range(_FARTHER):
-            if pulled(-far) <= 0.0 <= pulled(far):
-                return self.h * float(brentq(pulled, -far, far, xtol=_OF_MIDDLE, rtol=1e-15))
-            far *= 2.0
-        raise SolveError(
-            f"no middle of a contact of the half-width {self.h * self.punch.unit:g} m of a "
-            f"{self.punch.profile.words()} was found over the layers; take a speed farther from the limit"
-        )
-
-    def off(self, m: float) -> float:
-        """Logarithm of the load that a contact of this half-width carries, over the punch's load.
-
-        Minus infinity where a flat part carries none, infinity where it would carry tension.
-        """
-        share = self._over(self.carrying, m) / 2.0
-        if share == 0.0:
-            return -np.inf
-        return float(np.log(share)) if share > 0.0 else np.inf
-
-
-def conditions(equation: Equation, resolution: Resolution, punch: Punch, h: float) -> Conditions:
-    """Conditions on contacts of the half-width h.
+def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
+    """Quadrature of the conditions on both ends of contacts of one half-width.
 
     Args:
         equation: of such a contact; its slope is not used.
         resolution: number of polynomials, or longest panel.
-        punch: the punch.
-        h: half-width.
     """
     adjoint = Equation(_Adjoint(equation.response), _Adjoint(equation.kernel), equation.g, np.zeros_like)  # type: ignore[arg-type]
     parts = adjoint.parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
-    lifting, carrying = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
-    return Conditions(punch, h, lifting, carrying, finest(resolution))
+    ρ1, ρ2 = (parts.pressure(amplitudes) for amplitudes in np.eye(2))
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = Panels(ρ1.α, ρ1.β, finest(resolution), kinks)
+        lifting, carrying = (panels.weights * ρ.series(panels.t) for ρ in (ρ1, ρ2))
+        return panels.t, -lifting, carrying
+
+    return rule
 
 
 def vanishing(
     equation: Equation, resolution: Resolution, resultant: float = -2.0
-) -> tuple[Pressure, float]:
-    """Pressure of a contact between two free ends, at which it vanishes.
+) -> tuple[SolvedPressure, float]:
+    """SolvedPressure of a contact between two free ends, at which it vanishes.
 
     An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
 
@@ -221,51 +135,13 @@ def finest(resolution: Resolution) -> float:
     return min(resolution if isinstance(resolution, float) else _PANEL / resolution, _LONGEST)
 
 
-def balanced(at: Callable[[float], tuple[float, Any]], x: float) -> tuple[float, Any]:
-    """Root of a growing function, by secants inside a bracket.
-
-    Args:
-        at: of the logarithm of a half-width, gives that of the load over the punch's, and more.
-        x: first logarithm.
-
-    Returns:
-        The logarithm of the half-width at the root, and what else ``at`` gave there.
-
-    Raises:
-        SolveError: there is no root.
-    """
-    growth, before, low, high = _GROWTH, None, -np.inf, np.inf
-    for _ in range(_STEPS):
-        off, more = at(x)
-        low, high = (max(low, x), high) if off < 0.0 else (low, min(high, x))
-        if before is not None and np.isfinite(off) and x != before[0]:
-            secant = (off - before[1]) / (x - before[0])
-            growth = secant if _GROWTHS[0] < secant < _GROWTHS[1] else growth
-        step = -off / growth if np.isfinite(off) else -np.sign(off) * _LARGEST
-        step = float(np.clip(step, -_LARGEST, _LARGEST))
-        if abs(step) <= _ROUNDING or (
-            before is not None and abs(off) <= 1e-12 and abs(off) >= abs(before[1])
-        ):
-            return x, more
-        if not low < x + step < high and np.isfinite(high - low):
-            step = (low + high) / 2.0 - x
-        if np.isfinite(off):
-            before = x, off
-        x += step
-    raise SolveError(
-        f"no contact over the layers was found that carries the load: in {_STEPS} steps its half-width "
-        f"came to {np.exp(x):.6g} of that at rest, and still changes; take a speed farther from the "
-        "limit"
-    )
-
-
 #: Positions on which kernels are held at once, over those of a rule.
 _TOGETHER = 200
 
 
 @dataclass(frozen=True)
-class Kinked:
-    """Pressure between free ends under a slope with kinks, see :class:`.contact.Pressure`.
+class Kinked(SolvedPressure):
+    """SolvedPressure between free ends under a slope with kinks.
 
     Attributes:
         alone: σ₀, the pressure on the surface's solid alone.
@@ -277,30 +153,33 @@ class Kinked:
     """
 
     alone: FreeEnds
-    more: Pressure
+    more: SolvedPressure
     places: tuple[float, ...]
     finest: float
     rough: bool
     tips: tuple[float, ...]
 
     @property
-    def near(self) -> float:
+    def near(self) -> float:  # type: ignore[override]
+        """|r| up to which p can be evaluated."""
         return self.more.near
 
     @property
-    def α(self) -> float:
-        return self.more.α
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end, that of an edge."""
+        return float(self.more.α)
 
     @property
-    def β(self) -> float:
-        return self.more.β
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end, that of an edge."""
+        return float(self.more.β)
 
     @cached_property
     def _alone(self) -> PanelledPressure:
-        return on_panels(self.alone, self.α, self.β, self.finest, self.places)
+        return on_panels(self.alone, self.finest, self.places)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return without_weight(self.alone, self.α, self.β, self._off(r)) + self.more.series(r)
+        return without_weight(self.alone, off_tips(r, self.tips)) + self.more.series(r)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         values, under = self.more.rest(r, near), np.abs(r) < 1.0
@@ -313,32 +192,20 @@ class Kinked:
         return self.more.integral(kernel, r) + integral(self._alone, kernel, r, self.rough)
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = on_panels(self.alone, self.α, self.β, min(finest, self.finest), self.places)
+        fine = on_panels(self.alone, min(finest, self.finest), self.places)
         t, σ = self.more.points(finest)
         return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
 
-    def _off(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions, moved off tips where the pressure is infinite, (len(r),)."""
-        for tip in self.tips:
-            side = np.where(r < tip, -1.0, 1.0)
-            r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
-        return r
+
+def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
+    """σ₀ over the weight of edges, whose exponents are 1 less, which is 0 from both ends on."""
+    return (1.0 - r) * (1.0 + r) * alone.series(r)
 
 
-def without_weight(alone: FreeEnds, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
-    """σ₀ over the weight (1 - r)^α (1 + r)^β, which is 0 from both ends on."""
-    r, inside = np.asarray(r, dtype=float), np.abs(r) < 1.0
-    values, at = np.zeros_like(r), r[inside]
-    values[inside] = alone.σ_YY(at) * (1.0 - at) ** -α * (1.0 + at) ** -β
-    return values
-
-
-def on_panels(
-    alone: FreeEnds, α: float, β: float, finest: float, places: tuple[float, ...]
-) -> PanelledPressure:
+def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> PanelledPressure:
     """σ₀ by its values on panels that get shorter towards its kinks."""
-    panels = Panels(α, β, finest, places)
-    return PanelledPressure(panels, without_weight(alone, α, β, panels.t))
+    panels = Panels(alone.α - 1.0, alone.β - 1.0, finest, places)
+    return PanelledPressure(panels, without_weight(alone, panels.t))
 
 
 def integral(
@@ -355,7 +222,7 @@ def integral(
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
 ) -> tuple[Kinked, float]:
-    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
+    """SolvedPressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
         equation: of the contact, with its slope.
@@ -364,7 +231,7 @@ def kinked(
         m, h: middle and half-width.
     """
     a, profile, places = 1.0 + equation.α, punch.profile, punch.kinks(m, h)
-    panels = Balance(profile, a, np.nan).panels(punch.unit * m, punch.unit * h)
+    panels = panels_of(profile, a, places)
     whole = equation.slope(panels.t)
     mean = float(panels.weights @ whole / panels.weights.sum())
 
@@ -373,11 +240,11 @@ def kinked(
 
     alone = FreeEnds(
         panels, whole - mean, slope, equation.n, equation.g * float(equation.response.q),
-        (places, cusp(profile)),
+        places, cusp=cusp(profile),
     )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
     longest, rough = finest(resolution), equation.kernel.rough
-    on_surface = on_panels(alone, equation.α, equation.β, longest, places)
+    on_surface = on_panels(alone, longest, places)
 
     def of_layers(r: NDArray) -> NDArray[np.float64]:
         by_kernel = integral(on_surface, equation.kernel, r, rough)
@@ -395,21 +262,6 @@ _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(
 
 
 @dataclass(frozen=True)
-class Contact(ConvergedPressure):
-    """A pressure with its contact; lengths are over a unit that all states share.
-
-    Attributes:
-        half_width: of the contact.
-        centre: its middle, from the punch's axis.
-        free: True where the left and the right end are free, and were solved for.
-    """
-
-    half_width: float = 1.0
-    centre: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-
-@dataclass(frozen=True)
 class ContactAtResolution:
     """A contact at one resolution.
 
@@ -422,7 +274,7 @@ class ContactAtResolution:
 
     h: float
     m: float
-    pressure: Pressure
+    pressure: SolvedPressure
     correction: float = 0.0
     free: tuple[bool, bool] = (True, True)
 
@@ -441,62 +293,12 @@ class ContactAtResolution:
         return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
 
     @cached_property
-    def settled(self) -> Pressure:
+    def settled(self) -> SolvedPressure:
         """The pressure, continued to zero at free ends where panels resolve it less well."""
         pressure, free = self.pressure, self.free
         if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
             return replace(pressure, more=pressure.more.vanishing(free))
         return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
-
-
-@dataclass(frozen=True)
-class Contacts(PressuresByFriction):
-    """Contacts with several frictions, from which those with others are interpolated."""
-
-    each: list[Any]
-
-    @cached_property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of every contact, (nodes,)."""
-        return np.array([contact.half_width for contact in self.each])
-
-    @cached_property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of every contact, (nodes,)."""
-        return np.array([contact.centre for contact in self.each])
-
-    @cached_property
-    def free(self) -> NDArray[np.float64]:
-        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
-        return np.array([contact.free for contact in self.each], dtype=float)
-
-    @cached_property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
-        each = [contact.pressure.tips for contact in self.each]
-        places = np.full((len(each), max(map(len, each))), np.inf)
-        for row, tips in zip(places, each):
-            row[: len(tips)] = tips
-        return places
-
-    def of_each(self, what: Callable[[Pressure, float, float], NDArray]) -> NDArray[np.float64]:
-        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
-
-        Those of every contact come first, then those of the pressures with fewer unknowns.
-        """
-        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
-        return np.array(
-            [
-                [what(contact.pressure, g, h) for contact, g, h in nodes],
-                [what(contact.before, g, h) for contact, g, h in nodes],
-            ]
-        )
-
-    @property
-    def smooth(self) -> NDArray[np.float64]:
-        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
-        pressures = super().smooth
-        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
 
 
 #: Accuracy of a half-width at rest, over which others are given.
@@ -534,17 +336,14 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 
-    def solved(self, g: NDArray) -> tuple[PressuresByFriction, NDArray[np.float64]]:
+    def solved(self, g: NDArray) -> tuple[Contacts, NDArray[np.float64]]:
         # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
         if self.every or len(kinks(self.punch.profile)) or isinstance(self.punch.profile, Flat):
             return Contacts(g, self._each(g)), np.zeros(1)
         return super().solved(g)
 
-    def _together(self, g: NDArray, each: list[Any]) -> PressuresByFriction:
-        return Contacts(g, each)
-
-    def _each(self, g: NDArray) -> list[ConvergedPressure]:
-        answers: list[ConvergedPressure] = []
+    def _each(self, g: NDArray) -> list[Contact]:
+        answers: list[Contact] = []
         h = 1.0
         for value in g.tolist():
             contact = self.contact(value, h)
@@ -584,23 +383,15 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
 
-        h, m = self._lengths(g, h, resolution)
+        m, h = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
             return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
         return ContactAtResolution(h, m, *vanishing(equation, resolution))
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
-        """Half-width and middle of a contact with two free ends."""
-
-        def at(x: float) -> tuple[float, float]:
-            h = float(np.exp(x))
-            both = conditions(self._equation(g, h), resolution, self.punch, h)
-            m = both.middle()
-            return both.off(m), m
-
-        x, m = balanced(at, float(np.log(h)))
-        return float(np.exp(x)), m
+        """Middle and half-width of a contact with two free ends, from a half-width on."""
+        return free_ends(self.punch, lambda h: rule_of_ends(self._equation(g, h), resolution), h)
 
     def half_width(self) -> float:
         """Half-width of the contact without friction; its pressure is not computed.
@@ -614,7 +405,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             if isinstance(self.punch.profile, Flat):
                 h = self._tilted(0.0, h, resolution).h
             else:
-                h, _ = self._lengths(0.0, h, resolution)
+                _, h = self._lengths(0.0, h, resolution)
             error = abs(h / before - 1.0)
             if is_converged(error, self.tolerance):
                 return h
@@ -625,25 +416,26 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
         side = 1 if rise > 0.0 else 0
+        each: dict[float, tuple[Parts, float]] = {}
 
-        def at(x: float) -> tuple[float, Any]:
-            h = float(np.exp(x))
+        def load(h: float) -> float:
+            """Logarithm of the load under which the higher end of the contact has no intensity."""
             parts = self._equation(g, h).parts(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
             flat, bent = parts.ends[side]
             # The slope over N/(2h) that leaves no intensity is (2h/(N/μ)) θ.
-            share = -flat / bent / rise
-            taken = 2.0 * h * punch.unit / (share * punch.compression)
-            return float(np.log(taken)) if share > 0.0 else np.inf, (parts, -flat / bent)
+            slope = float(-flat / bent)
+            each[h] = parts, slope
+            carried = 2.0 * h * punch.unit * rise / punch.compression
+            return logarithm_of_load(carried / slope) if slope else np.inf
 
-        off, (parts, _) = at(float(np.log(whole)))
-        if off <= 0.0:
+        if load(whole) <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
-            return ContactAtResolution(
-                whole, 0.0, parts.pressure(np.array([1.0, slope])), free=(False, False)
-            )
-        x, (parts, slope) = balanced(at, float(np.log(min(h, whole))))
-        h, pressure = float(np.exp(x)), parts.pressure(np.array([1.0, slope]))
+            pressure = each[whole][0].pressure(np.array([1.0, slope]))
+            return ContactAtResolution(whole, 0.0, pressure, free=(False, False))
+        h = half_width_of_load(load, min(h, whole), punch)
+        parts, slope = each[h]
         m = float(np.sign(rise)) * (h - whole)
+        pressure = parts.pressure(np.array([1.0, slope]))
         return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
 
 

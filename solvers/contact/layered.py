@@ -1,11 +1,11 @@
 """Singular integral equation of layered and graded half-planes as a method.
 
 Kernels are computed once a speed and pressures for a few frictions, from which those of all states are
-interpolated. A punch has two sharp edges (:class:`AtSpeed`), or a contact with free ends
-(:class:`FreeAtSpeed`): then every friction has a contact of its own, and lengths are over its half-width,
-while kernels and depths are those of all contacts, over a common length. A prescribed pressure needs no
-equation (:class:`PrescribedAtSpeed`): stresses follow from transforms of its tractions, and are linear in
-σ_XY/σ_YY, so that two frictions give those of all states.
+interpolated. A punch has two sharp edges, and its contact then is that of all frictions; or the contact
+has a free end, and every friction has a contact of its own. Lengths are over the half-width of a contact,
+from its middle, while kernels and depths are those of all contacts, over a common length. A prescribed
+pressure needs no equation: stresses follow from transforms of its tractions, and are linear in σ_XY/σ_YY,
+so that two frictions give those of all states.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,33 +17,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..layers.kernel import Kernel, Level
+from ..layers.kernel import Level
 from ..layers.layered import LayersAtSpeed
 from ..layers.stiffness import Medium
 from ..profiles import cusp, jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .collocation import weights_hilbert
-from .edges import Exponents
-from .equation import (
-    COARSE,
-    FINE,
-    ContactsAtSpeed,
-    ConvergedPressure,
-    PrescribedPressure,
-    PressuresByFriction,
-)
-from .free_contact import largest as largest_next_to_kinks
+from .edges import Exponents, under_punch, weights_hilbert
+from .equation import COARSE, FINE, Contact, Contacts, ContactsAtSpeed, PrescribedPressure
 from .free_ends import turns_at_ends, turns_at_knots
-from .free_on_layers import Contacts, FreeContactsAtSpeed, Punch
+from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
-from .prescribed_pressure import LinearPressure
+from .pressure import ENDS, SolvedPressure, in_plane
+from .pressure import largest as largest_next_to_kinks
 from .recovery import largest
 from .solution import Places, Surface, Task, Turns, together
 
+#: The two frictions solved for a prescribed pressure.
+_NODES = np.array([0.0, 1.0])
 
-def sharp_at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> "AtSpeed":
-    """Punches with two sharp edges at one speed, with frictions from which all others follow.
+
+def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> "AtSpeed":
+    """Contacts at one speed, with frictions from which all others follow.
 
     Args:
         task: the speed.
@@ -51,28 +46,41 @@ def sharp_at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArra
         tolerance: relative tolerance.
         g: all values of σ_XY/σ_YY that will be solved, sorted.
     """
-    speed = ContactsAtSpeed(task.response, stack, task.body.slope, tolerance)
+    body = task.body
+    if body.pressure:
+        speed = ContactsAtSpeed(task.response, stack, np.zeros_like, tolerance)
+        rule = float(stack.layers[0].H), speed.kernel.rough
+        fine, coarse = (PrescribedPressure(body.pressure, nodes, *rule) for nodes in (FINE, COARSE))
+        nodes = Contacts(_NODES, [Contact(fine, coarse, 0.0)] * len(_NODES))
+        return AtSpeed(task, speed, nodes, np.zeros(1))
+    if body.found:
+        punch = Punch(body.profile, body.half_width, body.compression)
+        # A place inside is in one layer with one friction and in another with the next.
+        every = bool(len(task.places.points))
+        speed = FreeContactsAtSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
+    else:
+        speed = ContactsAtSpeed(task.response, stack, body.slope, tolerance)
     return AtSpeed(task, speed, *speed.solved(g))
 
 
 @dataclass(frozen=True)
 class AtSpeed:
-    """Punches at one speed.
+    """Contacts at one speed; positions are over each half-width, from its middle.
 
     Attributes:
         task: the speed.
         speed: kernels at the speed.
-        nodes: pressures at the frictions that were solved.
+        nodes: contacts at the frictions that were solved.
         interpolated: error of the interpolation over frictions, relative.
     """
 
     task: Task
     speed: ContactsAtSpeed
-    nodes: PressuresByFriction
+    nodes: Contacts
     interpolated: NDArray[np.float64]
 
-    def states(self, g: NDArray) -> Any:
-        return Punches(self, g)
+    def states(self, g: NDArray) -> "LayeredSolution":
+        return LayeredSolution(self, g)
 
     def record(self) -> dict[str, Any]:
         return {}
@@ -82,35 +90,37 @@ class AtSpeed:
         """Estimated error of the pressure, relative."""
         return float(self.nodes.change + self.interpolated.max() + self.speed.rounding)
 
-    @cached_property
-    def near(self) -> NDArray[np.bool_]:
-        """True for positions on the surface at which pressures without weights are evaluated, (n,)."""
-        return np.abs(self.task.places.X) <= self.nodes.near
-
     # All is evaluated for the pressures and for those with fewer unknowns: (2, nodes, ...).
 
     @cached_property
-    def series(self) -> NDArray[np.float64]:
-        """Pressures without their weights at the positions of ``near``, (2, nodes, n)."""
-        X = self.task.places.X[self.near]
-        return self.nodes.both(lambda pressure: pressure.series(X))
+    def on_surface(self) -> "OnSurface":
+        """Transforms of the pressures at the task's places on the surface."""
+        return self.on_surface_at(self.task.places.X)
 
-    @cached_property
-    def rest(self) -> NDArray[np.float64]:
-        """Regular part of the Hilbert transforms of the pressures, (2, nodes, n)."""
-        return self.nodes.both(lambda pressure: pressure.rest(self.task.places.X, self.nodes.near))
+    def on_surface_at(self, X: NDArray) -> "OnSurface":
+        """Transforms of the pressures at positions on the surface, (n,)."""
+        nodes, near = self.nodes, self.nodes.near
+        evaluated, p = np.abs(X) <= max(near, 1.0), np.zeros((2, len(self.nodes.g), len(X)))
+        p[..., evaluated] = nodes.both(lambda pressure: pressure.series(X[evaluated]))
+        rest = nodes.both(lambda pressure: pressure.rest(X, near))
+        regular = nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
+        return OnSurface(X, np.abs(X) <= near, p, rest, regular)
 
-    def level(self, depth: float, X: NDArray) -> tuple[Level, NDArray[np.float64]]:
-        """Tables of a depth, and u,X, σ_YY and σ_XY at X there, (3, 2, nodes, n)."""
-        reach = 1.0 + float(np.abs(X).max())
-        tables = Level(self.speed.stack, depth, reach, self.speed.tolerance)
-        g = iter(np.tile(self.nodes.g, 2).tolist())
+    def strain(self, pressure: SolvedPressure, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
 
-        def read(pressure: Any) -> NDArray[np.float64]:
-            t, σ = pressure.points(depth)
-            return tables.read(t, σ, next(g), X)
+        Args:
+            pressure: of a contact.
+            g: σ_XY/σ_YY.
+            h: half-width of the contact over the length of all.
+            X: positions over the half-width.
+        """
+        by_kernel = pressure.integral(self.speed.scaled(h), X)
+        return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
 
-        return tables, np.moveaxis(self.nodes.both(read), 2, 0)
+    def _level(self, depth: float, farthest: float) -> Level:
+        """Tables of a depth over the common length."""
+        return Level(self.speed.stack, depth, farthest, self.speed.tolerance)
 
     @cached_property
     def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -118,13 +128,20 @@ class AtSpeed:
 
         Arrays (4, 2, nodes, interfaces, n) and (interfaces,).
         """
-        places, σ, errors = self.task.places, [], []
-        for depth in places.interfaces.tolist():
-            level, (u_X, σ_YY, σ_XY) = self.level(depth, places.along)
-            both = [in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media]
-            σ.append([σ_YY, σ_XY, *both])
-            errors.append(level.error * max(1.0, *(medium.modulus for medium in level.media)))
-        return np.moveaxis(np.array(σ), 0, 3), np.array(errors)
+        X, σ_of_depths, errors = self.task.places.along, [], []
+        widest = float(self.nodes.half_width.max())
+        for depth in self.speed.stack.depths[: len(self.task.places.interfaces)].tolist():
+            level = self._level(depth, widest * (1.0 + float(np.abs(X).max())))
+
+            def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
+                t, σ = pressure.points(depth / h)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
+                each = (_in_plane(medium, u_X, σ_YY, σ_XY) for medium in level.media)  # noqa: B023
+                return np.array([σ_YY, σ_XY, *each])
+
+            σ_of_depths.append(self.nodes.of_each(read))
+            errors.append(widest * _error(level))
+        return np.moveaxis(np.array(σ_of_depths), (3, 0), (0, 3)), np.array(errors)
 
     @cached_property
     def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -132,63 +149,117 @@ class AtSpeed:
 
         Arrays (3, 2, nodes, m) and (m,).
         """
-        points = self.task.places.points
-        σ, errors = np.empty((3, 2, len(self.nodes.g), len(points))), np.empty(len(points))
+        points, errors = self.task.places.points, np.zeros(len(self.task.places.points))
+        σ_inside = np.empty((3, 2, len(self.nodes.g), len(points)))
         for Y in np.unique(points[:, 1]).tolist():
             at_depth = points[:, 1] == Y
-            level, (u_X, σ_YY, σ_XY) = self.level(-Y, points[at_depth, 0])
-            σ[..., at_depth] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
-            errors[at_depth] = level.error * max(1.0, level.media[0].modulus)
-        return σ, errors
+            X, levels = points[at_depth, 0], dict[float, Level]()
 
-    @cached_property
-    def regular(self) -> NDArray[np.float64]:
-        """Strains μ u,X that the layers add, (2, nodes, n)."""
-        return self.regular_at(self.task.places.X)
+            def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
+                if h not in levels:  # noqa: B023
+                    levels[h] = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))  # noqa: B023
+                level, (t, σ) = levels[h], pressure.points(-Y)  # noqa: B023
+                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
+                return np.array([_in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
-    def regular_at(self, X: NDArray) -> NDArray[np.float64]:
-        """Strains μ u,X that the layers add at positions (n,) on the surface, (2, nodes, n)."""
-        kernel = self.speed.kernel
-        by_kernel = self.nodes.both(lambda pressure: pressure.integral(kernel, X))
-        return np.asarray(by_kernel[..., 1] + self.nodes.g[:, None] * by_kernel[..., 0])
+            σ_inside[..., at_depth] = np.moveaxis(self.nodes.of_each(read), 2, 0)
+            errors[at_depth] = max(h * _error(level, 1) for h, level in levels.items())
+        return σ_inside, errors
+
+
+def _error(level: Level, sides: int = 2) -> float:
+    """Absolute error of stresses above a level, or on both sides, over those of a common half-width."""
+    return level.error * max(1.0, *(medium.modulus for medium in level.media[:sides]))
+
+
+def _in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+    """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
+    M = medium.modulus
+    return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
 
 
 @dataclass(frozen=True)
-class Punches:
-    """Punches with several frictions.
+class OnSurface:
+    """Transforms of the pressures, and of those with fewer unknowns, at positions on the surface.
 
     Attributes:
+        X: positions over the half-width, (n,).
+        near: True where Hilbert transforms are split into that of the weight and the rest, (n,).
+        p: pressures without their weights, 0 where they are not evaluated, (2, nodes, n).
+        rest: Hilbert transforms, less p times that of the weight where they are split, (2, nodes, n).
+        regular: strains μ u,X that the layers add, (2, nodes, n).
+    """
+
+    X: NDArray[np.float64]
+    near: NDArray[np.bool_]
+    p: NDArray[np.float64]
+    rest: NDArray[np.float64]
+    regular: NDArray[np.float64]
+
+
+class LayeredSolution:
+    """States of contacts over layers.
+
+    Args:
         at: their speed.
         g: σ_XY/σ_YY, (states,).
     """
 
-    at: AtSpeed
-    g: NDArray[np.float64]
+    def __init__(self, at: AtSpeed, g: NDArray) -> None:
+        self.at, self.g = at, g
 
     @cached_property
     def edges(self) -> FlatPunch:
         """Sharp edges, like those on a half-plane of the surface's solid."""
         return FlatPunch(self.at.task.response, self.g)
 
-    @property
-    def local(self) -> Any:
-        """Exponents of the pressure at the ends."""
-        return self.edges
-
-    @property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (states, k)."""
-        return np.empty((len(self.g), 0))
-
     @cached_property
     def _by_nodes(self) -> NDArray[np.float64]:
         return self.at.nodes.at(self.g)
 
     @cached_property
+    def free(self) -> NDArray[np.bool_]:
+        """True where the left and the right end are free, (states, 2)."""
+        return self._by_nodes @ self.at.nodes.free > 0.5
+
+    @property
+    def local(self) -> Exponents:
+        """Exponents of the pressure at the ends."""
+        free_left, free_right = self.free.T
+        return Exponents(self.edges.α + free_right, self.edges.β + free_left)
+
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Places at which the pressure is infinite inside the contact, (states, k)."""
+        # They are those of one node each: with kinks each friction is solved.
+        return self.at.nodes.tips[self._by_nodes.argmax(axis=1)]
+
+    @property
+    def _sizes(self) -> NDArray[np.float64]:
+        """Half-width of each contact over the common length, (states,); exact where all have one."""
+        half_width = self.at.nodes.half_width
+        return half_width[0] + self._by_nodes @ (half_width - half_width[0])
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Half-width of the contact [m], (states,)."""
+        return self.at.task.body.half_width * self._sizes
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
+
+    @cached_property
     def K_I(self) -> NDArray[np.float64]:
-        """K_I at X = -a and X = a, (states, 2)."""
-        ends = self.at.nodes.read(lambda pressure: pressure.series(np.array([-1.0, 1.0])))
-        return -0.5 * self._by_nodes @ ends
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
+        ends = self.at.nodes.read(lambda pressure: pressure.series(ENDS))
+        return np.where(self.free, 0.0, -0.5 * self._by_nodes @ ends)
+
+    @property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Normal force of a prescribed pressure over N/2, (states,)."""
+        return np.full(len(self.g), self.at.nodes.each[0].pressure.resultant)
 
     @cached_property
     def estimates(self) -> "Estimates":
@@ -199,10 +270,6 @@ class Punches:
     def places(self) -> Places:
         """Places at which stresses are evaluated."""
         return self.at.task.places
-
-    def _of_both(self, by_nodes: NDArray) -> NDArray[np.float64]:
-        """Values of states, (..., 2, states, n), interpolated from those of nodes, (..., 2, nodes, n)."""
-        return np.asarray(self._by_nodes @ by_nodes)
 
     @cached_property
     def both_interfaces(self) -> NDArray[np.float64]:
@@ -217,7 +284,7 @@ class Punches:
     @cached_property
     def both_inside(self) -> NDArray[np.float64]:
         """Stresses inside, and with fewer unknowns, (3, 2, states, m)."""
-        return self._of_both(self.at.inside[0])
+        return np.asarray(self._by_nodes @ self.at.inside[0])
 
     @property
     def inside(self) -> NDArray[np.float64]:
@@ -227,26 +294,97 @@ class Punches:
     @cached_property
     def σ_ZZ(self) -> NDArray[np.float64]:
         """Normal stress out of the plane at points inside, (states, m)."""
-        return self.at.task.body.σ_ZZ(self.inside, self.places.points[:, 1])
+        σ_ZZ, sizes = np.empty(self.inside.shape[1:]), self._sizes
+        for h in np.unique(sizes).tolist():
+            rows = sizes == h
+            σ_ZZ[rows] = self.at.task.body.σ_ZZ(self.inside[:, rows], h * self.places.points[:, 1])
+        return σ_ZZ
 
     @cached_property
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """σ_YY, 0 beside the punch, and σ_XX; each with fewer unknowns besides, (2, states, n)."""
-        at, places, response = self.at, self.at.task.places, self.at.task.response
-        X, g, local = places.X, self.g[:, None], self.edges
-        α, β = local.α[:, None], local.β[:, None]
-        p = np.zeros((2, len(self.g), len(X)))
-        p[..., at.near] = self._of_both(at.series)
-        with np.errstate(invalid="ignore"):
-            σ = np.where(places.under, (1.0 - X) ** α * (1.0 + X) ** β * p, 0.0)
-        H = p * np.where(at.near, weights_hilbert(α, β, X), 0.0) + self._of_both(at.rest)
-        u_X = response.q * σ + (response.n12 + response.m * g) * H + self._of_both(at.regular)
-        return σ, response.σ_XX(u_X, σ, g * σ)
+        return self._stresses(self.at.on_surface)
+
+    def _stresses(self, at: OnSurface) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_YY and σ_XX from transforms, each with fewer unknowns besides, (2, states, n)."""
+        p, rest, regular = (self._by_nodes @ part for part in (at.p, at.rest, at.regular))
+        X, g, response = at.X, self.g[:, None], self.at.task.response
+        α, β = self._exponents
+        with np.errstate(invalid="ignore", divide="ignore"):
+            σ = np.where(under_punch(X), (1.0 - X) ** α * (1.0 + X) ** β * p, 0.0)
+            H = p * np.where(at.near, weights_hilbert(α, β, X), 0.0) + rest
+        return σ, in_plane(response, g, σ, H, regular)
+
+    @property
+    def _exponents(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Exponents of the weight of the pressures at the right and the left end, (states, 1) each."""
+        α, β = self.at.nodes.each[0].pressure.exponents(self.edges)
+        return α[:, None], β[:, None]
 
     @cached_property
     def surface(self) -> Surface:
+        """Stresses on the surface."""
         (σ, _), (σ_XX, _) = self.both_on_surface
-        return Surface(self.places, np.where(self.places.under, σ, np.nan), σ_XX)
+        surface = Surface(self.places, np.where(self.places.under, σ, np.nan), σ_XX)
+        return replace(surface, turns=self._turns(surface))
+
+    def _turns(self, surface: Surface) -> Turns | None:
+        """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
+        profile = self.at.task.body.profile
+        pressure: Any = self.at.nodes.each[0].pressure
+        if len(pressure.breaks):
+            return turns_at_knots(pressure.prescribed, self.g, self._σ_XX)
+        if jumps(profile) or not len(kinks(profile)) or not self.free.any():
+            return None
+        ends = turns_at_ends(surface, self.local)
+        each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]
+        return together(each)
+
+    def _σ_XX(self, X: NDArray) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) at X over a, (states, n)."""
+        return self._stresses(self.at.on_surface_at(X))[1][0]
+
+    def _at_kinks(self, i: int) -> Turns:
+        """Stresses of one state under the punch's kinks.
+
+        They are those of its node: with kinks each friction is solved.
+        """
+        node, g, X = int(self._by_nodes[i].argmax()), float(self.g[i]), self._kinks(i)
+        pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
+        σ_YY, H = pressure.σ_YY(X), pressure.hilbert(X)
+        σ_XX = in_plane(self.at.task.response, g, σ_YY, H, self.at.strain(pressure, g, h, X))
+        return Turns(X[None], np.array([σ_XX, σ_YY, g * σ_YY])[:, None])
+
+    def _kinks(self, i: int) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over a in the contact of one state."""
+        at = (np.array(kinks(self.at.task.body.profile)) - self.centre[i]) / self.half_width[i]
+        return np.asarray(at[np.abs(at) < 1.0])
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        profile = self.at.task.body.profile
+        finite = self.free.all(axis=1) & np.isinf(self.tips).all(axis=1)
+        if not finite.any():
+            value, place = np.full((2, len(self.g)), np.nan)
+        elif not len(kinks(profile)) or not finite.all():
+            value, place = largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
+        else:
+            of_kinks = [
+                largest_next_to_kinks(
+                    lambda r: self._pressure(r, i)[0], self._kinks(i).tolist(), cusp(profile)  # noqa: B023
+                )
+                for i in range(len(self.g))
+            ]  # fmt: skip
+            value, place = np.array(of_kinks).T
+        return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
+
+    def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
+        """Pressure over N/(2a) at r over a, (states, n), of state ``i`` alone or of all states."""
+        rows = slice(None) if i is None else slice(i, i + 1)
+        p = self._by_nodes[rows] @ self.at.nodes.read(lambda pressure: pressure.series(r))
+        α, β = (exponent[rows] for exponent in self._exponents)
+        return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
 
 
 @dataclass(frozen=True)
@@ -257,7 +395,7 @@ class Estimates:
     and the error of the interpolation over frictions.
     """
 
-    of: Punches
+    of: LayeredSolution
 
     def __getitem__(self, word: str) -> NDArray[np.float64]:
         return _ESTIMATES[word](self)
@@ -306,280 +444,6 @@ _ESTIMATES: dict[str, Callable[[Estimates], NDArray[np.float64]]] = {
 }
 
 
-def in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-    """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
-    M = medium.modulus
-    return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
-
-
-def free_at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> "FreeAtSpeed":
-    """Contacts at one speed, with frictions from which all others follow.
-
-    Args:
-        task: the speed.
-        stack: layers with lengths over the body's half-width.
-        tolerance: relative tolerance.
-        g: all values of σ_XY/σ_YY that will be solved, sorted.
-    """
-    body = task.body
-    punch = Punch(body.profile, body.half_width, body.compression)
-    # A place inside is in one layer with one friction and in another with the next.
-    every = bool(len(task.places.points))
-    speed = FreeContactsAtSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
-    nodes, interpolated = speed.solved(g)
-    assert isinstance(nodes, Contacts)
-    return FreeAtSpeed(task, speed, nodes, interpolated)
-
-
-@dataclass(frozen=True)
-class FreeAtSpeed(AtSpeed):
-    """Contacts with free ends at one speed; positions are over each half-width, from its middle."""
-
-    nodes: Contacts
-    speed: FreeContactsAtSpeed
-
-    def states(self, g: NDArray) -> Any:
-        return FreePunches(self, g)
-
-    def _level(self, depth: float, farthest: float) -> Level:
-        """Tables of a depth over the common length."""
-        return Level(self.speed.stack, depth, farthest, self.speed.tolerance)
-
-    @cached_property
-    def interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        X, σ_of_depths, errors = self.task.places.along, [], []
-        largest = float(self.nodes.half_width.max())
-        for depth in self.speed.stack.depths.tolist():
-            level = self._level(depth, largest * (1.0 + float(np.abs(X).max())))
-
-            def read(pressure: Any, g: float, h: float) -> NDArray[np.float64]:
-                t, σ = pressure.points(depth / h)  # noqa: B023
-                u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)  # noqa: B023
-                return np.array([σ_YY, σ_XY, *(in_plane(side, u_X, σ_YY, σ_XY) for side in level.media)])  # noqa: B023
-
-            σ_of_depths.append(self.nodes.of_each(read))
-            errors.append(largest * _error(level))
-        return np.moveaxis(np.array(σ_of_depths), (3, 0), (0, 3)), np.array(errors)
-
-    @cached_property
-    def inside(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        points, sizes = self.task.places.points, self.nodes.half_width
-        σ_inside, errors = np.empty((3, 2, len(sizes), len(points))), np.zeros(len(points))
-        for Y in np.unique(points[:, 1]).tolist():
-            at_depth = points[:, 1] == Y
-            X = points[at_depth, 0]
-            for i, (contact, h) in enumerate(zip(self.nodes.each, sizes.tolist())):
-                level = self._level(-Y * h, h * (1.0 + float(np.abs(X).max())))
-                for j, pressure in enumerate((contact.pressure, contact.before)):
-                    g = float(self.nodes.g[i])
-                    t, σ = pressure.points(-Y)
-                    u_X, σ_YY, σ_XY = level.read(t, σ, g, X, h)
-                    σ_inside[:, j, i, at_depth] = in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY
-                errors[at_depth] = np.maximum(errors[at_depth], h * _error(level))
-        return σ_inside, errors
-
-    @cached_property
-    def regular(self) -> NDArray[np.float64]:
-        X = self.task.places.X
-        return self.nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
-
-    def strain(self, pressure: Any, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
-        """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
-
-        Args:
-            pressure: of a contact.
-            g: σ_XY/σ_YY.
-            h: half-width of the contact over the length of all.
-            X: positions over the half-width.
-        """
-        by_kernel = pressure.integral(self.speed.scaled(h), X)
-        return np.asarray(by_kernel[:, 1] + g * by_kernel[:, 0])
-
-
-def _error(level: Level) -> float:
-    """Absolute error of stresses at a level, over those of a contact as wide as the common length."""
-    return level.error * max(1.0, *(medium.modulus for medium in level.media))
-
-
-@dataclass(frozen=True)
-class FreePunches(Punches):
-    """Contacts with free ends, with several frictions, each with its own half-width and middle."""
-
-    at: FreeAtSpeed
-
-    @cached_property
-    def free(self) -> NDArray[np.bool_]:
-        """True where the left and the right end are free, (states, 2)."""
-        return self._by_nodes @ self.at.nodes.free > 0.5
-
-    @property
-    def local(self) -> Exponents:
-        """Exponents of the pressure at the ends."""
-        free_left, free_right = self.free.T
-        return Exponents(self.edges.α + free_right, self.edges.β + free_left)
-
-    @property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (states, k)."""
-        tips = self.at.nodes.tips
-        # They are those of one node each: with kinks each friction is solved.
-        return tips[self._by_nodes.argmax(axis=1)] if tips.shape[1] else np.empty((len(self.g), 0))
-
-    @property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of the contact [m], (states,)."""
-        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.half_width)
-
-    @property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.at.task.body.half_width * (self._by_nodes @ self.at.nodes.centre)
-
-    @cached_property
-    def surface(self) -> Surface:
-        profile, found = self.at.task.body.profile, super().surface
-        if jumps(profile) or not len(kinks(profile)):
-            return found
-        ends = turns_at_ends(found, self.local)
-        each = [ends.of(np.array([i])).joined(self._at_kinks(i)) for i in range(len(self.g))]
-        return replace(found, turns=together(each))
-
-    def _at_kinks(self, i: int) -> Turns:
-        """Stresses of one state under the punch's kinks.
-
-        They are those of its node: with kinks each friction is solved.
-        """
-        node, response, g = int(self._by_nodes[i].argmax()), self.at.task.response, float(self.g[i])
-        pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
-        X, α, β = self._kinks(i), self.edges.α[i], self.edges.β[i]
-        p = pressure.series(X)
-        σ_YY = (1.0 - X) ** α * (1.0 + X) ** β * p
-        H = p * weights_hilbert(α, β, X) + pressure.rest(X, self.at.nodes.near)
-        u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + self.at.strain(pressure, g, h, X)
-        σ = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
-        return Turns(X[None], σ[:, None])
-
-    def _kinks(self, i: int) -> NDArray[np.float64]:
-        """Positions of the punch's kinks over a in the contact of one state."""
-        at = (np.array(kinks(self.at.task.body.profile)) - self.centre[i]) / self.half_width[i]
-        return np.asarray(at[np.abs(at) < 1.0])
-
-    @cached_property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return np.where(self.free, 0.0, super().K_I)
-
-    @cached_property
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        profile = self.at.task.body.profile
-        if self.tips.shape[1] or not self.free.all():
-            finite = np.asarray(self.free.all(axis=1) & np.isinf(self.tips).all(axis=1))
-            value, place = self._largest if finite.any() else np.zeros((2, len(finite)))
-            return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
-        if not len(kinks(profile)):
-            return self._largest
-        each = []
-        for i in range(len(self.g)):
-            at = self._kinks(i).tolist(), cusp(profile)
-            each.append(largest_next_to_kinks(lambda r: self._pressure(r, i)[0], at))  # noqa: B023
-        value, place = np.array(each).T
-        return value, place
-
-    @property
-    def _largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, of smooth pressures, (states,)."""
-        return largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
-
-    def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
-        """Pressure over N/(2a) at r over a, (states, n), of state ``i`` alone or of all states."""
-        rows = slice(None) if i is None else slice(i, i + 1)
-        p = self._by_nodes[rows] @ self.at.nodes.read(lambda pressure: pressure.series(r))
-        α, β = self.edges.α[rows, None], self.edges.β[rows, None]
-        return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
-
-    @cached_property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        body, Y = self.at.task.body, self.places.points[:, 1]
-        shares = self.half_width / body.half_width
-        return np.array([body.σ_ZZ(self.inside[:, i], h * Y) for i, h in enumerate(shares.tolist())])
-
-
-#: The two frictions solved for a prescribed pressure.
-_NODES = np.array([0.0, 1.0])
-
-
-def prescribed_at_speed(
-    task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray
-) -> "PrescribedAtSpeed":
-    """Prescribed pressure at one speed.
-
-    Args:
-        task: the speed.
-        stack: layers with lengths over the body's half-width.
-        tolerance: relative tolerance.
-        g: σ_XY/σ_YY, in which all stresses are linear.
-    """
-    pressure = task.body.pressure
-    assert pressure
-    speed = ContactsAtSpeed(task.response, stack, np.zeros_like, tolerance)
-    kernel: Kernel = speed.kernel
-    length = float(stack.layers[0].H)
-    fine, coarse = (PrescribedPressure(pressure, nodes, length, kernel.rough) for nodes in (FINE, COARSE))
-    at_node = ConvergedPressure(fine, coarse, 0.0)  # type: ignore[arg-type]
-    return PrescribedAtSpeed(
-        task, speed, PressuresByFriction(_NODES, [at_node] * len(_NODES)), np.zeros(1)
-    )
-
-
-@dataclass(frozen=True)
-class PrescribedAtSpeed(AtSpeed):
-    """Prescribed pressure at one speed."""
-
-    def states(self, g: NDArray) -> Any:
-        return PrescribedPressures(self, g)
-
-
-@dataclass(frozen=True)
-class PrescribedPressures(Punches):
-    """States under a prescribed pressure."""
-
-    at: PrescribedAtSpeed
-
-    @property
-    def _pressure(self) -> LinearPressure:
-        pressure = self.at.task.body.pressure
-        assert pressure
-        return pressure
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force over N/2, (states,)."""
-        return np.full(len(self.g), self._pressure.resultant)
-
-    @cached_property
-    def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return self._on_surface(self.places.X, self.at.regular)
-
-    def _on_surface(
-        self, X: NDArray, regular: NDArray
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """σ_YY and σ_XX at X, by strains that the layers add there."""
-        response, g = self.at.task.response, self.g[:, None]
-        σ = np.tile(self._pressure(X), (2, len(self.g), 1))
-        u_X = response.q * σ + (response.n12 + response.m * g) * self._pressure.hilbert(X)
-        u_X = u_X + self._of_both(regular)
-        return σ, response.σ_XX(u_X, σ, g * σ)
-
-    @cached_property
-    def surface(self) -> Surface:
-        def σ_XX(X: NDArray) -> NDArray[np.float64]:
-            _, (now, _) = self._on_surface(X, self.at.regular_at(X))
-            return now
-
-        return replace(super().surface, turns=turns_at_knots(self._pressure, self.g, σ_XX))
-
-
 @dataclass(frozen=True)
 class Layers:
     """Method by the integral equation of layers, with kernels once a speed.
@@ -594,7 +458,4 @@ class Layers:
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         body = task.body
         stack = task.response.stack(body.half_width)  # type: ignore[attr-defined]
-        at_speed = (
-            prescribed_at_speed if body.pressure else free_at_speed if body.found else sharp_at_speed
-        )
         yield at_speed(task, stack, self.tolerance, g)

@@ -12,13 +12,14 @@ for what p(r) alone contributes is what the exponents make vanish.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
+from .pressure import SolvedPressure
 
 #: Points of a panel; matrices from values there to coefficients of Legendre polynomials, and to slopes.
 _NODES = 14
@@ -195,14 +196,18 @@ class Panels:
 
 
 @dataclass(frozen=True)
-class PanelledPressure:
-    """Pressure by its values at points of panels, see :class:`.equation.Pressure`."""
+class PanelledPressure(SolvedPressure):
+    """Pressure by its values at points of panels.
+
+    Attributes:
+        panels: the panels.
+        p: pressure over N/(2a) without its weight at their points, (n,).
+    """
+
+    near = 1.0
 
     panels: Panels
     p: NDArray[np.float64]
-
-    near: ClassVar[float] = 1.0
-    tips: ClassVar[tuple[float, ...]] = ()
 
     def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
         """Pressure continued to zero at free ends, left and right: p falls like d and d log d.
@@ -219,11 +224,13 @@ class PanelledPressure:
         return PanelledPressure(self.panels, p)
 
     @property
-    def α(self) -> float:
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end."""
         return self.panels.α
 
     @property
-    def β(self) -> float:
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end."""
         return self.panels.β
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
@@ -265,12 +272,6 @@ def _to_end(d: NDArray) -> NDArray[np.float64]:
 def _x(r: NDArray) -> NDArray[np.float64]:
     with np.errstate(divide="ignore"):
         return np.asarray(np.log1p(r) - np.log1p(-r))
-
-
-def solved(equation: Any, finest: float) -> PanelledPressure:
-    """Pressure of a :class:`galinx.solvers.contact.equation.Equation` on panels up to ``finest``."""
-    panels, p = parts(equation, finest, [equation.slope], [-2.0])
-    return PanelledPressure(panels, p[:, 0])
 
 
 def parts(

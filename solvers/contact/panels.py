@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
+from .pressure import Pressure
 
 #: Gauss points of a panel, their weights, and from values there to coefficients of Legendre polynomials.
 _NODES = 20
@@ -266,7 +267,7 @@ def _off(distance: NDArray) -> NDArray[Any]:
 
 
 @dataclass(frozen=True)
-class FreeEnds:
+class FreeEnds(Pressure):
     """Pressure of a contact [-1, 1] with two free ends, over N/(2h).
 
     Attributes:
@@ -274,7 +275,7 @@ class FreeEnds:
         f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
         slope: function that gives μ v,X over N/(2h) at any positions in the contact.
         n, Q: n + g n₁₂ and g q of the half-plane.
-        cusps: positions at which the pressure has a cusp, and its exponent there, below 1; 0 for none.
+        kinks, tips, cusp: see :class:`galinx.solvers.contact.pressure.Pressure`.
     """
 
     panels: Panels
@@ -282,34 +283,46 @@ class FreeEnds:
     slope: Any
     n: float
     Q: float
-    cusps: tuple[Sequence[float], float] = ((), 0.0)
+    kinks: Sequence[float] = ()
+    tips: Sequence[float] = ()
+    cusp: float = 0.0
+
+    @property
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end, positive."""
+        return self.panels.a
+
+    @property
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end, positive."""
+        return self.panels.b
 
     @property
     def _factor(self) -> float:
         return float(np.sin(np.pi * self.panels.a) / (np.pi * self.n))
 
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress at r in (-1, 1), (points,)."""
-        f = self.slope(r)
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        p, inside = np.zeros(np.shape(r)), np.abs(r) < 1.0
+        at = r[inside]
+        f = self.slope(at)
         # Without f(r) nothing cancels towards the ends.
-        T = self.panels.transform(self.f - f[:, None], np.log1p(-r) - np.log1p(r))
+        T = self.panels.transform(self.f - f[:, None], np.log1p(-at) - np.log1p(at))
         stress = -self._factor * np.sin(np.pi * self.panels.a) * T
-        places, exponent = self.cusps
-        for at in places if exponent else ():
-            at_cusp = np.abs(r - at) < _AT_CUSP
+        for kink in self.kinks if self.cusp else ():
+            at_cusp = np.abs(at - kink) < _AT_CUSP
             if at_cusp.any():  # the part of the smallest panel that is missed there is not small
-                stress[at_cusp] = self._at_cusp(at, exponent)
-        return stress
+                stress[at_cusp] = self._at_cusp(kink)
+        p[inside] = stress * (1.0 - at) ** -self.α * (1.0 + at) ** -self.β
+        return p
 
-    def _at_cusp(self, at: float, exponent: float) -> float:
+    def _at_cusp(self, at: float) -> float:
         """Contact stress at a cusp: σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
         d = _BESIDE_CUSP * np.array([-1.0, 1.0])
         near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
-        return near + (near - far) / (2.0**exponent - 1.0)
+        return near + (near - far) / (2.0**self.cusp - 1.0)
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
-        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface, (points,)."""
-        transform, inside, beside = np.empty(len(r)), np.abs(r) < 1.0, np.abs(r) > 1.0
+        transform, inside, beside = np.empty(r.shape), np.abs(r) < 1.0, np.abs(r) > 1.0
         under, end = r[inside], ~inside & ~beside
         transform[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
         transform[end] = self.slope(r[end]) / self.n

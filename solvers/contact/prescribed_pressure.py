@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p
 
-from ..solids.solid import Response
 from .edges import from_edge
+from .pressure import Pressure
 
 #: |w| from which powers of 1/w serve, and their number: 4^-27 is below rounding.
 _FAR, _POWERS = 2.0, 27
@@ -29,7 +29,7 @@ _AT_ONCE = 50_000
 
 
 @dataclass(frozen=True)
-class LinearPressure:
+class LinearPressure(Pressure):
     """σ_YY over N/(2a), linear between knots and 0 beside them.
 
     Attributes:
@@ -37,18 +37,27 @@ class LinearPressure:
         values: σ_YY there, not all of them 0, (n,).
     """
 
+    α, β = 0.0, 0.0
+
     knots: NDArray[np.float64]
     values: NDArray[np.float64]
 
     @property
-    def resultant(self) -> float:
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Knots of the pressure, both ends among them."""
+        return self.knots
+
+    @property
+    def resultant(self) -> float:  # type: ignore[override]
         """∫ σ_YY d(X/a) over N/(2a)."""
         return float(np.diff(self.knots) @ (self.values[1:] + self.values[:-1]) / 2.0)
 
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return np.interp(r, self.knots, self.values)
+
     def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
         """σ_YY over N/(2a) at r = X/a."""
-        r = np.asarray(r, dtype=float)
-        return np.where(np.abs(r) <= 1.0, np.interp(r, self.knots, self.values), 0.0)
+        return self.σ_YY(r)
 
     def hilbert(self, r: ArrayLike) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface; NaN at an end where the pressure is not 0."""
@@ -146,35 +155,3 @@ def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDA
         divided = divided * other + S
         S = S * q + 1.0 / (2 * k + first)
     return S, divided
-
-
-@dataclass(frozen=True)
-class PrescribedPressureSolution:
-    """Exact solution for a prescribed pressure, at one speed.
-
-    Args:
-        response: of the half-plane at that speed.
-        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
-        pressure: prescribed pressure.
-    """
-
-    response: Response
-    g: float | NDArray[np.float64]
-    pressure: LinearPressure
-
-    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
-        """In-plane stress over N/(2a) on the surface Y = 0; NaN where it is infinite."""
-        answer, σ_YY = self.response, self.pressure(r)
-        u_X = answer.q * σ_YY + (answer.n12 + answer.m * self.g) * self.pressure.hilbert(r)
-        return answer.σ_XX(u_X, σ_YY, self.g * σ_YY)
-
-    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
-        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
-
-    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
-        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
-        on, σ_YY = Y == 0.0, self.pressure(X)
-        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
-        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))

@@ -138,7 +138,7 @@ class Body:
         if self.layered:
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
-        from .free_contact import contacts
+        from .uniform import contacts
 
         g = np.zeros(np.size(self.load))
         rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")

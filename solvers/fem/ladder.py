@@ -571,8 +571,11 @@ class MeasuredError:
         """Rounding that is certain, and what levels show by themselves; largest of all words."""
         certain = 1.0 if self._ladder.levels[-1].mirrored else _CERTAIN
         return max(
-            float(np.max(ROUNDING * certain * self._bounds[word] + own))
-            for word, own in self._own(gauges).items()
+            (
+                float(np.max(ROUNDING * certain * self._bounds[word] + own))
+                for word, own in self._own(gauges).items()
+            ),
+            default=0.0,
         )
 
     def _of_levels(self, word: str, changes: list[NDArray]) -> NDArray[np.float64]:

@@ -6,9 +6,10 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.solvers.contact.free_contact import contacts
-from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp
@@ -173,7 +174,7 @@ def prescribed(rng):
 
 def in_plane_sampled(pressure, solid, c, g):
     """Highest and lowest σ_XX of a pressure, 0.01 a and more from where it jumps."""
-    exact, knots = PrescribedPressureSolution(solid.response(c), g, pressure), pressure.knots
+    exact, knots = LoadedHalfPlane(solid.response(c), g, pressure), pressure.knots
     near = np.concatenate([sign * np.geomspace(1e-13, 1.0, 4000) for sign in (-1.0, 1.0)])
     X = np.concatenate([np.add.outer(knots, near).ravel(), knots, np.linspace(-4.0, 4.0, 10001)])
     jumps = knots[[0, -1]][pressure.values[[0, -1]] != 0.0]

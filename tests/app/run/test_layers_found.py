@@ -16,8 +16,9 @@ from galinx.app.plan.plan import expense, make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.solvers.contact import stresses
+from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
-from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, Punch, conditions
+from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, rule_of_ends
 from galinx.solvers.contact.solution import Body
 from galinx.solvers.profiles.power import Parabolic
 
@@ -51,8 +52,9 @@ def random_scene(seed, graded, quantities=("sif",), tolerance=1e-6):
     speed = FreeContactsAtSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
     equation = Equation(response, speed.kernel, 0.0, np.zeros_like)
     punch = Punch(Parabolic(1.0), 1.0, load / solid.μ)
-    contact = conditions(equation, 0.5 if speed.kernel.rough else 60, punch, 1.0)
-    profile = Parabolic(float(np.exp(contact.off(contact.middle()))))
+    s, lifting, carrying = rule_of_ends(equation, 0.5 if speed.kernel.rough else 60)(())
+    m = -(lifting @ s) / lifting.sum()
+    profile = Parabolic(float(carrying @ punch.slope(m, 1.0)(s)) / 2.0)
     return replace(base, punch=replace(base.punch, profile=profile, loads=(load,)))
 
 

@@ -17,7 +17,7 @@ from galinx.app.results.csv import pieces
 from galinx.app.results.fields import displacement
 from galinx.app.results.report import answers, summary
 from galinx.app.results.si import drawn_in_si
-from galinx.solvers.contact.exact import ClosedForm, with_fixed_ends
+from galinx.solvers.contact.exact import ClosedForm, ExactSolution
 from galinx.solvers.parameters import parameter
 from galinx.solvers.profiles import PROFILES
 
@@ -191,7 +191,7 @@ def test_one_load_is_no_column():
 
 def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
     """As those of users are; a punch with a base of its own shape depends on the load."""
-    known = with_fixed_ends
+    known = ExactSolution
     asked = []
 
     def given(task, g):

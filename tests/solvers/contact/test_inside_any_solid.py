@@ -6,8 +6,9 @@ from line_loads_reference import FreeContact, Lines, Rule
 from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
-from galinx.solvers.contact.free_contact import contacts
-from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.pressure import LoadedHalfPlane
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.table import Table
@@ -60,7 +61,7 @@ def solved(seed):
         rule = Rule([*((t, 0.0) for t in knots), *lines.feet(X, Y)])
         σ, solution = (
             np.interp(rule.t, knots, values),
-            PrescribedPressureSolution(response, g, LinearPressure(knots, values)),
+            LoadedHalfPlane(response, g, LinearPressure(knots, values)),
         )
         return solution.inside(X, Y), lines.stresses(rule, σ, X, Y)
     profile = make(rng)

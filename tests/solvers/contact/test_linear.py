@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from isotropic_field import field
 
-from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.solids.isotropic import MovingFrame
 
 PRESSURES = {
@@ -55,7 +56,7 @@ def exact_inside(name, κ, c, g, X, Y):
 @pytest.mark.parametrize("c", SPEEDS)
 @pytest.mark.parametrize("name", PRESSURES)
 def test_stresses_inside_are_those_of_the_integrals(name, c):
-    solution = PrescribedPressureSolution(MovingFrame(2.2, c), -0.66, pressure_of(name))
+    solution = LoadedHalfPlane(MovingFrame(2.2, c), -0.66, pressure_of(name))
     with mp.workdps(40):
         for X, Y in [(0.3, -0.2), (0.31, -0.02), (-3.0, -0.5), (1.0, -0.1), (2e3, -1e4), (1e8, -3e7)]:
             found = solution.inside(X, Y)

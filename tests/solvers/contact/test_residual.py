@@ -6,7 +6,7 @@ from random_solids import random_solid
 
 from galinx.solvers.contact import residual
 from galinx.solvers.contact.equation import ContactsAtSpeed
-from galinx.solvers.contact.free_contact import contacts
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.layers.kernel import Kernel, Scaled
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles.power import Parabolic, Wedge
@@ -24,12 +24,13 @@ def contact(request):
     found = contacts(response, g[:1] if seed == 3 else g, profile, 0.5)
     slope = 2.0 * found.of("half_width")[:, None] / 0.5
     lengths = found.of("centre")[:, None], found.of("half_width")[:, None]
-    return found, lambda s: slope * profile.slope(lengths[0] + lengths[1] * s), found.groups[0].cusps[0]
+    kinks = found.groups[0].pressure.kinks
+    return found, lambda s: slope * profile.slope(lengths[0] + lengths[1] * s), kinks
 
 
 def left(contact, pressure=None, inside=None):
     found, slope, kinks = contact
-    exponents, pressure = (found.of("α"), found.of("β")), pressure or found.pressure
+    exponents, pressure = (found.of("α"), found.of("β")), pressure or found.groups[0].contact_stress
     of_pressure = residual.of_pressure(found.response, found.g, exponents, slope, pressure, kinks)
     field = inside or found.inside
     return of_pressure, residual.of_field(
@@ -45,7 +46,7 @@ def test_exact_answers_leave_nothing(contact):
 @pytest.mark.parametrize("ε", [1e-2, 1e-5])
 def test_a_wrong_pressure_is_seen(contact, ε):
     found = contact[0]
-    of_pressure, of_field = left(contact, lambda r: found.pressure(r) * (1.0 + ε * r))
+    of_pressure, of_field = left(contact, lambda r: found.groups[0].contact_stress(r) * (1.0 + ε * r))
     assert (0.1 * ε <= of_pressure).all() and (of_pressure <= 10.0 * ε).all()
     assert (0.01 * ε <= of_field).all() and (of_field <= 10.0 * ε).all()
 

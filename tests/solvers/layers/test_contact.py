@@ -8,9 +8,14 @@ from layers_reference import plane_strain, punch
 from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.collocation import Expansion, solve, weights_hilbert
-from galinx.solvers.contact.equation import ContactsAtSpeed, Polynomial, converged_pressure
-from galinx.solvers.contact.panelled import solved as panelled
+from galinx.solvers.contact.edges import weights_hilbert
+from galinx.solvers.contact.equation import (
+    UNIFORM,
+    ContactsAtSpeed,
+    Equation,
+    Polynomial,
+    converged_pressure,
+)
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -50,7 +55,7 @@ def test_the_reference_finds_it_roughly():
 @pytest.mark.parametrize("V2", EXAMPLE)
 def test_panels_find_the_example_too(V2):
     """A second discretisation, with nothing of Jacobi's polynomials in it."""
-    one = panelled(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 0.7)
+    one = equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4).pressure(0.7)
     assert np.abs(read(one) - EXAMPLE[V2]).max() <= 1e-10
 
 
@@ -114,14 +119,14 @@ def test_mirror_image():
 
 
 def test_sharp_punch_with_a_profile():
-    """On layers of one solid as by the collocation of the half-plane."""
+    """On layers of one solid as without layers."""
     solid = Layered((Layer(0.5, COAT),), COAT)
 
     def slope(r):
         return 0.3 * np.asarray(r) + 0.1
 
     one = converged_pressure(equation(solid, 0.2, -0.4, slope), 1e-11).pressure
-    exact = solve(COAT.response(0.2**0.5 / COAT.c_s), -0.4, 40, slope)
+    exact = Equation(COAT.response(0.2**0.5 / COAT.c_s), UNIFORM, -0.4, slope).pressure(40)
     assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-10
 
 
@@ -158,7 +163,7 @@ def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch
     SciPy's rule of 600 points keeps nine digits.
     """
     c = np.exp(-0.4 * np.arange(terms)) + 1e-15
-    pressure = Polynomial(Expansion(-0.45, -0.55, c))
+    pressure = Polynomial(-0.45, -0.55, c)
     X = np.array([-1.3, -1.1, -1.05, -1.001, 1.0002, 1.02, 1.1, 1.4])
     known = np.abs(X) <= pressure.near
     whole = pressure.rest(X, pressure.near)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import eval_jacobi
 
-from galinx.solvers.contact.collocation import jacobi
+from galinx.solvers.contact.equation import jacobi
 
 
 @pytest.mark.parametrize(("α", "β"), [(-0.5, -0.5), (-0.71, -0.29), (0.4, 0.6), (-0.3, 0.3)])

@@ -9,8 +9,9 @@ from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
 from support import THOROUGH
 
-from galinx.solvers.contact.free_contact import contacts
-from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, Punch, local_exponents
+from galinx.solvers.contact.ends import Punch
+from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, local_exponents
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 

@@ -6,7 +6,8 @@ from random_solids import isotropic_as, random_solid, stiffness
 
 from galinx.solvers.contact import stresses
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
@@ -90,7 +91,7 @@ def test_a_pressure_put_in_has_the_stresses_of_an_isotropic_solid():
     X, Y = np.array([-2.0, -0.2, 0.8, 5.0]), np.array([-0.01, -0.5, -2.0, -70.0])
     for c in (0.0, 0.5):
         found, wanted = (
-            PrescribedPressureSolution(one.response(c), -0.4, pressure)
+            LoadedHalfPlane(one.response(c), -0.4, pressure)
             for one in (isotropic_as("cubic", known), known)
         )
         np.testing.assert_allclose(found.inside(X, Y), wanted.inside(X, Y), rtol=1e-11, atol=1e-14)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from galinx.solvers.contact.prescribed_pressure import LinearPressure, PrescribedPressureSolution
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.contact.solution import Body
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength
@@ -42,7 +43,7 @@ def hertz(g):
 def of_pressure(pressure, g, strength=1.0, stresses=None):
     """Yield below a pressure at rest; the strength is over N/(2a)."""
     g = np.asarray(g, dtype=float)
-    exact = PrescribedPressureSolution(AT_REST, g[:, None], pressure)
+    exact = LoadedHalfPlane(AT_REST, g[:, None], pressure)
     body = Body(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
     field = stresses or (lambda points: exact.stresses(points[..., 0], points[..., 1]))
     return Strength(field, body, AT_REST, g, None)

@@ -1,0 +1,208 @@
+"""Contact pressure: what all pressures have in common, and exact stresses under one."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..solids.solid import Response
+from .edges import weights_hilbert
+
+#: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
+_CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
+#: Places at which the pressure is sampled for its largest value, and places about kinks; number of tops
+#: that are refined, places between their neighbours, and rounds of refinement.
+_SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
+_BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
+_TOPS, _BETWEEN, _ROUNDS = 5, 21, 8
+
+#: Both ends of a contact, over its half-width.
+ENDS = np.array([-1.0, 1.0])
+
+
+class Pressure:
+    """Contact pressure σ_YY = (1 - r)^α (1 + r)^β p(r) over N/(2a), |r| <= 1.
+
+    Of one state or of several, whose exponents and coefficients then are columns that broadcast against
+    positions. Pressures over uniform half-planes also give their Hilbert transform, and most of them
+    Cauchy's integral below the surface, see :class:`galinx.solvers.solids.half_plane.Potential`.
+
+    Attributes:
+        α, β: exponents at the right and the left end.
+        kinks: places inside at which the pressure is not smooth.
+        tips: places inside at which it is infinite.
+        cusp: exponent below 1 of its change by the distance from a kink; 0 for none.
+        breaks: ends of pieces in which it is linear; none for other pressures.
+        resultant: ∫ σ_YY d(X/a) over N/(2a); -2 under a punch.
+    """
+
+    α: Any
+    β: Any
+    kinks: Sequence[float] = ()
+    tips: Sequence[float] = ()
+    cusp: float = 0.0
+    breaks: Sequence[float] | NDArray = ()
+    resultant: float = -2.0
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        """Smooth factor p over N/(2a) at |r| <= 1."""
+        raise NotImplementedError
+
+    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r; 0 beside the contact, NaN at an end where it is infinite."""
+        r = np.asarray(r, dtype=float)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            stress = (1.0 - r) ** self.α * (1.0 + r) ** self.β * self.series(r)
+        stress = np.where(np.abs(r) <= 1.0, stress, 0.0)
+        at_end = np.any(np.abs(r) == 1.0)
+        return np.where(np.isinf(stress), np.nan, stress) if at_end else stress
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
+        raise NotImplementedError
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        raise NotImplementedError("stresses inside below a profile come from finite elements only")
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), finite, and its place, (states,) each."""
+        top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
+        return np.array([top]), np.array([at])
+
+
+class SolvedPressure(Pressure):
+    """Contact pressure of an integral equation, with its integrals.
+
+    Attributes:
+        near: |r| up to which p can be evaluated.
+    """
+
+    near: float
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Intensities at the left and the right end as in Eqs 56-57, dimensionless, (2,)."""
+        return -0.5 * self.series(ENDS)
+
+    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Exponents α and β at other frictions, (states,), by the local analysis of sharp edges there."""
+        return edges.α, edges.β
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
+        raise NotImplementedError
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        transform, close = self.rest(r, self.near), np.abs(r) <= self.near
+        transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
+        return transform
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+        raise NotImplementedError
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
+        raise NotImplementedError
+
+
+def largest(
+    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] = (), cusp: float = 0.0
+) -> tuple[float, float]:
+    """Largest pressure under a punch and its place, by ever finer samples about several tops.
+
+    Args:
+        pressure: at r in (-1, 1), (points,).
+        kinks: places at which it is not smooth.
+        cusp: exponent of its change by the distance from them; 0 where that is d log d.
+    """
+    beside = np.ravel(np.add.outer(np.array(kinks, dtype=float), _BESIDE_KINKS))
+    r = np.unique(np.concatenate([_SAMPLES, beside[np.abs(beside) < 1.0]]))
+    p = pressure(r)
+    tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+    tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
+    maxima = [_nearer(pressure, r[i - 1], r[i + 1], kinks) for i in tops.tolist()]
+    if cusp:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
+        for at in kinks:
+            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
+            maxima.append((near + (near - far) / (2.0**cusp - 1.0), float(at)))
+    return max(maxima)
+
+
+def _nearer(
+    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float]
+) -> tuple[float, float]:
+    """Largest pressure between two places, and its place; by a parabola at last, if there is no kink."""
+    for _ in range(_ROUNDS):
+        r = np.linspace(low, high, _BETWEEN)
+        p = pressure(r)
+        i = int(np.clip(np.argmax(p), 1, len(r) - 2))
+        step = r[1] - r[0]
+        low, high = r[i] - step, r[i] + step
+        if step < 1e-6:  # next to a kink the largest pressure may have a cusp
+            break
+    if any(low <= at <= high for at in kinks):
+        return float(p.max()), float(r[p.argmax()])
+    p_left, p_middle, p_right = p[i - 1 : i + 2]
+    bend = p_left - 2.0 * p_middle + p_right
+    u = float(np.clip((p_left - p_right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
+    top = p_middle + (p_right - p_left) * u / 2.0 + bend * u**2 / 2.0
+    return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
+
+
+class Loaded:
+    """Uniform half-plane under a contact pressure with friction, at one speed; all stresses are exact.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
+        pressure: the pressure, with Cauchy's integral.
+    """
+
+    response: Response
+    g: Any
+    pressure: Any
+
+    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN where it is infinite (Eq 32)."""
+        σ_YY = self.pressure.σ_YY(r)
+        return in_plane(self.response, self.g, σ_YY, self.pressure.hilbert(r))
+
+    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
+        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
+        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
+        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
+
+
+@dataclass(frozen=True)
+class LoadedHalfPlane(Loaded):
+    """Uniform half-plane under a pressure, see :class:`Loaded`."""
+
+    response: Response
+    g: Any
+    pressure: Any
+
+
+def in_plane(
+    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
+) -> NDArray[np.float64]:
+    """In-plane stress over N/(2a) on the surface.
+
+    Args:
+        response: of the surface's solid.
+        g: σ_XY/σ_YY under the punch.
+        σ_YY: contact stress over N/(2a).
+        H: its Hilbert transform.
+        strain: strain μ u,X over N/(2a) that layers add.
+    """
+    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + strain
+    return response.σ_XX(u_X, σ_YY, g * σ_YY)

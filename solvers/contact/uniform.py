@@ -1,0 +1,362 @@
+"""Contacts on uniform half-planes: states with a pressure, a half-width and a middle, and their stresses.
+
+What differs between contacts is the pressure. It is exact under flat punches, tilted ones among them, and
+parabolas, and where it is prescribed; by quadrature under every other convex profile with free ends; and
+by the integral equation under a profile between two sharp edges. Lengths are over the half-width of each
+contact, from its middle, stresses over N/(2a) of that half-width.
+
+The ends of a contact with two free ends and any convex profile P meet two conditions. With w of
+:mod:`galinx.solvers.contact.panels`, s over the half-width h from the middle m of the contact:
+
+    ∫ P'(m + h s)/w ds = 0,        N/μ = h (sin πa/N̂) ∫ s P'(m + h s)/w ds.
+
+:mod:`galinx.solvers.contact.ends` solves them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import SolveError
+from ..profiles import check_reach, cusp, jumps
+from ..profiles.flat import Flat
+from ..profiles.power import Parabolic
+from ..solids.solid import Response
+from .closed_form import FlatPunch, Weighted
+from .edges import Exponents
+from .ends import Punch, Rule, free_ends
+from .panels import FreeEnds, Panels, ends_of_panels
+from .prescribed_pressure import LinearPressure
+from .pressure import Pressure, in_plane
+
+#: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
+NEXT_TO_TIP = 1e-6
+#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
+_TERMS = 40
+#: First half-width in the search for the ends [m].
+_FIRST = 1e-3
+
+
+@dataclass(frozen=True)
+class Group:
+    """States whose pressure is of one kind.
+
+    Attributes:
+        rows: numbers of these states, (rows,).
+        pressure: pressure of all these states or of the only one.
+        half_width, centre: half-width and centre of the contact [m], (rows,).
+        K_I: intensities at the left and the right end, (rows, 2).
+    """
+
+    rows: NDArray[np.int64]
+    pressure: Any
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    K_I: NDArray[np.float64]
+
+    @property
+    def α(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the right end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.α), self.rows.shape)
+
+    @property
+    def β(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the left end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.β), self.rows.shape)
+
+    def contact_stress(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at r in (-1, 1), also next to infinite values, (rows, points)."""
+        stress = self.pressure.σ_YY(r)
+        return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
+
+    def off_tips(self, r: NDArray) -> NDArray[np.float64]:
+        """Positions r over the half-width, moved off the places of infinite pressure."""
+        return off_tips(r, self.pressure.tips)
+
+
+def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
+    """Positions r over the half-width, moved off tips, where the pressure is infinite."""
+    for tip in tips:
+        side = np.where(r < tip, -1.0, 1.0)
+        r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
+    return r
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts at one speed with several frictions.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY, (states,).
+        groups: all states by the kind of their pressure.
+    """
+
+    response: Response
+    g: NDArray[np.float64]
+    groups: tuple[Group, ...]
+
+    def of(self, name: str) -> NDArray[np.float64]:
+        """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
+        return self.joined(lambda group: getattr(group, name))
+
+    def joined(self, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+        """Values of all states, (states, ...), from those of every group, (rows, ...)."""
+        if len(self.groups) == 1:
+            return values(self.groups[0])
+        each = [values(group) for group in self.groups]
+        of_states = np.empty((len(self.g), *each[0].shape[1:]))
+        for group, of_group in zip(self.groups, each):
+            of_states[group.rows] = of_group
+        return of_states
+
+    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
+        return self.joined(lambda group: group.contact_stress(group.off_tips(r)))
+
+    def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
+        """In-plane stress on the whole surface, off the ends, (states, points)."""
+        return self.on_surface(r)[0]
+
+    def on_surface(self, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_XX and σ_YY, 0 beside the contact, on the whole surface, off the ends, (states, points)."""
+        each = {id(group): self._on_surface(group, r) for group in self.groups}
+        σ_XX, σ_YY = (self.joined(lambda group: each[id(group)][i]) for i in (0, 1))  # noqa: B023
+        return σ_XX, σ_YY
+
+    def _on_surface(self, group: Group, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (rows, points) each."""
+        r, g = group.off_tips(r), self.g[group.rows, None]
+        σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
+        σ_XX = in_plane(self.response, g, σ_YY, group.pressure.hilbert(r))
+        return σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        if len(self.groups) == 1:
+            return self.inside_group(self.groups[0], X, Y)
+        stresses = np.empty((3, len(self.g), X.shape[1]))
+        for group in self.groups:
+            of_each = group.rows if len(X) > 1 else [0]
+            stresses[:, group.rows] = self.inside_group(group, X[of_each], Y[of_each])
+        return stresses
+
+    def inside_group(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of a group below the surface, at points (1, n) or (rows, n): (3, rows, n)."""
+        return self.response.inside(group.pressure, self.g[group.rows, None], X, Y)
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points with Y <= 0, on the surface, too, (3, states, n)."""
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        on, stresses = Y == 0.0, self.inside(X, np.where(Y == 0.0, -1.0, Y))
+        columns = np.flatnonzero(on.any(axis=0))
+        for group in self.groups if len(columns) else ():
+            of_each = group.rows if len(X) > 1 else np.zeros(1, dtype=int)
+            places = np.ix_(group.rows, columns)
+            σ_XX, σ_YY = self._on_surface(group, X[np.ix_(of_each, columns)])
+            surface = np.array([σ_XX, σ_YY, self.g[group.rows, None] * σ_YY])
+            below = stresses[:, places[0], places[1]]
+            stresses[:, places[0], places[1]] = np.where(on[np.ix_(of_each, columns)], surface, below)
+        return stresses
+
+    @property
+    def turns(self) -> NDArray[np.float64]:
+        """Free ends and kinks over the half-width, (states, k); NaN for none.
+
+        Stresses are finite there, and go with a power of the distance.
+        """
+        each: list[list[float]] = [[] for _ in self.g]
+        for group in self.groups:
+            kinks = [] if len(group.pressure.tips) else list(group.pressure.kinks)
+            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
+                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
+        positions = np.full((len(each), max(map(len, each))), np.nan)
+        for row, places in zip(positions, each):
+            row[: len(places)] = places
+        return positions
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
+        value, place = np.full((2, len(self.g)), np.nan)
+        for group in self.groups:
+            if np.all(group.α > 0.0) and np.all(group.β > 0.0) and not group.pressure.tips:
+                value[group.rows], place[group.rows] = group.pressure.largest()
+        return value, place
+
+
+def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
+    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
+    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
+    if all(sharp):
+        return flat
+    try:
+        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
+    except SolveError:
+        exact = None  # the method that solves reports it
+    if exact:
+        return Exponents(exact.of("α"), exact.of("β"))
+    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
+
+
+def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
+    """Quadrature over a contact of a punch.
+
+    Args:
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        kinks: places over the half-width at which the slope or its derivative jumps.
+    """
+    # Beside its kink a power is not smooth; wedges and parabolas are.
+    k = getattr(profile, "exponent", 1.0)
+    rough = not jumps(profile) and k != round(k)
+    return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
+
+
+def prescribed(response: Response, g: NDArray, pressure: LinearPressure, half_width: float) -> Contacts:
+    """Contacts under a prescribed pressure, of a half-width [m]."""
+    ends = np.tile(-0.5 * pressure.values[[0, -1]], (len(g), 1))
+    return _fixed(response, g, pressure, half_width, ends)
+
+
+def sharp(response: Response, g: NDArray, body: Any) -> Contacts:
+    """Contacts of a punch with two sharp edges, see :class:`galinx.solvers.contact.solution.Body`."""
+    if body.flat:
+        K_I = np.column_stack([FlatPunch(response, g).K_I] * 2)
+        return _fixed(response, g, FlatPunch(response, g[:, None]), body.half_width, K_I)
+    from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
+
+    loads = np.broadcast_to(body.load, g.shape).tolist()
+    groups = []
+    for i, (value, load) in enumerate(zip(g.tolist(), loads)):
+        pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
+        own = (np.array([i]), pressure, np.full(1, body.half_width), np.zeros(1), pressure.K_I[None])
+        groups.append(Group(*own))
+    return Contacts(response, g, tuple(groups))
+
+
+def _fixed(
+    response: Response, g: NDArray, pressure: Pressure, half_width: float, K_I: NDArray
+) -> Contacts:
+    """Contacts of one kind with given ends, of a half-width [m]."""
+    of_each = np.full(len(g), half_width), np.zeros(len(g))
+    return Contacts(response, g, (Group(np.arange(len(g)), pressure, *of_each, K_I),))
+
+
+def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
+    """Contacts of a punch with free ends.
+
+    Args:
+        response: of the half-plane at a speed.
+        g: σ_XY/σ_YY under the punch, (states,).
+        profile: profile of the punch, with a free end at least.
+        load: N/μ [m], a number or one for each state, (states,).
+
+    Raises:
+        SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
+    """
+    g = np.atleast_1d(np.asarray(g, dtype=float))
+    n, load = response.n + g * response.n12, np.broadcast_to(load, g.shape)
+    if not np.all(n > 0.0):
+        raise SolveError(
+            f"at c = {response.c:g} and σ_XY/σ_YY = {g[np.argmin(n)]:g} the surface does not resist a "
+            "punch (not below the Rayleigh speed): no contact of finite width carries a load"
+        )
+    if isinstance(profile, Flat):
+        return Contacts(response, g, _tilted(response, g, n, profile, load))
+    if isinstance(profile, Parabolic):
+        return Contacts(response, g, (_parabolas(response, g, n, profile, load),))
+    return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
+
+
+def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
+    flat = FlatPunch(response, g)
+    a, b = 1.0 + flat.α, 1.0 + flat.β
+    h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
+    A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
+    pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
+    return Group(np.arange(len(g)), pressure, h, h * (b - a), np.zeros((len(g), 2)))
+
+
+def _tilted(
+    response: Response, g: NDArray, n: NDArray, profile: Flat, load: NDArray
+) -> tuple[Group, ...]:
+    """Contacts of a tilted flat punch: both edges in contact, or one lifted off."""
+    flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
+    sin, α, β = flat._sin, flat.α, flat.β
+    a, b = 1.0 + α, 1.0 + β
+    A, B = 2.0 * sin / np.pi, -θ * sin / n * (2.0 * half / load)
+    lifted = (A + 2.0 * a * B > 0.0) | (A - 2.0 * b * B > 0.0)
+    order = np.where(lifted, 0, -1)
+    # One end is sharp, one free: the contact starts at the lower edge.
+    share = a if θ > 0.0 else b
+    h = np.where(lifted, load * n / (2.0 * np.pi * share * abs(θ)) if θ else half, half)
+    centre = np.where(lifted, np.sign(θ) * (h - half), 0.0)
+    α, β = (np.where(lifted, α + (θ > 0.0), α), np.where(lifted, β + (θ < 0.0), β))
+    A = np.where(lifted, sin / (np.pi * share), A + B * (flat.α - flat.β))
+    B = np.where(lifted, 0.0, B)
+    groups = []
+    for kind in (-1, 0):
+        rows = np.flatnonzero(order == kind)
+        if len(rows):
+            column = np.s_[rows, None]
+            pressure = Weighted(α[column], β[column], A[column], B[column], kind)
+            groups.append(Group(rows, pressure, h[rows], centre[rows], pressure.K_I[:, 0]))
+    return tuple(groups)
+
+
+def _by_quadrature(
+    response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
+) -> Sequence[Group]:
+    """Contacts of any convex profile, state after state; equal states are solved once."""
+    a, groups = 1.0 + FlatPunch(response, g).α, []
+    m, h = None, _FIRST
+    _, first, inverse = np.unique(
+        np.column_stack([load, g]), axis=0, return_index=True, return_inverse=True
+    )
+    inverse = inverse.ravel()  # some versions of NumPy keep an axis
+    for k, i in enumerate(first.tolist()):
+        punch = Punch(profile, 1.0, float(load[i]))
+        rule = rule_of_ends(profile, float(a[i]), float(n[i]))
+        m, h = free_ends(punch, lambda _: rule, h, m)  # noqa: B023
+        check_reach(profile, m - h, m + h)
+        pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
+        rows = np.flatnonzero(inverse == k)
+        of_each = np.full(len(rows), h), np.full(len(rows), m), np.zeros((len(rows), 2))
+        groups.append(Group(rows, pressure, *of_each))
+    return groups
+
+
+def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
+    """Quadrature of the conditions on both ends of a contact on a uniform half-plane.
+
+    Args:
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        n: n + g n₁₂ of the half-plane.
+    """
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = panels_of(profile, a, kinks)
+        return panels.t, panels.weights, np.sin(np.pi * a) / n * panels.weights * panels.t
+
+    return rule
+
+
+def pressure_of(punch: Punch, a: float, response: Response, g: float, m: float, h: float) -> FreeEnds:
+    """Pressure of a contact with given ends.
+
+    Args:
+        punch: the punch and its load.
+        a: exponent of the pressure at the right end.
+        response: of the half-plane.
+        g: σ_XY/σ_YY under the punch.
+        m, h: middle and half-width of the contact.
+    """
+    places, slope = punch.kinks(m, h), punch.slope(m, h)
+    panels, n = panels_of(punch.profile, a, places), response.n + g * response.n12
+    tips = places if jumps(punch.profile) else ()
+    return FreeEnds(panels, slope(panels.t), slope, n, g * response.q, places, tips, cusp(punch.profile))

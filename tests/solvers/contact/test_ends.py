@@ -1,0 +1,127 @@
+"""Search for the ends of contacts: profiles that are hard for it, on a uniform half-plane."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.ends import NoRoot, Punch, free_ends, half_width_of_load, root
+from galinx.solvers.contact.uniform import rule_of_ends
+from galinx.solvers.errors import SolveError
+
+#: N/μ [m], and n of the half-plane.
+LOAD, n = 1e-7, 0.75
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A convex punch by its slope [dimensionless], kinks [m] and whether the slope jumps there."""
+
+    slope: object
+    kinks: tuple = ()
+    jumps: bool = False
+
+    def words(self):
+        return "shape"
+
+
+def ends(shape, h=1e-3, m=None, load=LOAD):
+    punch = Punch(shape, 1.0, load)
+    calls = []
+
+    def rules(h):
+        calls.append(h)
+        return rule_of_ends(shape, 0.5, n)
+
+    return *free_ends(punch, rules, h, m), calls
+
+
+@pytest.mark.parametrize("h", [1e-9, 1e-3, 1e3])
+@pytest.mark.parametrize("offset", [0.0, -0.4, 7.0])
+def test_a_parabola_from_any_half_width_and_with_any_axis(h, offset):
+    R = 0.3
+    middle, half, _ = ends(Shape(lambda X: (X - offset) / R), h)
+    # Positions far from the axis have fewer digits over the half-width.
+    digits = 1e-13 * (1.0 + 10.0 * abs(offset) / half)
+    assert half == pytest.approx(np.sqrt(2.0 * LOAD * R * n / np.pi), rel=digits)
+    assert middle == pytest.approx(offset, abs=digits * half)
+
+
+def test_a_similar_contact_saves_half_widths():
+    shape = Shape(lambda X: np.sinh(X / 1e-3) * 0.01)
+    m, h, far = ends(shape)
+    again, half, near = ends(shape, 1.01 * h, m)
+    assert (again, half) == (pytest.approx(m, abs=1e-12 * h), pytest.approx(h, rel=1e-12))
+    assert len(near) < len(far)
+
+
+@pytest.mark.parametrize("s", [1e-4, 0.02])
+def test_a_wedge(s):
+    """h = N n/(2 s μ) (Johnson, Contact Mechanics, 5.7)."""
+    _, half, _ = ends(Shape(lambda X: s * np.sign(X), (0.0,), True))
+    assert half == pytest.approx(LOAD * n / (2.0 * s), rel=1e-12)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3])
+@pytest.mark.parametrize("wider", [1e-3, 1e-6])
+def test_a_contact_hardly_wider_than_a_flat_part(offset, wider):
+    """The balance is an interval where the flat part holds all of the contact."""
+    b, R, φ = 1e-3, 0.2, np.arcsin(1.0 / (1.0 + wider))
+    h = b * (1.0 + wider)
+    load = h**2 / (n * R) * (np.pi / 2.0 - φ - np.sin(φ) * np.cos(φ))
+
+    def slope(X):
+        return (X - offset - np.clip(X - offset, -b, b)) / R
+
+    middle, half, _ = ends(Shape(slope, (offset - b, offset + b)), 1e-6, load=load)
+    assert half == pytest.approx(h, rel=1e-9)
+    assert middle == pytest.approx(offset, abs=1e-9 * h)
+
+
+def test_one_side_much_steeper_than_the_other():
+    """The contact hangs over the flat side: both conditions by arcs of the circle s = cos φ."""
+    left, right = 1e-4, 0.1
+    m, h, _ = ends(Shape(lambda X: np.where(X < 0.0, -left, right), (0.0,), True))
+    φ = np.arccos(-m / h)
+    assert right * φ == pytest.approx(left * (np.pi - φ), rel=1e-9)
+    assert h * (left + right) * np.sin(φ) == pytest.approx(LOAD * n, rel=1e-9)
+
+
+@pytest.mark.parametrize("slope", [lambda X: -X, np.zeros_like, lambda X: np.ones_like(X)])
+def test_a_punch_that_no_contact_carries_says_so(slope):
+    with pytest.raises(SolveError, match="shape carries the load"):
+        ends(Shape(slope))
+
+
+def test_a_load_that_is_infinite_on_one_side():
+    """A flat part carries none, tension at the other side is no load either."""
+    punch = Punch(Shape(np.zeros_like), 1.0, LOAD)
+    h = half_width_of_load(lambda h: -np.inf if h < 2.0 else np.log(h / 3.0), 1e-6, punch)
+    assert h == pytest.approx(3.0, rel=1e-13)
+    h = half_width_of_load(lambda h: np.inf if h > 4.0 else np.log(h / 3.0), 1e6, punch)
+    assert h == pytest.approx(3.0, rel=1e-13)
+
+
+def test_an_expensive_load_is_called_as_often_as_its_rounding_asks_for():
+    punch, called = Punch(Shape(np.sign), 1.0, LOAD), {}
+    for rounding in (1e-3, 1e-13):
+
+        def load(h, rounding=rounding):
+            called.setdefault(rounding, []).append(h)
+            return 1.7 * np.log(h / 3.0) + 0.1 * np.log(h / 3.0) ** 3
+
+        assert half_width_of_load(load, 1.0, punch, rounding) == pytest.approx(3.0, rel=rounding)
+    assert len(called[1e-3]) < len(called[1e-13]) <= 12
+
+
+def test_roots_are_places_where_the_function_was_called():
+    called = []
+
+    def function(x):
+        called.append(x)
+        return np.arctan(x - 5.0)
+
+    assert root(function, -1.0, 0.1, 100.0) in called
+    assert called[-1] == pytest.approx(5.0, abs=1e-14) and len(called) < 25
+    with pytest.raises(NoRoot):
+        root(lambda x: -1.0, 0.0, 1.0, 100.0)
